@@ -1,0 +1,9 @@
+# What only the project's own builds use: the warnings, and a build type when none was asked for.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+add_library(cncplan_development INTERFACE)
+target_link_libraries(cncplan_development INTERFACE cncplan::cncplan)
+target_compile_options(cncplan_development INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+set_target_properties(Eigen3::Eigen tl::expected PROPERTIES IMPORTED_GLOBAL TRUE)

@@ -1,0 +1,70 @@
+// Errors as values: a stable code, the field at fault, its value and the bound it broke.
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace cncplan {
+
+/// Stable: codes are appended, never renumbered. Each has its sentence in `message`.
+enum class ErrorCode : std::uint8_t {
+  not_finite,
+  not_positive,
+  negative,
+  above_limit,
+  below_limit,
+  end_speed_unreachable,
+  chord_exceeds_diameter,
+  coincident_points,
+  radius_mismatch,
+  missing_word,
+  conflicting_words,
+  duplicate_word,
+  not_a_number,
+  unknown_character,
+  unclosed_comment,
+  not_supported,
+  count_,  // number of codes
+};
+
+/// The one message table. The sentence reads after the field's name: "R: chord exceeds the arc's diameter".
+[[nodiscard]] constexpr std::string_view message(ErrorCode code) {
+  constexpr std::array<std::string_view, static_cast<std::size_t>(ErrorCode::count_)> table{
+      "is not a finite number",
+      "must be greater than zero",
+      "must not be negative",
+      "is above the limit",
+      "is below the limit",
+      "end speed cannot be reached within the length",
+      "the end point is farther away than the arc's diameter",
+      "start and end point coincide",
+      "radii at start and end point differ",
+      "a required word is missing",
+      "words exclude each other",
+      "word given twice",
+      "is not a number",
+      "unknown character",
+      "comment is not closed",
+      "is not supported",
+  };
+  return table[static_cast<std::size_t>(code)];
+}
+
+/// What went wrong, where and by how much. `field` names a parameter, word or axis and lives for ever (a literal).
+struct Error {
+  ErrorCode code{};
+  std::string_view field;
+  double value{};  ///< the offending value
+  double bound{};  ///< the bound that it breaks; what is reachable, where that is the question
+
+  friend bool operator==(const Error&, const Error&) = default;
+};
+
+/// A value, or the reason why there is none.
+template <class T, class E = Error>
+using Expected = tl::expected<T, E>;
+
+}  // namespace cncplan

@@ -1,0 +1,40 @@
+// Limits of motion along a path.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+
+#include "cncplan/core/error.hpp"
+
+namespace cncplan {
+
+/// Largest magnitudes allowed along the path. Infinity in `acceleration` or `jerk` means "no such limit".
+template <std::floating_point S>
+struct BasicLimits {
+  S velocity{};      ///< mm/s, > 0, finite
+  S acceleration{};  ///< mm/s^2, > 0
+  S jerk{};          ///< mm/s^3, > 0
+
+  friend bool operator==(const BasicLimits&, const BasicLimits&) = default;
+};
+
+using Limits = BasicLimits<double>;
+
+/// The limits themselves if each is positive (and the velocity finite), else an error naming the first that is not.
+template <std::floating_point S>
+[[nodiscard]] constexpr Expected<BasicLimits<S>> validate(const BasicLimits<S>& limits) {
+  const auto check = [](S value, std::string_view field) -> Expected<S> {
+    if (value > S(0)) return value;
+    const ErrorCode code = value != value ? ErrorCode::not_finite : ErrorCode::not_positive;
+    return tl::unexpected(Error{code, field, static_cast<double>(value), 0.0});
+  };
+  if (auto ok = check(limits.velocity, "velocity limit"); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check(limits.acceleration, "acceleration limit"); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check(limits.jerk, "jerk limit"); !ok) return tl::unexpected(ok.error());
+  if (!std::isfinite(limits.velocity))
+    return tl::unexpected(
+        Error{ErrorCode::not_finite, "velocity limit", static_cast<double>(limits.velocity), 0.0});
+  return limits;
+}
+
+}  // namespace cncplan
