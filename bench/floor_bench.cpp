@@ -1,4 +1,5 @@
-// What the machine can do at best: the yardsticks that the library's figures are held against, in the same run.
+// What the machine can do at best: the yardsticks that the library's figures are held against, in the same
+// run.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -25,8 +26,8 @@ void store_xyz(benchmark::State& state) {
 }
 BENCHMARK(store_xyz)->Name("floor/store_xyz");
 
-// An arc at constant feed by turning the radius vector, four multiplications a point: cheap, but each point waits for
-// the one before it, and the error grows with every step. An item is a point.
+// An arc at constant feed by turning the radius vector, four multiplications a point: cheap, but each point
+// waits for the one before it, and the error grows with every step. An item is a point.
 void rotation(benchmark::State& state) {
   auto& points = buffer();
   double step = 1e-3;
@@ -48,7 +49,8 @@ void rotation(benchmark::State& state) {
 }
 BENCHMARK(rotation)->Name("floor/rotation");
 
-// One root at a time, each independent of the last, as a profile's closed form asks for them. An item is a root.
+// One root at a time, each independent of the last, as a profile's closed form asks for them. An item is a
+// root.
 template <double (*root)(double)>
 void roots(benchmark::State& state) {
   std::array<double, 256> radicands{};

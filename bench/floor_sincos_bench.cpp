@@ -1,4 +1,5 @@
-// floor/sincos: the points of an arc by the compiler's own vector sine and cosine. Compiled with -ffast-math, alone.
+// floor/sincos: the points of an arc by the compiler's own vector sine and cosine. Compiled with -ffast-math,
+// alone.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -11,9 +12,9 @@ namespace {
 using cncplan::bench::buffer;
 using cncplan::bench::buffer_points;
 
-// Sine and cosine of 4096 angles, scaled by a radius and stored as x y z: an arc without any profile. An item is a
-// point. Where the compiler has no vector libm this is the scalar one. Sine and cosine stand in loops of their own,
-// over a block that stays in the first cache: g++ joins the two of one angle to a scalar call.
+// Sine and cosine of 4096 angles, scaled by a radius and stored as x y z: an arc without any profile. An item
+// is a point. Where the compiler has no vector libm this is the scalar one. Sine and cosine stand in loops of
+// their own, over a block that stays in the first cache: g++ joins the two of one angle to a scalar call.
 void sincos(benchmark::State& state) {
   constexpr int block = 64;
   auto& points = buffer();

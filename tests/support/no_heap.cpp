@@ -1,4 +1,5 @@
-// The counters of no_heap.hpp: operator new replaced, and C's functions wrapped by the linker (--wrap=malloc ...).
+// The counters of no_heap.hpp: operator new replaced, and C's functions wrapped by the linker (--wrap=malloc
+// ...).
 #include "no_heap.hpp"
 
 #include <cstdlib>

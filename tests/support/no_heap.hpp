@@ -1,4 +1,5 @@
-// Proof that code keeps off the heap: every allocation of this program is counted, those of Eigen and of C included.
+// Proof that code keeps off the heap: every allocation of this program is counted, those of Eigen and of C
+// included.
 #pragma once
 
 #include <concepts>
@@ -7,8 +8,8 @@
 
 namespace cncplan::test {
 
-/// How often this thread has asked for memory so far: operator new, malloc, calloc, realloc, aligned_alloc and
-/// posix_memalign as called from this program's own code.
+/// How often this thread has asked for memory so far: operator new, malloc, calloc, realloc, aligned_alloc
+/// and posix_memalign as called from this program's own code.
 [[nodiscard]] std::size_t heap_allocations() noexcept;
 
 /// How often it does so while `run` runs. CHECK(heap_allocations_of([&] { result = plan(block); }) == 0);
