@@ -1,0 +1,198 @@
+// Circular arc, helix, spiral and conical helix in one value type.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/path/arc_axis.hpp"
+#include "cncplan/path/box.hpp"
+#include "cncplan/path/plane.hpp"
+#include "cncplan/path/spiral.hpp"
+
+namespace cncplan::path {
+
+/// What defines an arc, consistent to rounding; `arc_from_radius` and `arc_from_center` derive it from
+/// programmed words.
+template <std::floating_point S>
+struct ArcGeometry {
+  BasicVector3<S> start;
+  BasicVector3<S> end;
+  BasicVector3<S> center;  ///< the third coordinate is not read
+  BasicVector3<S> radial;  ///< start - center before rounding; the third coordinate is not read
+  S start_radius{};        ///< > 0
+  S end_radius{};          ///< > 0
+  S angle{};               ///< travelled, whole turns included, > 0, rad
+  Turn turn{};
+  Plane plane{};
+  S radius_adjustment{};
+};
+
+/// From start to end round a centre; the radius goes linearly with the angle from start_radius() to
+/// end_radius(), the third axis linearly from start to end. The parameter u in [0, parameter_end()] is the
+/// angle travelled, rad.
+///
+///   p(u) = start + radial (rho cos u - 1) + tangential rho sin u + axial u,   rho = 1 + growth u
+///
+/// with radial = start - centre, tangential = radial turned by 90 degrees in the arc's sense (KK22 Eqs. 12-13
+/// turned so that u starts at 0). The three vectors are of space, so no formula below knows of planes or
+/// senses of rotation.
+template <std::floating_point S>
+class BasicArc {
+ public:
+  using Scalar = S;
+  using Vector = BasicVector3<S>;
+
+  explicit BasicArc(const ArcGeometry<S>& g)
+      : start_(g.start),
+        end_(g.end),
+        center_(g.center),
+        radial_(g.radial),
+        angle_(g.angle),
+        end_radius_(g.end_radius),
+        radius_adjustment_(g.radius_adjustment),
+        plane_(g.plane),
+        turn_(g.turn) {
+    const PlaneAxes a = axes(plane_);
+    center_(a.third) = start_(a.third);
+    radial_(a.third) = S(0);
+    tangential_(a.first) = -turn_sign() * radial_(a.second);
+    tangential_(a.second) = turn_sign() * radial_(a.first);
+    start_angle_ = std::atan2(radial_(a.second), radial_(a.first));
+    spiral_ = {g.start_radius, (g.end_radius - g.start_radius) / g.angle, rise() / g.angle};
+    growth_ = spiral_.growth / spiral_.radius;
+    axial_(a.third) = spiral_.rise;
+    length_ = path::length_at(spiral_, angle_);
+  }
+
+  [[nodiscard]] const Vector& start() const { return start_; }
+  [[nodiscard]] const Vector& end() const { return end_; }
+  [[nodiscard]] const Vector& center() const { return center_; }  ///< third coordinate: the start's
+  [[nodiscard]] Vector chord() const { return end_ - start_; }
+  [[nodiscard]] Plane plane() const { return plane_; }
+  [[nodiscard]] Turn turn() const { return turn_; }
+  [[nodiscard]] S start_radius() const { return spiral_.radius; }
+  [[nodiscard]] S end_radius() const { return end_radius_; }
+  /// Of the start seen from the centre, from the plane's first towards its second axis, in [-pi, pi].
+  [[nodiscard]] S start_angle() const { return start_angle_; }
+  /// Whole turns included; positive counter-clockwise seen from the positive third axis.
+  [[nodiscard]] S sweep() const { return turn_sign() * angle_; }
+  /// Travel of the third axis.
+  [[nodiscard]] S rise() const { return end_(axes(plane_).third) - start_(axes(plane_).third); }
+  [[nodiscard]] S length() const { return length_; }  ///< in space
+  [[nodiscard]] S planar_length() const {
+    return path::length_at(Spiral<S>{spiral_.radius, spiral_.growth, S(0)}, angle_);
+  }
+  /// Used minus programmed radius where an R arc was made a semicircle, else 0.
+  [[nodiscard]] S radius_adjustment() const { return radius_adjustment_; }
+  /// One radius and an arc length linear in the parameter: a circle or a helix.
+  [[nodiscard]] bool is_circular() const { return growth_ == S(0); }
+
+  [[nodiscard]] const Vector& radial() const { return radial_; }          ///< see the class comment
+  [[nodiscard]] const Vector& tangential() const { return tangential_; }  ///< see the class comment
+  [[nodiscard]] const Vector& axial() const { return axial_; }            ///< see the class comment
+  [[nodiscard]] S growth() const { return growth_; }                      ///< see the class comment
+
+  [[nodiscard]] S parameter_end() const { return angle_; }
+
+  /// Both ends bit for bit as programmed; outside [0, parameter_end()] the nearer end.
+  [[nodiscard]] Vector position(S u) const {
+    if (u <= S(0)) return start_;
+    if (u >= angle_) return end_;
+    const S s = std::sin(u / 2);
+    const S c = std::cos(u / 2);
+    const Vector turned = 2 * s * (c * tangential_ - s * radial_);
+    return start_ + turned + u * (growth_ * (radial_ + turned) + axial_);
+  }
+  [[nodiscard]] Vector derivative(S u) const {
+    const S s = std::sin(u);
+    const S c = std::cos(u);
+    const S rho = S(1) + growth_ * u;
+    return (growth_ * c - rho * s) * radial_ + (growth_ * s + rho * c) * tangential_ + axial_;
+  }
+  [[nodiscard]] Vector second_derivative(S u) const {
+    const S s = std::sin(u);
+    const S c = std::cos(u);
+    const S rho = S(1) + growth_ * u;
+    return (-2 * growth_ * s - rho * c) * radial_ + (2 * growth_ * c - rho * s) * tangential_;
+  }
+
+  /// The parameter at which length s has been travelled; linear for a circular arc or helix, else see
+  /// `angle_at`.
+  [[nodiscard]] S parameter_at(S s) const { return angle_at(spiral_, s, angle_, length_); }
+  /// Inverse of `parameter_at`.
+  [[nodiscard]] S length_at(S u) const { return path::length_at(spiral_, u); }
+
+  [[nodiscard]] Vector start_tangent() const { return derivative(S(0)).normalized(); }
+  [[nodiscard]] Vector end_tangent() const { return derivative(angle_).normalized(); }
+  [[nodiscard]] S curvature(S u) const { return curvature_at_radius(spiral_, spiral_.radius_at(u)); }
+  [[nodiscard]] S max_curvature() const { return path::max_curvature(spiral_, angle_); }
+
+  /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
+  /// A turning within rounding of u or of the end counts as being there.
+  [[nodiscard]] S next_turning(int axis, S u) const {
+    if (axis == axes(plane_).third) return angle_;
+    const ArcAxis<S> coordinate = in_plane(axis);
+    const S n = coordinate.next_turning_number(u);
+    return n > coordinate.previous_turning_number(angle_) ? angle_ : std::min(coordinate.turning(n), angle_);
+  }
+
+  /// The parameter in [low, high] at which the axis stands at `value`. There is no turning between low and
+  /// high, and value lies between the axis' values there. Closed form but for the in-plane axes of a spiral.
+  [[nodiscard]] S crossing(int axis, S value, S low, S high) const {
+    if (axis == axes(plane_).third) return std::clamp((value - start_(axis)) / spiral_.rise, low, high);
+    return in_plane(axis).crossing(value, low, high);
+  }
+
+  /// The box that the arc touches on all sides. The radius is monotone, so the first and the last two
+  /// turnings of an axis hold its extrema, however many turns there are.
+  [[nodiscard]] BasicBox<S> bounds() const {
+    BasicBox<S> box{start_.cwiseMin(end_), start_.cwiseMax(end_)};
+    for (const int axis : {axes(plane_).first, axes(plane_).second}) {
+      const ArcAxis<S> coordinate = in_plane(axis);
+      const S first = coordinate.next_turning_number(S(0));
+      const S last = coordinate.previous_turning_number(angle_);
+      for (const S n : {first, first + S(1), last - S(1), last}) {
+        if (n < first || n > last) continue;
+        const S value = coordinate.value(coordinate.turning(n));
+        box.low(axis) = std::min(box.low(axis), value);
+        box.high(axis) = std::max(box.high(axis), value);
+      }
+    }
+    return box;
+  }
+
+  friend bool operator==(const BasicArc& a, const BasicArc& b) {
+    return a.start_ == b.start_ && a.end_ == b.end_ && a.center_ == b.center_ && a.angle_ == b.angle_ &&
+           a.turn_ == b.turn_ && a.plane_ == b.plane_ && a.spiral_ == b.spiral_;
+  }
+
+ private:
+  [[nodiscard]] S turn_sign() const { return static_cast<S>(sign(turn_)); }
+
+  [[nodiscard]] ArcAxis<S> in_plane(int axis) const {
+    const S from = axis == axes(plane_).second ? std::numbers::pi_v<S> / 2 : S(0);
+    return {start_(axis), radial_(axis), tangential_(axis), growth_, turn_sign() * (start_angle_ - from)};
+  }
+
+  Vector start_;
+  Vector end_;
+  Vector center_;
+  Vector radial_;
+  Vector tangential_ = Vector::Zero();
+  Vector axial_ = Vector::Zero();
+  Spiral<S> spiral_;
+  S angle_;
+  S end_radius_;
+  S growth_{};
+  S start_angle_{};
+  S length_{};
+  S radius_adjustment_;
+  Plane plane_;
+  Turn turn_;
+};
+
+using Arc = BasicArc<double>;
+
+}  // namespace cncplan::path
