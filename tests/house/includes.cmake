@@ -1,0 +1,74 @@
+# The rules of the rooms, checked on the text of every header.   cmake -DINCLUDE=include -P includes.cmake
+#   - A room includes the standard library, Eigen, tl::expected, core/ and itself; plan/ and the umbrella include all.
+#   - The umbrella, cncplan.hpp, lags behind nothing: it includes every header there is.
+#   - A header has #pragma once, and a first line that says what it holds. If that line says "(set-up)", the header is for
+#     code that runs before the machine moves, and may use the heap; all others may not even include what needs it.
+#   - No file is longer than 600 lines.
+cmake_minimum_required(VERSION 3.22)
+
+set(needs_heap deque filesystem forward_list fstream functional future iomanip ios iostream istream list map memory
+  memory_resource mutex ostream queue regex set shared_mutex sstream stack stdexcept streambuf string thread unordered_map
+  unordered_set vector)
+
+get_filename_component(INCLUDE ${INCLUDE} ABSOLUTE)
+file(GLOB_RECURSE headers RELATIVE ${INCLUDE} ${INCLUDE}/cncplan/*.hpp)
+set(found FALSE)
+macro(complain text)
+  message(NOTICE "include/${header}: ${text}")
+  set(found TRUE)
+endmacro()
+
+foreach(header IN LISTS headers)
+  file(READ ${INCLUDE}/${header} text)
+  string(REGEX MATCH "^cncplan/([^/]+)/" room ${header})
+  set(room "${CMAKE_MATCH_1}")
+  string(REGEX MATCH "^[^\n]*" first_line "${text}")
+  string(REGEX MATCHALL "\n" line_ends "${text}")
+  list(LENGTH line_ends lines)
+
+  if(NOT first_line MATCHES "^// .+")
+    complain("its first line is not a comment that says what it holds")
+  endif()
+  if(NOT text MATCHES "\n#pragma once\n")
+    complain("has no #pragma once")
+  endif()
+  if(lines GREATER 600)
+    complain("has ${lines} lines, more than 600")
+  endif()
+
+  string(REGEX MATCHALL "#[ \t]*include[ \t]*[<\"][^>\"]+" includes "${text}")
+  foreach(include IN LISTS includes)
+    string(REGEX MATCH "([<\"])(.+)$" all "${include}")
+    set(kind "${CMAKE_MATCH_1}")
+    set(target "${CMAKE_MATCH_2}")
+    if(kind STREQUAL "\"")
+      string(REGEX MATCH "^cncplan/([^/]+)/" all ${target})
+      set(other "${CMAKE_MATCH_1}")
+      if(NOT target IN_LIST headers)
+        complain("includes \"${target}\", which is no header of the library")
+      elseif(NOT room STREQUAL "" AND NOT room STREQUAL "plan" AND NOT other MATCHES "^(core|${room})$")
+        complain("${room}/ includes \"${target}\": a room includes core/ and itself only")
+      endif()
+      if(NOT room STREQUAL "")
+        continue()
+      endif()
+      list(APPEND umbrella ${target})
+    elseif(NOT target MATCHES "^([a-z_]+|Eigen/[A-Z][A-Za-z]+|tl/expected\\.hpp)$")
+      complain("includes <${target}>: only the standard library, Eigen and tl::expected are allowed")
+    elseif(target IN_LIST needs_heap AND NOT first_line MATCHES "\\(set-up\\)")
+      complain("includes <${target}>, but its first line does not say (set-up)")
+    endif()
+  endforeach()
+endforeach()
+
+set(missing ${headers})
+list(REMOVE_ITEM missing cncplan/cncplan.hpp ${umbrella})
+foreach(header IN LISTS missing)
+  complain("is not included by cncplan.hpp: tools/umbrella writes it anew")
+endforeach()
+
+if(found OR NOT headers)
+  message(FATAL_ERROR "A rule of the rooms is broken")
+endif()
+list(LENGTH headers count)
+message(STATUS "${count} headers keep the rules of the rooms")

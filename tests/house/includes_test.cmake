@@ -1,0 +1,37 @@
+# That includes.cmake sees each rule broken, in small trees made for it.   cmake -DWORK=folder -P includes_test.cmake
+cmake_minimum_required(VERSION 3.22)
+
+# Adds one header, included by the umbrella, to a sound tree, and expects the complaint; "" stands for none.
+function(expect complaint path)
+  file(REMOVE_RECURSE ${WORK})
+  list(JOIN ARGN "\n" text)
+  file(WRITE ${WORK}/cncplan/path/table.hpp "// A table, made beforehand (set-up).\n#pragma once\n#include <vector>\n")
+  file(WRITE ${WORK}/cncplan/cncplan.hpp
+    "// All.\n#pragma once\n#include \"cncplan/path/table.hpp\"\n#include \"cncplan/step/edge.hpp\"\n")
+  file(WRITE ${WORK}/cncplan/step/edge.hpp "// An edge.\n#pragma once\n")
+  file(WRITE ${WORK}/cncplan/${path} "${text}\n")
+  if(NOT path STREQUAL "step/edge.hpp" AND NOT complaint MATCHES "by cncplan.hpp")
+    file(APPEND ${WORK}/cncplan/cncplan.hpp "#include \"cncplan/${path}\"\n")
+  endif()
+  execute_process(COMMAND ${CMAKE_COMMAND} -DINCLUDE=${WORK} -P ${CMAKE_CURRENT_LIST_DIR}/includes.cmake
+    OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE failed)
+  string(FIND "${said}" "include/cncplan/${path}: ${complaint}" place)
+  if(complaint STREQUAL "" AND failed OR NOT complaint STREQUAL "" AND (NOT failed OR place EQUAL -1))
+    message(FATAL_ERROR "${path} ${ARGN}\nexpected: '${complaint}'\ngot: ${said}")
+  endif()
+endfunction()
+
+set(holds "// What it holds." "#pragma once")
+expect("" step/edge.hpp ${holds} "#include <cmath>" "#include <Eigen/Core>" "#include <tl/expected.hpp>")
+expect("" plan/program.hpp ${holds} "#include \"cncplan/path/table.hpp\"")
+expect("" path/list.hpp "// A list (set-up)." "#pragma once" "#include \"cncplan/path/table.hpp\"" "#include <vector>")
+expect("step/ includes \"cncplan/path/table.hpp\"" step/edge.hpp ${holds} "#include \"cncplan/path/table.hpp\"")
+expect("core/ includes \"cncplan/path/table.hpp\"" core/edge.hpp ${holds} "#  include \"cncplan/path/table.hpp\"")
+expect("includes \"table.hpp\", which is no header" path/list.hpp ${holds} "#include \"table.hpp\"")
+expect("includes <boost/rational.hpp>" step/edge.hpp ${holds} "#include <boost/rational.hpp>")
+expect("includes <vector>, but its first line" step/edge.hpp ${holds} "#include <vector>")
+expect("its first line is not a comment" step/edge.hpp "#pragma once")
+expect("has no #pragma once" step/edge.hpp "// What it holds.")
+expect("is not included by cncplan.hpp" step/forgotten.hpp ${holds})
+string(REPEAT "\n" 600 long)
+expect("has 603 lines" step/edge.hpp ${holds} "${long}")

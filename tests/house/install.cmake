@@ -1,0 +1,3 @@
+# Installs a build tree into an empty folder.   cmake -DBUILD=tree -DPREFIX=folder -P install.cmake
+file(REMOVE_RECURSE ${PREFIX})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
