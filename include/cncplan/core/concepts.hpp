@@ -9,8 +9,8 @@
 
 namespace cncplan {
 
-/// A curve over a parameter u in [0, parameter_end()], differentiable twice. `Vector` is a fixed-size Eigen column:
-/// of three components for a tool path, of as many as there are axes for a path in machine space.
+/// A curve over a parameter u in [0, parameter_end()], differentiable twice. `Vector` is a fixed-size Eigen
+/// column: of three components for a tool path, of as many as there are axes for a path in machine space.
 template <class P>
 concept ParametricPath = requires(const P& path, typename P::Scalar u) {
   requires std::floating_point<typename P::Scalar>;
@@ -27,7 +27,8 @@ concept Path = ParametricPath<P> && requires(const P& path, typename P::Scalar s
   { path.parameter_at(s) } -> std::same_as<typename P::Scalar>;
 };
 
-/// Travel along a path over time: position, velocity, acceleration and jerk at t in [0, duration()], and the inverse.
+/// Travel along a path over time: position, velocity, acceleration and jerk at t in [0, duration()], and the
+/// inverse.
 template <class F>
 concept Profile = requires(const F& profile, typename F::Scalar x) {
   requires std::floating_point<typename F::Scalar>;

@@ -20,7 +20,8 @@ struct BasicLimits {
 
 using Limits = BasicLimits<double>;
 
-/// The limits themselves if each is positive (and the velocity finite), else an error naming the first that is not.
+/// The limits themselves if each is positive (and the velocity finite), else an error naming the first that
+/// is not.
 template <std::floating_point S>
 [[nodiscard]] constexpr Expected<BasicLimits<S>> validate(const BasicLimits<S>& limits) {
   const auto check = [](S value, std::string_view field) -> Expected<S> {
