@@ -41,14 +41,32 @@ int __wrap_posix_memalign(void** memory, std::size_t alignment, std::size_t size
 }
 }
 
-// The array and nothrow forms call these two pairs.
-void* operator new(std::size_t size) { return or_throw(std::malloc(size)); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+// All forms, array and nothrow too: the standard library's call the first pair, but a sanitizer's do not.
+namespace {
 
-void* operator new(std::size_t size, std::align_val_t alignment) {
+void* aligned(std::size_t size, std::align_val_t alignment) {
   const auto unit = static_cast<std::size_t>(alignment);
-  return or_throw(std::aligned_alloc(unit, (size + unit - 1) / unit * unit));
+  return std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
 }
+
+}  // namespace
+
+void* operator new(std::size_t size) { return or_throw(std::malloc(size)); }
+void* operator new[](std::size_t size) { return or_throw(std::malloc(size)); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return std::malloc(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return std::malloc(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return or_throw(aligned(size, alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return or_throw(aligned(size, alignment));
+}
+
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
