@@ -27,6 +27,11 @@ enum class ErrorCode : std::uint8_t {
   unknown_character,
   unclosed_comment,
   not_supported,
+  missing_number,
+  not_an_integer,
+  unused_word,
+  line_too_long,
+  ignored,
   count_,  // number of codes
 };
 
@@ -49,6 +54,11 @@ enum class ErrorCode : std::uint8_t {
       "unknown character",
       "comment is not closed",
       "is not supported",
+      "has no number",
+      "must be a whole number",
+      "is used by nothing on this line",
+      "the line is too long",
+      "is ignored",
   };
   return table[static_cast<std::size_t>(code)];
 }
