@@ -1,0 +1,149 @@
+// One line of a program, its words sorted by letter and by modal group.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/scanner.hpp"
+#include "cncplan/gcode/word.hpp"
+
+namespace cncplan::gcode {
+
+/// Most words of one line that pass through.
+inline constexpr int max_passed = 16;
+
+/// The words of one line.
+class Block {
+ public:
+  /// Sorts the words of `line`, from a byte on. Errors: a character that begins no word, a letter without
+  /// number or given twice, two codes of one group, a G or M code that is neither known nor passed through.
+  Expected<void, Diagnostic> parse(std::string_view line, std::size_t from,
+                                   const std::vector<PassThrough>& pass_through) {
+    clear();
+    for (Scanner scanner(line, from);;) {
+      const auto word = scanner.next();
+      if (!word) return tl::unexpected(word.error());
+      if (!*word) return {};
+      if (auto ok = add(**word, pass_through); !ok) return ok;
+    }
+  }
+
+  [[nodiscard]] bool empty() const { return letters_ == 0 && codes_seen_ == 0 && passed_count_ == 0; }
+
+  [[nodiscard]] Letters letters() const { return letters_; }
+  [[nodiscard]] bool has(char letter) const { return (letters_ & bit(letter)) != 0; }
+  [[nodiscard]] double number(char letter) const { return numbers_[index(letter)]; }
+  [[nodiscard]] int column(char letter) const { return columns_[index(letter)]; }
+
+  [[nodiscard]] bool has(Group group) const {
+    return ((codes_seen_ >> static_cast<unsigned>(group)) & 1U) != 0;
+  }
+  [[nodiscard]] Code code(Group group) const {
+    return has(group) ? codes_[static_cast<std::size_t>(group)] : no_code;
+  }
+  [[nodiscard]] int column(Group group) const { return code_columns_[static_cast<std::size_t>(group)]; }
+
+  [[nodiscard]] int passed_count() const { return passed_count_; }
+  [[nodiscard]] const Word& passed(int i) const { return passed_[static_cast<std::size_t>(i)]; }
+  /// Whether a passed-through code is there that other words may belong to.
+  [[nodiscard]] bool passes_code() const { return passes_code_; }
+
+  /// Column of the first of the words that is there; 0 if none is.
+  [[nodiscard]] int first_column(Letters among) const {
+    int first = 0;
+    for (Letters left = among & letters_; left != 0; left &= left - 1) {
+      const int column = columns_[static_cast<std::size_t>(std::countr_zero(left))];
+      if (first == 0 || column < first) first = column;
+    }
+    return first;
+  }
+
+  /// Moves a word over to those that pass through, which keep the order of the text.
+  Expected<void, Diagnostic> pass(char letter) {
+    letters_ &= ~bit(letter);
+    return pass(Word{letter, number(letter), 0, column(letter)});
+  }
+
+  /// A word of the block as the field of an error.
+  [[nodiscard]] Diagnostic error(ErrorCode code, char letter, double bound = 0.0) const {
+    return {{code, name(letter), number(letter), bound}, 0, column(letter)};
+  }
+  [[nodiscard]] Diagnostic error(ErrorCode code, Group group) const {
+    return {{code, name(letter(group)), this->code(group) / 10.0, 0.0}, 0, column(group)};
+  }
+
+ private:
+  void clear() {
+    letters_ = 0;
+    codes_seen_ = 0;
+    passed_count_ = 0;
+    passes_code_ = false;
+  }
+
+  Expected<void, Diagnostic> add(const Word& word, const std::vector<PassThrough>& pass_through) {
+    for (const PassThrough& entry : pass_through)
+      if (entry.letter == word.letter && (!entry.number || *entry.number == word.number)) {
+        passes_code_ = passes_code_ || word.letter == 'G' || word.letter == 'M';
+        return pass(word);
+      }
+    if (word.letter == 'G' || word.letter == 'M') return add_code(word);
+    if (word.letter == 'O')
+      return tl::unexpected(
+          Diagnostic{{ErrorCode::not_supported, "O-word", word.number, 0.0}, 0, word.column});
+    const std::size_t i = index(word.letter);
+    numbers_[i] = word.number;
+    columns_[i] = static_cast<std::uint16_t>(word.column);
+    if (has(word.letter)) return tl::unexpected(error(ErrorCode::duplicate_word, word.letter));
+    letters_ |= bit(word.letter);
+    return {};
+  }
+
+  Expected<void, Diagnostic> add_code(const Word& word) {
+    const auto [group, code] = find_code(word.letter, word.number);
+    const auto fail = [&word](ErrorCode error) {
+      return Diagnostic{{error, name(word.letter), word.number, 0.0}, 0, word.column};
+    };
+    if (group == Group::none) return tl::unexpected(fail(ErrorCode::not_supported));
+    if (has(group)) {
+      Diagnostic diagnostic = fail(ErrorCode::conflicting_words);
+      diagnostic.other = name(word.letter);
+      diagnostic.error.bound = this->code(group) / 10.0;
+      return tl::unexpected(diagnostic);
+    }
+    codes_seen_ |= 1U << static_cast<unsigned>(group);
+    codes_[static_cast<std::size_t>(group)] = code;
+    code_columns_[static_cast<std::size_t>(group)] = static_cast<std::uint16_t>(word.column);
+    return {};
+  }
+
+  Expected<void, Diagnostic> pass(const Word& word) {
+    if (passed_count_ == max_passed)
+      return tl::unexpected(
+          Diagnostic{{ErrorCode::above_limit, "number of words to pass through", max_passed + 1, max_passed},
+                     0,
+                     word.column});
+    auto place = passed_.begin() + passed_count_++;
+    for (; place != passed_.begin() && (place - 1)->column > word.column; --place) *place = *(place - 1);
+    *place = word;
+    return {};
+  }
+
+  Letters letters_{};
+  std::uint32_t codes_seen_{};
+  int passed_count_{};
+  bool passes_code_{};
+  std::array<double, 26> numbers_{};
+  std::array<std::uint16_t, 26> columns_{};
+  std::array<Code, group_count> codes_{};
+  std::array<std::uint16_t, group_count> code_columns_{};
+  std::array<Word, max_passed> passed_{};
+};
+
+}  // namespace cncplan::gcode

@@ -1,0 +1,52 @@
+// Diagnostics as sentences, for programs that print them.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <string>
+#include <string_view>
+
+#include "cncplan/gcode/diagnostic.hpp"
+
+namespace cncplan::gcode {
+
+namespace detail {
+
+inline std::string number_text(double number) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  return {digits.data(), end};
+}
+
+/// A code is known by its number (G41), any other word by its letter.
+inline std::string word_text(std::string_view letter, double number) {
+  const bool code = letter == "G" || letter == "M" || letter == "byte";
+  return std::string(letter) + (code ? number_text(number) : "");
+}
+
+}  // namespace detail
+
+/// The sentence alone: "G41 is not supported", "G3: words exclude each other (G2)".
+[[nodiscard]] inline std::string to_text(const Diagnostic& diagnostic) {
+  const Error& error = diagnostic.error;
+  const std::string_view sentence = message(error.code);
+  const bool has_verb =
+      sentence.starts_with("is ") || sentence.starts_with("must ") || sentence.starts_with("has ");
+  std::string text = detail::word_text(error.field, error.value);
+  text += has_verb ? " " : ": ";
+  text += sentence;
+  if (error.code == ErrorCode::above_limit) text += ' ' + detail::number_text(error.bound);
+  if (!diagnostic.other.empty()) text += " (" + detail::word_text(diagnostic.other, error.bound) + ')';
+  return text;
+}
+
+/// `FILE:LINE:COLUMN: error: SENTENCE`, or with another word for its weight.
+[[nodiscard]] inline std::string to_text(std::string_view file, const Diagnostic& diagnostic,
+                                         std::string_view weight = "error") {
+  std::string text(file);
+  text += ':' + std::to_string(diagnostic.line) + ':' + std::to_string(diagnostic.column) + ": ";
+  text += weight;
+  return text + ": " + to_text(diagnostic);
+}
+
+}  // namespace cncplan::gcode

@@ -1,0 +1,100 @@
+// What a machine brings to the reading of a program: its axes, tables and words of its own.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/plane.hpp"
+#include "cncplan/gcode/motion.hpp"
+#include "cncplan/gcode/word.hpp"
+
+namespace cncplan::gcode {
+
+enum class AxisKind : std::uint8_t { linear, rotary };
+
+/// An axis and the letter it answers to. Numbers of a rotary axis are degrees in the text.
+struct Axis {
+  char letter{};
+  AxisKind kind{};
+
+  friend bool operator==(const Axis&, const Axis&) = default;
+};
+
+/// Length of a tool, mm; it shifts Z under G43.
+struct Tool {
+  int number{};
+  double length{};
+
+  friend bool operator==(const Tool&, const Tool&) = default;
+};
+
+/// A word that comes out as it is. Without a number, the letter with any number. The words that nothing else
+/// on the line uses go with a passed-through G or M (the P and Q of `G05 P10000 Q3`).
+struct PassThrough {
+  char letter{};
+  std::optional<double> number{};
+
+  friend bool operator==(const PassThrough&, const PassThrough&) = default;
+};
+
+/// Number of work coordinate systems: G54 to G59, G59.1, G59.2, G59.3.
+inline constexpr int work_systems = 9;
+
+/// The machine's side of the language. The value as it stands is a three-axis mill with empty tables.
+struct Dialect {
+  std::vector<Axis> axes{{'X', AxisKind::linear}, {'Y', AxisKind::linear}, {'Z', AxisKind::linear}};
+  std::vector<Tool> tools;  ///< a tool that is not here has length 0
+  std::vector<PassThrough> pass_through;
+  std::array<Position, work_systems> work_offsets{};  ///< machine coordinates of each system's origin
+  Position home_g28{};                                ///< machine coordinates
+  Position home_g30{};                                ///< machine coordinates
+  Plane g18 = Plane::zx;     ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
+  bool block_delete = true;  ///< lines that begin with / are left out
+
+  friend bool operator==(const Dialect&, const Dialect&) = default;
+};
+
+/// Letters that mean something of their own, and cannot name an axis.
+inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
+
+/// The dialect itself if it can be read with, else what is wrong with it: no axis or more than `max_axes`, a
+/// letter twice or reserved, a table entry that is not finite, tool lengths without a Z axis.
+[[nodiscard]] inline Expected<Dialect> validate(const Dialect& dialect) {
+  const auto fail = [](ErrorCode code, std::string_view field, double value = 0.0, double bound = 0.0) {
+    return tl::unexpected(Error{code, field, value, bound});
+  };
+  if (dialect.axes.empty()) return fail(ErrorCode::not_positive, "number of axes");
+  if (dialect.axes.size() > max_axes)
+    return fail(ErrorCode::above_limit, "number of axes", static_cast<double>(dialect.axes.size()), max_axes);
+  Letters seen = 0;
+  for (const Axis& axis : dialect.axes) {
+    if (axis.letter < 'A' || axis.letter > 'Z') return fail(ErrorCode::unknown_character, "axis letter");
+    if ((bit(axis.letter) & reserved_letters) != 0)
+      return fail(ErrorCode::conflicting_words, name(axis.letter));
+    if ((bit(axis.letter) & seen) != 0) return fail(ErrorCode::duplicate_word, name(axis.letter));
+    seen |= bit(axis.letter);
+  }
+  for (const Tool& tool : dialect.tools) {
+    if (!std::isfinite(tool.length)) return fail(ErrorCode::not_finite, "tool length", tool.length);
+    if (tool.length != 0.0 && (seen & bit('Z')) == 0) return fail(ErrorCode::missing_word, "Z");
+  }
+  for (const PassThrough& passed : dialect.pass_through)
+    if (passed.letter < 'A' || passed.letter > 'Z')
+      return fail(ErrorCode::unknown_character, "word to pass through");
+  const auto finite = [](const Position& position) {
+    for (const double coordinate : position)
+      if (!std::isfinite(coordinate)) return false;
+    return true;
+  };
+  if (!finite(dialect.home_g28)) return fail(ErrorCode::not_finite, "home position of G28");
+  if (!finite(dialect.home_g30)) return fail(ErrorCode::not_finite, "home position of G30");
+  for (const Position& offset : dialect.work_offsets)
+    if (!finite(offset)) return fail(ErrorCode::not_finite, "work offset");
+  return dialect;
+}
+
+}  // namespace cncplan::gcode

@@ -1,0 +1,77 @@
+// What a program asks for, in order: motions, dwells, stops, and the words that are for others to act on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "cncplan/core/plane.hpp"
+#include "cncplan/core/vector.hpp"
+#include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/word.hpp"
+
+namespace cncplan::gcode {
+
+/// Most axes of a machine.
+inline constexpr int max_axes = 6;
+
+/// A place in the order of the dialect's axes; mm for linear axes, rad for rotary ones, 0 beyond the last
+/// axis.
+using Position = std::array<double, max_axes>;
+
+/// An arc comes with its radius (R) or with its centre (I J K): which centre belongs to R is a question of
+/// geometry, and not for the reader to answer.
+enum class MotionKind : std::uint8_t { rapid, line, arc_radius, arc_center };
+
+/// G94 or G93.
+enum class FeedMode : std::uint8_t { per_minute, inverse_time };
+
+/// One move. Positions are in work coordinates; the machine's are work + offset.
+struct Motion {
+  MotionKind kind{};
+  Plane plane{};  ///< the active one
+  Turn turn{};    ///< arcs only
+  FeedMode feed_mode{};
+  bool exact_stop{};  ///< G61 or G61.1 is active
+  Position start{};
+  Position end{};
+  Position offset{};                 ///< G54..G59.3, G92 and tool length together
+  double radius{};                   ///< arc_radius: R in mm; negative asks for the longer arc
+  Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
+  int extra_turns{};                 ///< whole turns more than the arc itself: P - 1
+  std::optional<double> feed{};  ///< mm/s, or 1/s under inverse time; none for rapids and before the first F
+  int line{};
+  int column{};  ///< of the R of an arc_radius, the first of I J K of an arc_center, else the first axis word
+
+  friend bool operator==(const Motion&, const Motion&) = default;
+};
+
+/// G4.
+struct Dwell {
+  double seconds{};
+  int line{};
+
+  friend bool operator==(const Dwell&, const Dwell&) = default;
+};
+
+/// M0, M1, M2, M30 and M6: the machine comes to rest. `code` is the number after M.
+struct Stop {
+  int code{};
+  int line{};
+
+  friend bool operator==(const Stop&, const Stop&) = default;
+};
+
+/// Something was read and has no effect.
+struct Warning {
+  Diagnostic about;
+
+  friend bool operator==(const Warning&, const Warning&) = default;
+};
+
+/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 S T, the program's number (O), or one
+/// that the dialect passes through.
+using Item = std::variant<Motion, Dwell, Stop, Word, Warning>;
+
+}  // namespace cncplan::gcode

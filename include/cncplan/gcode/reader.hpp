@@ -1,0 +1,331 @@
+// Reads G-code line by line: text in, motions and words out.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/motion.hpp"
+#include "cncplan/gcode/rules.hpp"
+#include "cncplan/gcode/scanner.hpp"
+
+namespace cncplan::gcode {
+
+/// Most items that one line yields: so large a buffer takes every line.
+inline constexpr std::size_t max_items_per_line = max_passed + 10;
+
+/// Radians per degree, the unit of rotary axes in the text.
+inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
+
+/// The state of an RS274/NGC interpreter. At the start all axes are at 0 and G17 G21 G90 G91.1 G94 G54 hold;
+/// no motion code does, and no feed.
+///
+///     gcode::Reader reader(dialect);
+///     for (std::string_view line : lines)
+///       if (auto end = reader.read_line(line, std::back_inserter(items)); !end) return end.error();
+class Reader {
+ public:
+  /// The dialect should be one that `validate` accepts.
+  explicit Reader(const Dialect& dialect = {}) : dialect_(dialect), alphabet_(dialect) {
+    offset_ = dialect_.work_offsets[0];
+    for (std::size_t i = 0; i < axis_count(); ++i) current_[i] -= offset_[i];
+  }
+
+  /// Reads one line (without its end; a carriage return is passed over) and writes its items in the order in
+  /// which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A line in
+  /// error writes nothing and changes nothing. After the end of the program (M2, M30, the second %) lines are
+  /// only counted.
+  template <std::output_iterator<Item> Out>
+  Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
+    ++line_;
+    if (finished_) return out;
+    auto end = read(text, std::move(out));
+    if (!end) end.error().line = line_;
+    return end;
+  }
+
+  /// Whether the program has ended.
+  [[nodiscard]] bool finished() const { return finished_; }
+  /// Lines read.
+  [[nodiscard]] int line() const { return line_; }
+  /// Where the program stands, in work coordinates.
+  [[nodiscard]] const Position& position() const { return current_; }
+  /// What takes work to machine coordinates.
+  [[nodiscard]] const Position& offset() const { return offset_; }
+
+ private:
+  template <class Out>
+  Expected<Out, Diagnostic> read(std::string_view text, Out out) {
+    if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    if (text.size() > max_line_length)
+      return tl::unexpected(
+          Diagnostic{{ErrorCode::line_too_long, "line", static_cast<double>(text.size()), max_line_length},
+                     0,
+                     static_cast<int>(max_line_length) + 1});
+    std::size_t from = text.find_first_not_of(" \t");
+    if (from == std::string_view::npos) return out;
+    if (text[from] == '%') return read_percent(text, from + 1, std::move(out));
+    if (text[from] == '/') {
+      if (dialect_.block_delete) return out;
+      ++from;
+    }
+    if (!words_seen_)
+      if (const auto number = program_number(text, from)) {
+        words_seen_ = true;
+        *out = Item(*number);
+        return ++out;
+      }
+    if (auto ok = block_.parse(text, from, dialect_.pass_through); !ok) return tl::unexpected(ok.error());
+    if (block_.empty()) return out;
+    const Modal modal = after(block_, modal_, dialect_.g18);
+    const auto motion = resolve(block_, modal, alphabet_);
+    if (!motion) return tl::unexpected(motion.error());
+    modal_ = modal;
+    words_seen_ = true;
+    return execute(*motion, std::move(out));
+  }
+
+  /// The first % stands before the program, the next one ends it.
+  template <class Out>
+  Expected<Out, Diagnostic> read_percent(std::string_view text, std::size_t from, Out out) {
+    if (auto nothing = block_.parse(text, from, {}); !nothing) return tl::unexpected(nothing.error());
+    if (!block_.empty())
+      return tl::unexpected(Diagnostic{{ErrorCode::unused_word, "%", 0.0, 0.0}, 0, static_cast<int>(from)});
+    finished_ = percent_seen_ || words_seen_;
+    percent_seen_ = true;
+    return out;
+  }
+
+  /// The program's number, alone on its line before all other words: O1234, or 01234 after % as some tapes
+  /// have it.
+  [[nodiscard]] std::optional<Word> program_number(std::string_view text, std::size_t from) const {
+    const char first = from < text.size() ? text[from] : '\0';
+    const bool bare = percent_seen_ && first >= '0' && first <= '9';
+    if (!bare && first != 'O' && first != 'o') return std::nullopt;
+    Scanner scanner(text, bare ? from : from + 1);
+    const int column = static_cast<int>(from) + 1;
+    const auto number = scanner.read_number('O', column);
+    if (!number || *number != std::floor(*number)) return std::nullopt;
+    if (!scanner.skip_blanks_and_comments() || scanner.peek() != '\0') return std::nullopt;
+    return Word{'O', *number, line_, column};
+  }
+
+  template <class Out>
+  Out execute(Code motion, Out out) {
+    const auto emit = [&out](auto&& item) {
+      *out = Item(std::forward<decltype(item)>(item));
+      ++out;
+    };
+    for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
+    for (const char letter : {'S', 'T'})
+      if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
+    if (block_.has(Group::tool_change)) {
+      loaded_tool_ = selected_tool_;
+      emit(Stop{6, line_});
+    }
+    for (const Group group : {Group::spindle, Group::coolant})
+      if (block_.has(group)) emit(Word{'M', block_.code(group) / 10.0, line_, block_.column(group)});
+    const Code non_modal = block_.code(Group::non_modal);
+    if (non_modal == code(4)) emit(Dwell{block_.number('P'), line_});
+    if (block_.has(Group::tool_length)) set_tool_length();
+    if (block_.has(Group::coordinates)) select_work_system();
+    if (block_.code(Group::path_control) == code(64) && (block_.has('P') || block_.has('Q')) &&
+        !tolerance_told_) {
+      tolerance_told_ = true;
+      emit(Warning{
+          {{ErrorCode::ignored, "tolerance of G64", 0.0, 0.0}, line_, block_.first_column(bits("PQ"))}});
+    }
+    if (non_modal == code(28)) home(dialect_.home_g28, emit);
+    if (non_modal == code(30)) home(dialect_.home_g30, emit);
+    if (non_modal >= code(92) && non_modal <= code(92.3)) shift(non_modal);
+    if (is_arc(motion)) {
+      turn(motion, emit);
+    } else if (motion != no_code) {
+      straight(motion, non_modal == code(53) ? machine_target() : target(), emit);
+    }
+    if (block_.has(Group::stop)) {
+      const int stop = block_.code(Group::stop) / 10;
+      finished_ = stop == 2 || stop == 30;
+      emit(Stop{stop, line_});
+    }
+    return out;
+  }
+
+  [[nodiscard]] Word at_line(Word word) const {
+    word.line = line_;
+    return word;
+  }
+
+  [[nodiscard]] std::size_t axis_count() const { return dialect_.axes.size(); }
+
+  /// mm or rad of an axis word, if there.
+  [[nodiscard]] std::optional<double> coordinate(std::size_t axis) const {
+    const auto [letter, kind] = dialect_.axes[axis];
+    if (!block_.has(letter)) return std::nullopt;
+    return block_.number(letter) *
+           (kind == AxisKind::linear ? modal_.millimetres_per_unit : radians_per_degree);
+  }
+
+  /// Where the axis words lead, in work coordinates.
+  [[nodiscard]] Position target() const {
+    Position end = current_;
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (const auto value = coordinate(i)) end[i] = modal_.incremental ? current_[i] + *value : *value;
+    return end;
+  }
+
+  /// Where they lead as machine coordinates (G53), in work coordinates.
+  [[nodiscard]] Position machine_target() const {
+    Position end = current_;
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (const auto value = coordinate(i)) end[i] = *value - offset_[i];
+    return end;
+  }
+
+  [[nodiscard]] Motion motion_to(const Position& end) const {
+    Motion motion;
+    motion.plane = modal_.plane;
+    motion.feed_mode = modal_.feed_mode;
+    motion.exact_stop = modal_.exact_stop;
+    motion.start = current_;
+    motion.end = end;
+    motion.offset = offset_;
+    motion.line = line_;
+    return motion;
+  }
+
+  template <class Emit>
+  void straight(Code code_of_motion, const Position& end, Emit& emit) {
+    if (end == current_) return;
+    Motion motion = motion_to(end);
+    motion.kind = code_of_motion == code(0) ? MotionKind::rapid : MotionKind::line;
+    if (motion.kind == MotionKind::line) motion.feed = modal_.feed;
+    motion.column = block_.first_column(alphabet_.axes);
+    if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
+    current_ = end;
+    emit(motion);
+  }
+
+  template <class Emit>
+  void turn(Code code_of_motion, Emit& emit) {
+    Motion motion = motion_to(target());
+    motion.turn = code_of_motion == code(2) ? Turn::clockwise : Turn::counterclockwise;
+    motion.feed = modal_.feed;
+    motion.extra_turns = block_.has('P') ? static_cast<int>(block_.number('P')) - 1 : 0;
+    if (alphabet_.has_radius && block_.has('R')) {
+      motion.kind = MotionKind::arc_radius;
+      motion.radius = block_.number('R') * modal_.millimetres_per_unit;
+      motion.column = block_.column('R');
+    } else {
+      motion.kind = MotionKind::arc_center;
+      motion.center = Vector3(current_[0], current_[1], current_[2]);
+      const auto [first, second, third] = axes(modal_.plane);
+      for (const int axis : {first, second}) {
+        const char letter = center_letter(axis);
+        const double value = block_.has(letter) ? block_.number(letter) * modal_.millimetres_per_unit : 0.0;
+        motion.center[axis] = modal_.incremental_center ? motion.center[axis] + value : value;
+      }
+      motion.column = block_.first_column(bits("IJK"));
+    }
+    current_ = motion.end;
+    emit(motion);
+  }
+
+  /// G28, G30: by way of the point that the axis words name, then these axes (all, if none is named) go home.
+  template <class Emit>
+  void home(const Position& machine, Emit& emit) {
+    straight(code(0), target(), emit);
+    const bool all = (block_.letters() & alphabet_.axes) == 0;
+    Position end = current_;
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (all || block_.has(dialect_.axes[i].letter)) end[i] = machine[i] - offset_[i];
+    straight(code(0), end, emit);
+  }
+
+  void set_tool_length() {
+    const Code how = block_.code(Group::tool_length);
+    if (how == code(43.1)) {
+      for (std::size_t i = 0; i < axis_count(); ++i)
+        if (const auto value = coordinate(i)) tool_[i] = *value;
+    } else {
+      const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
+      tool_ = {};
+      for (std::size_t i = 0; i < axis_count(); ++i)
+        if (how == code(43) && dialect_.axes[i].letter == 'Z') tool_[i] = tool_length(number);
+    }
+    update_offset();
+  }
+
+  [[nodiscard]] double tool_length(int number) const {
+    for (const Tool& tool : dialect_.tools)
+      if (tool.number == number) return tool.length;
+    return 0.0;
+  }
+
+  /// G54 to G59 are 540, 550 ... 590; G59.1 to G59.3 are 591 to 593.
+  void select_work_system() {
+    const int tenths = block_.code(Group::coordinates);
+    work_system_ = static_cast<std::size_t>((tenths - code(54)) / 10 + tenths % 10);
+    update_offset();
+  }
+
+  /// G92: the present place gets the coordinates named. G92.1 forgets the shift, G92.2 suspends it, G92.3
+  /// restores it.
+  void shift(Code how) {
+    if (how == code(92.1)) kept_shift_ = {};
+    if (how != code(92)) {
+      shift_ = how == code(92.3) ? kept_shift_ : Position{};
+      return update_offset();
+    }
+    Position named = current_;
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (const auto value = coordinate(i)) {
+        shift_[i] += current_[i] - *value;
+        named[i] = *value;
+      }
+    kept_shift_ = shift_;
+    update_offset();
+    current_ = named;  // exactly: the round trip over the machine's coordinates would leave a rounding
+  }
+
+  /// The machine stays where it is; the work coordinates of that place change with the offset.
+  void update_offset() {
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      const double offset = dialect_.work_offsets[work_system_][i] + shift_[i] + tool_[i];
+      if (offset == offset_[i]) continue;  // not even a rounding
+      current_[i] = current_[i] + offset_[i] - offset;
+      offset_[i] = offset;
+    }
+  }
+
+  Dialect dialect_;
+  Alphabet alphabet_;
+  Block block_;
+  Modal modal_;
+  Position current_{};
+  Position offset_{};
+  Position shift_{};
+  Position kept_shift_{};
+  Position tool_{};
+  std::size_t work_system_{};
+  int selected_tool_{};
+  int loaded_tool_{};
+  int line_{};
+  bool percent_seen_{};
+  bool words_seen_{};
+  bool finished_{};
+  bool tolerance_told_{};
+};
+
+}  // namespace cncplan::gcode

@@ -1,0 +1,236 @@
+// Which words belong together on a line, and what the line asks for.
+#pragma once
+
+#include <cmath>
+#include <string_view>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/plane.hpp"
+#include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/word.hpp"
+
+namespace cncplan::gcode {
+
+/// Most turns of one arc (P).
+inline constexpr int max_turns = 1'000'000;
+
+/// Largest whole number of a T, H or N word.
+inline constexpr int max_count = 1'000'000'000;
+
+/// What the letters mean on a machine.
+struct Alphabet {
+  Letters axes{};
+  bool has_radius{};  ///< R is the radius of an arc; else it is an axis
+  bool has_arcs{};    ///< the first three axes are X, Y and Z
+
+  explicit Alphabet(const Dialect& dialect) {
+    std::size_t in_order = 0;
+    for (std::size_t i = 0; i < dialect.axes.size(); ++i) {
+      const Axis axis = dialect.axes[i];
+      axes |= bit(axis.letter);
+      if (i < 3 && axis == Axis{"XYZ"[i], AxisKind::linear}) ++in_order;
+    }
+    has_radius = (axes & bit('R')) == 0;
+    has_arcs = in_order == 3;
+  }
+};
+
+[[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }
+
+/// Letter of the centre word along an axis of space: I, J or K.
+[[nodiscard]] constexpr char center_letter(int axis) { return "IJK"[axis]; }
+
+/// The modal state that holds on a line and after it.
+[[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
+  if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
+  if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
+  if (block.has(Group::arc_distance))
+    modal.incremental_center = block.code(Group::arc_distance) == code(91.1);
+  if (block.has(Group::path_control)) modal.exact_stop = block.code(Group::path_control) != code(64);
+  if (block.has(Group::motion))
+    modal.motion = block.code(Group::motion) == code(80) ? no_code : block.code(Group::motion);
+  if (block.has(Group::plane)) {
+    const Code plane = block.code(Group::plane);
+    modal.plane = plane == code(17) ? Plane::xy : plane == code(18) ? g18 : Plane::yz;
+  }
+  if (block.has(Group::feed_mode)) {
+    const FeedMode mode =
+        block.code(Group::feed_mode) == code(93) ? FeedMode::inverse_time : FeedMode::per_minute;
+    if (mode != modal.feed_mode)
+      modal.feed = 0.0;  // a feed does not outlive its mode: the next move must name one
+    modal.feed_mode = mode;
+  }
+  if (modal.feed_mode == FeedMode::inverse_time) {
+    modal.feed = block.has('F') ? block.number('F') / 60.0 : 0.0;
+  } else if (block.has('F')) {
+    modal.feed = block.number('F') * modal.millimetres_per_unit / 60.0;
+  }
+  return modal;
+}
+
+namespace detail {
+
+using Check = Expected<void, Diagnostic>;
+
+/// A missing word, told at a column.
+[[nodiscard]] inline tl::unexpected<Diagnostic> missing(std::string_view what, int column) {
+  return tl::unexpected(Diagnostic{{ErrorCode::missing_word, what, 0.0, 0.0}, 0, column});
+}
+
+[[nodiscard]] inline tl::unexpected<Diagnostic> conflict(Diagnostic diagnostic, std::string_view other,
+                                                         double number = 0.0) {
+  diagnostic.error.code = ErrorCode::conflicting_words;
+  diagnostic.error.bound = number;
+  diagnostic.other = other;
+  return tl::unexpected(diagnostic);
+}
+
+[[nodiscard]] inline Check not_negative(const Block& block, char letter) {
+  if (block.has(letter) && block.number(letter) < 0.0)
+    return tl::unexpected(block.error(ErrorCode::negative, letter));
+  return {};
+}
+
+[[nodiscard]] inline Check whole(const Block& block, char letter, int low, int high) {
+  if (!block.has(letter)) return {};
+  const double number = block.number(letter);
+  if (number < low)
+    return tl::unexpected(low == 0 ? block.error(ErrorCode::negative, letter)
+                                   : block.error(ErrorCode::below_limit, letter, low));
+  if (number > high) return tl::unexpected(block.error(ErrorCode::above_limit, letter, high));
+  if (number != std::floor(number)) return tl::unexpected(block.error(ErrorCode::not_an_integer, letter));
+  return {};
+}
+
+/// Words of an arc, all but the end point: R, or I J K of the plane, and P.
+[[nodiscard]] inline Check check_arc(const Block& block, const Modal& modal, const Alphabet& alphabet,
+                                     int column) {
+  if (!alphabet.has_arcs)
+    return tl::unexpected(Diagnostic{{ErrorCode::not_supported, "G", modal.motion / 10.0, 0.0}, 0, column});
+  const auto [first, second, third] = axes(modal.plane);
+  const bool radius = alphabet.has_radius && block.has('R');
+  const Letters centers = block.letters() & bits("IJK");
+  if (radius && centers != 0) return conflict(block.error(ErrorCode::conflicting_words, 'R'), "I J K");
+  if (!radius && centers == 0) return missing("R or I J K", column);
+  if (radius && !block.has("XYZ"[first]) && !block.has("XYZ"[second]))
+    return missing(modal.plane == Plane::xy   ? "X or Y"
+                   : modal.plane == Plane::yz ? "Y or Z"
+                                              : "X or Z",
+                   column);
+  if (!radius && !modal.incremental_center)
+    for (const int axis : {first, second})
+      if (const char letter = center_letter(axis); !block.has(letter)) return missing(name(letter), column);
+  return whole(block, 'P', 1, max_turns);
+}
+
+/// A feed where a feed move needs one.
+[[nodiscard]] inline Check check_feed(const Block& block, const Modal& modal, int column) {
+  if (modal.feed_mode == FeedMode::inverse_time && !block.has('F')) return missing("F", column);
+  if (modal.feed && *modal.feed <= 0.0)
+    return tl::unexpected(Diagnostic{
+        {ErrorCode::not_positive, "F", *modal.feed, 0.0}, 0, block.has('F') ? block.column('F') : column});
+  return {};
+}
+
+/// What becomes of words that nothing has used: they go with a passed-through code, or they are errors.
+[[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
+  const Letters known = bits("FHIJKNPQST") | alphabet.axes | (alphabet.has_radius ? bit('R') : 0);
+  for (char letter = 'A'; letter <= 'Z'; ++letter) {
+    if ((unused & bit(letter)) == 0) continue;
+    if (block.passes_code()) {
+      if (auto ok = block.pass(letter); !ok) return ok;
+    } else if (block.column(letter) ==
+               block.first_column(unused)) {  // the first in the text is the one to report
+      const bool meant = (known & bit(letter)) != 0;
+      return tl::unexpected(block.error(meant ? ErrorCode::unused_word : ErrorCode::not_supported, letter));
+    }
+  }
+  return {};
+}
+
+}  // namespace detail
+
+/// The motion code that the line runs, `no_code` for none, given the state that holds on it; or the first
+/// rule broken (RS274/NGC section 3, as LinuxCNC applies it). Words for a passed-through code move to
+/// `Block::passed`.
+[[nodiscard]] inline Expected<Code, Diagnostic> resolve(Block& block, const Modal& modal,
+                                                        const Alphabet& alphabet) {
+  using namespace detail;
+  const Letters axis_words = block.letters() & alphabet.axes;
+  const Letters center_words = block.letters() & bits("IJK");
+  const Code requested = block.code(Group::motion);
+  const Code non_modal = block.code(Group::non_modal);
+  const bool homes = non_modal == code(28) || non_modal == code(30);
+  const bool shifts = non_modal == code(92);
+  const bool sets_length = block.code(Group::tool_length) == code(43.1);
+  const bool takes_axes = homes || shifts || sets_length;
+
+  Code motion = no_code;
+  if (takes_axes) {  // these use the axis words, so nothing else on the line can; G0 says no more than G28
+                     // does
+    const Group taker = homes || shifts ? Group::non_modal : Group::tool_length;
+    if ((homes || shifts) && sets_length)
+      return conflict(block.error(ErrorCode::conflicting_words, Group::tool_length), "G", non_modal / 10.0);
+    if (requested != no_code && requested != code(80) && !(homes && requested == code(0)))
+      return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
+                      block.code(taker) / 10.0);
+    if (!homes && axis_words == 0) return missing("axis", block.column(taker));
+  } else if (requested != no_code) {
+    motion = modal.motion;
+  } else if (axis_words != 0) {
+    if (modal.motion == no_code) return missing("G0, G1, G2 or G3", block.first_column(axis_words));
+    motion = modal.motion;
+  } else if (center_words != 0 && is_arc(modal.motion)) {
+    motion = modal.motion;
+  }
+  const int column =
+      block.has(Group::motion) ? block.column(Group::motion) : block.first_column(axis_words | center_words);
+
+  if (non_modal == code(53)) {
+    if (motion == no_code) return tl::unexpected(block.error(ErrorCode::unused_word, Group::non_modal));
+    const auto machine = block.error(ErrorCode::conflicting_words, Group::non_modal);
+    if (is_arc(motion)) return conflict(machine, "G", motion / 10.0);
+    if (modal.incremental) return conflict(machine, "G", 91);
+  }
+
+  Letters used = bits("NST");
+  if (takes_axes || motion != no_code) used |= alphabet.axes;
+  int users_of_p = 0;
+  if (is_arc(motion)) {
+    if (auto ok = check_arc(block, modal, alphabet, column); !ok) return tl::unexpected(ok.error());
+    const auto [first, second, third] = axes(modal.plane);
+    used |= bit(center_letter(first)) | bit(center_letter(second)) | bits("PR");
+    ++users_of_p;
+  }
+  if (non_modal == code(4)) {
+    if (!block.has('P')) return missing("P", block.column(Group::non_modal));
+    used |= bit('P');
+    ++users_of_p;
+  }
+  if (block.code(Group::path_control) == code(64)) {
+    used |= bits("PQ");
+    ++users_of_p;
+  }
+  if (users_of_p > 1 && block.has('P'))
+    return conflict(block.error(ErrorCode::conflicting_words, 'P'), "two codes use it");
+  if (block.code(Group::tool_length) == code(43)) used |= bit('H');
+
+  const bool feeds = is_arc(motion) || (motion == code(1) && axis_words != 0);
+  if (feeds || modal.feed_mode == FeedMode::per_minute) used |= bit('F');
+  for (const char letter : {'F', 'S', 'P', 'Q'})
+    if ((used & bit(letter)) != 0)
+      if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
+  for (const char letter : {'N', 'T', 'H'})
+    if ((used & bit(letter)) != 0)
+      if (auto ok = whole(block, letter, 0, max_count); !ok) return tl::unexpected(ok.error());
+  if (feeds)
+    if (auto ok = check_feed(block, modal, column); !ok) return tl::unexpected(ok.error());
+  if (const Letters unused = block.letters() & ~used; unused != 0)
+    if (auto ok = settle(block, unused, alphabet); !ok) return tl::unexpected(ok.error());
+  return motion;
+}
+
+}  // namespace cncplan::gcode

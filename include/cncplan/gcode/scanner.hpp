@@ -1,0 +1,114 @@
+// Cuts a line of G-code into words.
+#pragma once
+
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/word.hpp"
+
+namespace cncplan::gcode {
+
+/// Walks over the words of one line. Blanks and comments, `( )` and `;`, fall away wherever they stand
+/// between words; blanks also between a letter and its number. Numbers are decimal: sign, digits, point; no
+/// exponents.
+class Scanner {
+ public:
+  constexpr explicit Scanner(std::string_view line, std::size_t from = 0)
+      : begin_(line.data()), at_(line.data() + from), end_(line.data() + line.size()) {}
+
+  /// The next word, nothing at the end of the line, or what is wrong (with its column; the line is the
+  /// caller's).
+  [[nodiscard]] Expected<std::optional<Word>, Diagnostic> next() {
+    if (auto ok = skip_blanks_and_comments(); !ok) return tl::unexpected(ok.error());
+    if (at_ == end_) return std::nullopt;
+    const int column = this->column();
+    const char letter = upper(*at_);
+    if (letter < 'A' || letter > 'Z') return tl::unexpected(unknown());
+    ++at_;
+    skip_blanks();
+    const auto number = read_number(letter, column);
+    if (!number) return tl::unexpected(number.error());
+    return Word{letter, *number, 0, column};
+  }
+
+  /// Passes blanks and comments, and leaves the scanner on the next word.
+  Expected<void, Diagnostic> skip_blanks_and_comments() {
+    for (skip_blanks(); at_ != end_; skip_blanks()) {
+      if (*at_ == ';') {
+        at_ = end_;
+      } else if (*at_ == '(') {
+        const auto* close =
+            static_cast<const char*>(std::memchr(at_, ')', static_cast<std::size_t>(end_ - at_)));
+        if (close == nullptr) return tl::unexpected(at(ErrorCode::unclosed_comment, "(", column()));
+        at_ = close + 1;
+      } else {
+        break;
+      }
+    }
+    return {};
+  }
+
+  /// The character to come, upper case; 0 at the end.
+  [[nodiscard]] char peek() const { return at_ == end_ ? '\0' : upper(*at_); }
+
+  /// Column of the character to come.
+  [[nodiscard]] int column() const { return static_cast<int>(at_ - begin_) + 1; }
+
+  /// A number without letter, `name` being what to call it if it is none.
+  [[nodiscard]] Expected<double, Diagnostic> read_number(char letter, int column) {
+    const char* first = at_;
+    const bool negative = first != end_ && *first == '-';
+    if (first != end_ && (*first == '+' || *first == '-')) ++first;
+    double magnitude{};
+    const bool plausible =
+        first != end_ && (is_digit(*first) || *first == '.');  // from_chars also takes "inf", "-1"
+    const auto parsed = std::from_chars(first, plausible ? end_ : first, magnitude, std::chars_format::fixed);
+    if (parsed.ec == std::errc::invalid_argument) return tl::unexpected(no_number(letter, column));
+    if (parsed.ec != std::errc() || magnitude > max_number)
+      return tl::unexpected(
+          Diagnostic{{ErrorCode::above_limit, name(letter), magnitude, max_number}, 0, column});
+    at_ = parsed.ptr;
+    return negative ? 0.0 - magnitude : magnitude;  // "-0" is 0, not the negative zero
+  }
+
+ private:
+  static constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+  static constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+  void skip_blanks() {
+    while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
+  }
+
+  static Diagnostic at(ErrorCode code, std::string_view field, int column, double value = 0.0) {
+    return {{code, field, value, 0.0}, 0, column};
+  }
+
+  /// Parameters and expressions are other people's G-code: named, so that nobody looks for a typing error.
+  [[nodiscard]] Diagnostic unsupported_or(ErrorCode code, std::string_view field, int column,
+                                          double value = 0.0) const {
+    if (at_ != end_ && *at_ == '#') return at(ErrorCode::not_supported, "variable #", this->column());
+    if (at_ != end_ && *at_ == '[') return at(ErrorCode::not_supported, "expression [ ]", this->column());
+    return at(code, field, column, value);
+  }
+
+  [[nodiscard]] Diagnostic unknown() const {
+    const char c = *at_;
+    return unsupported_or(ErrorCode::unknown_character, name(c), column(), static_cast<unsigned char>(c));
+  }
+
+  [[nodiscard]] Diagnostic no_number(char letter, int column) const {
+    if (letter == 'O') return at(ErrorCode::not_supported, "O-word", column);
+    return unsupported_or(ErrorCode::missing_number, name(letter), column);
+  }
+
+  const char* begin_;
+  const char* at_;
+  const char* end_;
+};
+
+}  // namespace cncplan::gcode

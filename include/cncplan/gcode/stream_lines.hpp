@@ -1,0 +1,62 @@
+// Lines of a stream, in memory that does not grow with the program.
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <istream>
+#include <optional>
+#include <string_view>
+
+#include "cncplan/gcode/lines.hpp"
+#include "cncplan/gcode/word.hpp"
+
+namespace cncplan::gcode {
+
+/// The lines of a stream, read in pieces into a buffer of fixed size. A line that does not fit is cut there:
+/// it is longer than the reader accepts anyway, and the reader says so.
+class StreamLines {
+ public:
+  explicit StreamLines(std::istream& stream) : stream_(stream) {}
+
+  StreamLines(const StreamLines&) = delete;  // two cannot share a stream
+  StreamLines& operator=(const StreamLines&) = delete;
+
+  [[nodiscard]] std::optional<std::string_view> next() {
+    for (;;) {
+      const char* const first = buffer_.data() + begin_;
+      const auto* const end = static_cast<const char*>(std::memchr(first, '\n', end_ - begin_));
+      if (end == nullptr && !stream_at_end_ && end_ - begin_ < buffer_.size()) {
+        refill();
+        continue;
+      }
+      if (end == nullptr && begin_ == end_) return std::nullopt;
+      const std::size_t length = end == nullptr ? end_ - begin_ : static_cast<std::size_t>(end - first);
+      begin_ = end == nullptr ? end_ : begin_ + length + 1;
+      const bool remainder = cut_;
+      cut_ = end == nullptr && !stream_at_end_;
+      if (!remainder) return std::string_view(first, length);
+    }
+  }
+
+ private:
+  void refill() {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    stream_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
+    end_ += static_cast<std::size_t>(stream_.gcount());
+    stream_at_end_ = !stream_;
+  }
+
+  std::istream& stream_;
+  std::size_t begin_{};
+  std::size_t end_{};
+  bool stream_at_end_{};
+  bool cut_{};  ///< the line before was cut: what comes next is the rest of it
+  std::array<char, 1U << 16U> buffer_;
+  static_assert(sizeof(buffer_) > max_line_length + 2);
+};
+
+static_assert(LineSource<StreamLines>);
+
+}  // namespace cncplan::gcode

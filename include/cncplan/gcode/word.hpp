@@ -1,0 +1,48 @@
+// The word of G-code: a letter and its number.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace cncplan::gcode {
+
+/// A letter (upper case) and its number, and where it stood.
+struct Word {
+  char letter{};
+  double number{};
+  int line{};    ///< counted from 1
+  int column{};  ///< in bytes, counted from 1
+
+  friend bool operator==(const Word&, const Word&) = default;
+};
+
+/// Longest line read, in bytes without its end.
+inline constexpr std::size_t max_line_length = 1024;
+
+/// Largest magnitude of a number in the text: far beyond any machine, and far enough from overflow that no
+/// sum of coordinates and offsets reaches infinity.
+inline constexpr double max_number = 1e15;
+
+/// 0 for A .. 25 for Z.
+[[nodiscard]] constexpr std::size_t index(char letter) { return static_cast<std::size_t>(letter - 'A'); }
+
+/// A set of letters as bits.
+using Letters = std::uint32_t;
+
+[[nodiscard]] constexpr Letters bit(char letter) { return Letters{1} << index(letter); }
+
+[[nodiscard]] constexpr Letters bits(std::string_view letters) {
+  Letters set = 0;
+  for (const char letter : letters) set |= bit(letter);
+  return set;
+}
+
+/// The letter (or other printable character) as text that lives for ever, as `Error::field` wants it.
+[[nodiscard]] constexpr std::string_view name(char character) {
+  constexpr std::string_view printable =
+      " !\"#$%&'()*+,-./0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`abcdefghijklmnopqrstuvwxyz{|}~";
+  return character >= ' ' && character <= '~' ? printable.substr(static_cast<std::size_t>(character - ' '), 1)
+                                              : std::string_view("byte");
+}
+
+}  // namespace cncplan::gcode
