@@ -26,7 +26,7 @@ template <std::floating_point S>
 [[nodiscard]] constexpr Expected<BasicLimits<S>> validate(const BasicLimits<S>& limits) {
   const auto check = [](S value, std::string_view field) -> Expected<S> {
     if (value > S(0)) return value;
-    const ErrorCode code = value != value ? ErrorCode::not_finite : ErrorCode::not_positive;
+    const ErrorCode code = std::isnan(value) ? ErrorCode::not_finite : ErrorCode::not_positive;
     return tl::unexpected(Error{code, field, static_cast<double>(value), 0.0});
   };
   if (auto ok = check(limits.velocity, "velocity limit"); !ok) return tl::unexpected(ok.error());
