@@ -208,6 +208,7 @@ TEST_CASE("A quarter circle and a helix give the figures of the textbook") {
   CHECK((quarter.start_tangent() - Vector3(0, 1, 0)).norm() < 1e-15);
   CHECK((quarter.end_tangent() - Vector3(-1, 0, 0)).norm() < 1e-15);
   CHECK(quarter.next_turning(0, 0.0) == quarter.parameter_end());
+  CHECK(quarter.crossing(2, 0.0, 0.5, 1.0) == 0.5);
   CHECK(quarter.bounds() == Box{{0, 0, 0}, {r, r, 0}});
   CHECK(quarter.chord() == Vector3(-r, r, 0));
 

@@ -46,6 +46,7 @@ TEST_CASE("A line's box, tangents and turnings") {
   CHECK(line.chord() == Vector3(3, -4, 0));
   CHECK(line.next_turning(0, 1.0) == line.parameter_end());
   CHECK(line.max_curvature() == 0);
+  CHECK(line.crossing(2, -2.0, 1.0, 3.0) == 1.0);
   CHECK(line == Line({1, 5, -2}, {4, 1, -2}));
   CHECK_FALSE(line == Line());
 }

@@ -139,9 +139,11 @@ class BasicArc {
   }
 
   /// The parameter in [low, high] at which the axis stands at `value`. There is no turning between low and
-  /// high, and value lies between the axis' values there. Closed form but for the in-plane axes of a spiral.
+  /// high, and value lies between the axis' values there; low for an axis that does not move. Closed form but
+  /// for the in-plane axes of a spiral.
   [[nodiscard]] S crossing(int axis, S value, S low, S high) const {
-    if (axis == axes(plane_).third) return std::clamp((value - start_(axis)) / spiral_.rise, low, high);
+    if (axis == axes(plane_).third)
+      return spiral_.rise == S(0) ? low : std::clamp((value - start_(axis)) / spiral_.rise, low, high);
     return in_plane(axis).crossing(value, low, high);
   }
 

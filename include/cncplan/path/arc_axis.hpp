@@ -40,7 +40,8 @@ struct ArcAxis {
     return u + phase - (growth == S(0) ? S(0) : std::atan2(growth, S(1) + growth * u));
   }
 
-  /// The u at which turning_phase(u) = n pi. Newton's method on a function whose slope lies between 1 and 2.
+  /// The u at which turning_phase(u) = n pi. Newton's method on a function whose slope lies between 1 and 2:
+  /// five steps at most seen, as above.
   [[nodiscard]] S turning(S n) const {
     constexpr int newton_steps = 8;
     const S target = n * std::numbers::pi_v<S>;
@@ -69,29 +70,12 @@ struct ArcAxis {
   }
 
   /// The u in [low, high] with x(u) = wanted, for a piece without a turning inside.
-  /// Circle: with delta = wanted - start and v the axis velocity at the crossing, v^2 = tangential^2 - delta
-  /// (delta + 2 radial) and tan(u/2) = delta / (tangential + v) = (tangential - v) / (delta + 2 radial);
-  /// whichever does not cancel. Spiral: the circle through the piece's middle, then Newton's method kept
-  /// inside its bracket.
   [[nodiscard]] S crossing(S wanted, S low, S high) const {
     const S middle = (low + high) / 2;
-    const S sense =
-        std::fmod(std::floor(turning_phase(middle) / std::numbers::pi_v<S>), S(2)) == S(0) ? S(-1) : S(1);
+    const S turns = std::floor(turning_phase(middle) / std::numbers::pi_v<S>);
+    const S sense = turns == 2 * std::floor(turns / 2) ? S(-1) : S(1);
     if (growth == S(0)) return std::clamp(circle_crossing(wanted - start, middle, sense), low, high);
-    const S rho = S(1) + growth * middle;
-    const S delta = (wanted - start - growth * middle * radial) / rho;
-    S u = std::clamp(circle_crossing(delta, middle, sense), low, high);
-    // Ends when a step is below rounding; halving alone needs the digits of S plus a few.
-    for (int i = 0; i < std::numeric_limits<S>::digits + 8; ++i) {
-      const S excess = sense * (value(u) - wanted);
-      (excess > S(0) ? high : low) = u;
-      S next = u - excess / (sense * rate(u));
-      if (!(next >= low && next <= high)) next = (low + high) / 2;
-      const S step = std::abs(next - u);
-      u = next;
-      if (step <= std::numeric_limits<S>::epsilon() * std::max(S(1), u)) break;
-    }
-    return u;
+    return spiral_crossing(wanted, low, high, sense);
   }
 
  private:
@@ -99,7 +83,9 @@ struct ArcAxis {
     return 8 * std::numeric_limits<S>::epsilon() * (S(1) + std::abs(turns));
   }
 
-  /// The solution within half a turn of `middle` whose velocity has the sign `sense`.
+  /// The solution on the circle within half a turn of `middle` whose velocity v has the sign `sense`. With
+  /// delta the way from the start, v^2 = tangential^2 - delta (delta + 2 radial) and tan(u/2) = delta /
+  /// (tangential + v) = (tangential - v) / (delta + 2 radial), whichever does not cancel.
   [[nodiscard]] S circle_crossing(S delta, S middle, S sense) const {
     const S v = sense * std::sqrt(std::max(S(0), tangential * tangential - delta * (delta + 2 * radial)));
     const S half = tangential * v > std::min(S(0), radial * (radial + delta))
@@ -107,6 +93,44 @@ struct ArcAxis {
                        : std::atan((tangential - v) / (delta + 2 * radial));
     constexpr S turn = 2 * std::numbers::pi_v<S>;
     return 2 * half + turn * std::round((middle - 2 * half) / turn);
+  }
+
+  /// From the circle through the piece's middle, steps to the root of the parabola that agrees in value and
+  /// two derivatives, within a bracket that shrinks: turnings, where Newton's method crawls, are no harder
+  /// than the rest. A step leaves an error of third order in x, hence the end at |step|^3 < rounding: seven
+  /// steps at most in 5e6 random crossings of spirals with radius ratios to 1e3, one to three where the ratio
+  /// is 1 +- 1e-3.
+  [[nodiscard]] S spiral_crossing(S wanted, S low, S high, S sense) const {
+    constexpr int crossing_steps = 16;
+    const S middle = (low + high) / 2;
+    const S delta = (wanted - start - growth * middle * radial) / (S(1) + growth * middle);
+    // The radius at the crossing, not at the middle, to first order; damped towards turnings, where v = 0.
+    const S u_circle = circle_crossing(delta, middle, sense);
+    const S q = radial + delta;
+    const S v_sq = std::max(S(0), tangential * tangential - delta * (delta + 2 * radial));
+    const S lag =
+        growth * (u_circle - middle) * sense * std::sqrt(v_sq) * q / (v_sq + std::abs(growth) * q * q);
+    S u = std::clamp(u_circle - lag, low, high);
+    for (int i = 0; i < crossing_steps; ++i) {
+      const S s = std::sin(u / 2);
+      const S c = std::cos(u / 2);
+      const S rho = S(1) + growth * u;
+      const S turned = 2 * s * (c * tangential - s * radial);
+      const S across = radial + turned;
+      const S along = tangential - 2 * s * (s * tangential + c * radial);
+      const S excess = (start - wanted) + turned + growth * u * across;
+      if (std::abs(excess) <= std::numeric_limits<S>::epsilon() * (std::abs(wanted) + rho * std::abs(radial)))
+        break;
+      (sense * excess > S(0) ? high : low) = u;
+      const S first = growth * across + rho * along;
+      const S second = 2 * growth * along - rho * across;
+      const S root = std::sqrt(std::max(S(0), first * first - 2 * excess * second));
+      const S next = std::clamp(u - 2 * excess / (first + sense * root), low, high);
+      const S step = next - u;
+      u = next;
+      if (std::abs(step * step * step) <= std::numeric_limits<S>::epsilon()) break;
+    }
+    return u;
   }
 };
 

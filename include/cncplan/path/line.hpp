@@ -50,8 +50,10 @@ class BasicLine {
   /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
   [[nodiscard]] S next_turning(int /*axis*/, S /*u*/) const { return length_; }
 
-  /// The parameter in [low, high] at which the axis stands at `value`, which lies between its values there.
+  /// The parameter in [low, high] at which the axis stands at `value`, which lies between its values there;
+  /// low for an axis that does not move.
   [[nodiscard]] S crossing(int axis, S value, S low, S high) const {
+    if (direction_(axis) == S(0)) return low;
     return std::clamp((value - start_(axis)) / direction_(axis), low, high);
   }
 

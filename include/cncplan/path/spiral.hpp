@@ -59,8 +59,8 @@ template <std::floating_point S>
 /// Newton's method from the solution for a speed linear in the angle. The length is convex or concave in the
 /// angle (the radius is monotone), so after one step the iterates approach from one side; the error squares
 /// with every step and the loop ends as soon as the next one would be below rounding: after one step for
-/// growth/radius < 1e-4, at most `newton_steps` for any spiral (five seen over radius ratios to 1e9, see the
-/// test).
+/// |growth| < 1e-4 radius, after four at most in 1e6 random spirals with radius ratios to 1e9; twice that is
+/// the bound.
 template <std::floating_point S>
 [[nodiscard]] S angle_at(const Spiral<S>& spiral, S s, S end_angle, S end_length) {
   if (s <= S(0)) return S(0);
