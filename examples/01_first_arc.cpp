@@ -1,0 +1,20 @@
+// A quarter of a circle, travelled from rest to rest within the limits: prints time, x and y at every
+// millisecond.
+#include <cncplan/cncplan.hpp>
+#include <cstdio>
+
+using namespace cncplan;
+
+int main() {
+  const auto arc = path::arc_from_radius<double>({0, 0, 0}, {5, 5, 0}, 5.0, Turn::clockwise, Plane::xy);
+  if (!arc) return 1;
+
+  const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+  const auto profile = profile::five_phase(arc->length(), {.start = 0.0, .end = 0.0}, limits);
+  if (!profile) return 1;
+
+  for (double time = 0.0; time < profile->duration(); time += 1e-3) {
+    const Vector3 point = arc->position(arc->parameter_at(profile->at(time).position));
+    std::printf("%.3f %.6f %.6f\n", time, point.x(), point.y());
+  }
+}
