@@ -1,0 +1,79 @@
+// How a change of speed is driven within the limits of acceleration and jerk: the five- and the seven-phase
+// law.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+
+#include "cncplan/core/limits.hpp"
+#include "cncplan/profile/profile.hpp"
+
+namespace cncplan::profile {
+
+/// A ramp between two speeds that differ by dv, with zero acceleration at both ends, is symmetric in time, so
+/// it covers (v0 + v1) times half its duration. Half the duration is sqrt(dv / J) as long as the peak sqrt(J
+/// dv) stays within A (KK22 Eq. 14); beyond that, dv > A^2/J, it is linear in dv:
+///
+///     five phases    jerk lowered to A^2/dv, triangle        dv / A
+///     seven phases   jerk kept, acceleration held at A       dv / (2 A) + A / (2 J)
+///
+/// Half the duration grows with dv, and the distance of a ramp with the higher of its speeds: what the
+/// solvers rest on. An infinite acceleration limit never binds; an infinite jerk limit makes the acceleration
+/// step.
+template <std::floating_point S>
+struct BasicRampLaw {
+  S jerk{};               ///< J; 0 if infinite, where no phase of it lasts
+  S root_jerk{};          ///< sqrt(J); 0 if infinite
+  S inverse_root_jerk{};  ///< 1 / sqrt(J)
+  S acceleration{};       ///< A
+  S root_break{};         ///< A / sqrt(J), root of the dv above which the acceleration limit binds
+  S slope{};              ///< half duration per dv above it
+  S offset{};             ///< half duration at dv = 0 of that line
+  bool holds{};           ///< seven phases
+
+  /// Half the duration of a ramp, from the root of dv.
+  [[nodiscard]] constexpr S half_duration(S root) const {
+    return root <= root_break ? root * inverse_root_jerk : slope * root * root + offset;
+  }
+
+  /// Distance of a ramp between two speeds.
+  [[nodiscard]] S distance(S from, S to) const {
+    return (from + to) * half_duration(std::sqrt(std::abs(to - from)));
+  }
+
+  /// The ramp that changes the speed by root^2, upwards or, with sign = -1, downwards.
+  [[nodiscard]] constexpr BasicRamp<S> ramp(S root, S sign) const {
+    if (root <= root_break) {
+      const S time = root * inverse_root_jerk;
+      return {time, S(0), time, sign * root * root_jerk, sign * jerk};
+    }
+    const S full = root * root / acceleration;
+    if (!holds) return {full, S(0), full, sign * acceleration, sign * acceleration / full};
+    const S rise = S(2) * offset;
+    return {rise, full - rise, rise, sign * acceleration, sign * jerk};
+  }
+};
+
+/// The law of the paper's five phases.
+template <std::floating_point S>
+[[nodiscard]] BasicRampLaw<S> five_phase_law(const BasicLimits<S>& limits) {
+  const bool smooth = std::isfinite(limits.jerk);
+  const S root = smooth ? std::sqrt(limits.jerk) : S(0);
+  const S inverse = smooth ? S(1) / root : S(0);
+  const S root_break =
+      std::isfinite(limits.acceleration) ? limits.acceleration * inverse : limits.acceleration;
+  return {smooth ? limits.jerk : S(0), root, inverse, limits.acceleration, root_break,
+          S(1) / limits.acceleration,  S(0), false};
+}
+
+/// The law of the time-optimal ramp between rest accelerations.
+template <std::floating_point S>
+[[nodiscard]] BasicRampLaw<S> seven_phase_law(const BasicLimits<S>& limits) {
+  BasicRampLaw<S> law = five_phase_law(limits);
+  law.slope /= S(2);
+  law.offset = std::isfinite(law.root_break) ? law.root_break * law.inverse_root_jerk / S(2) : S(0);
+  law.holds = true;
+  return law;
+}
+
+}  // namespace cncplan::profile

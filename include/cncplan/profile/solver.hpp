@@ -1,0 +1,129 @@
+// The fastest profile over a length, between two speeds with zero acceleration, under a ramp law.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/profile/boundary.hpp"
+#include "cncplan/profile/peak.hpp"
+#include "cncplan/profile/profile.hpp"
+#include "cncplan/profile/ramp_law.hpp"
+
+namespace cncplan::profile {
+
+namespace detail {
+
+template <std::floating_point S>
+[[nodiscard]] constexpr auto refusal(ErrorCode code, std::string_view field, S value, S bound) {
+  return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
+}
+
+}  // namespace detail
+
+/// Solves many profiles under the same limits: what depends on the limits alone is worked out once.
+template <std::floating_point S>
+class BasicSolver {
+ public:
+  using Scalar = S;
+
+  constexpr BasicSolver(const BasicRampLaw<S>& law, S velocity_limit)
+      : law_(law), velocity_limit_(velocity_limit) {}
+
+  [[nodiscard]] constexpr const BasicRampLaw<S>& law() const { return law_; }
+  [[nodiscard]] constexpr S velocity_limit() const { return velocity_limit_; }
+
+  /// The profile over `length` mm (>= 0, finite). Errors: a length or speed that is not finite, negative, or
+  /// above the speed limit, by name; `end_speed_unreachable` with the wanted end speed as its value and the
+  /// reachable one nearest to it as its bound.
+  [[nodiscard]] Expected<BasicProfile<S>> operator()(S length, const BasicBoundarySpeeds<S>& speeds) const {
+    const auto [start, end] = speeds;
+    if (!(length >= S(0) && length <= std::numeric_limits<S>::max() && std::min(start, end) >= S(0) &&
+          start <= velocity_limit_ && end <= velocity_limit_))
+      return refuse(length, speeds);
+
+    const S high = std::max(start, end);
+    const S low = std::min(start, end);
+    const S root_d = std::sqrt(high - low);
+    const S room_above = std::sqrt(velocity_limit_ - high);
+    const S room_below = std::sqrt(velocity_limit_ - low);
+    const S ramps = (high + velocity_limit_) * law_.half_duration(room_above) +
+                    (low + velocity_limit_) * law_.half_duration(room_below);
+    if (ramps <= length)
+      return assemble(length, speeds, {room_above, room_below}, velocity_limit_,
+                      (length - ramps) / velocity_limit_);
+
+    const S direct = (high + low) * law_.half_duration(root_d);
+    constexpr S rounding = S(4) * std::numeric_limits<S>::epsilon();
+    if (!(direct <= length)) {
+      if (direct > length + rounding * length) return unreachable(length, speeds);
+      return assemble(length, speeds, {S(0), root_d}, high, S(0));
+    }
+    if (length == S(0))
+      return BasicProfile<S>(
+          {.length = S(0), .start_velocity = start, .top_velocity = start, .end_velocity = end});
+    const auto peak = peak_between(law_, high, low, root_d, length, room_above);
+    const S top = high + peak.from_high * peak.from_high;
+    const S covered =
+        (high + top) * law_.half_duration(peak.from_high) + (low + top) * law_.half_duration(peak.from_low);
+    return assemble(length, speeds, peak, top, std::max((length - covered) / top, S(0)));
+  }
+
+  /// The highest speed to which the motion can change from `start` within `length` (both >= 0), or from which
+  /// it can come down to `start`; no higher than the speed limit.
+  [[nodiscard]] S reachable_speed(S start, S length) const {
+    const S room = std::max(velocity_limit_ - start, S(0));
+    if ((start + velocity_limit_) * law_.half_duration(std::sqrt(room)) <= length) return velocity_limit_;
+    if (!(length > S(0))) return start;
+    // half of a peak between equal speeds over twice the length
+    const auto peak = peak_between(law_, start, start, S(0), S(2) * length, std::sqrt(room));
+    return start + peak.from_high * peak.from_high;
+  }
+
+ private:
+  BasicProfile<S> assemble(S length, const BasicBoundarySpeeds<S>& speeds, const detail::Peak<S>& peak, S top,
+                           S cruise) const {
+    const bool rising = speeds.start <= speeds.end;
+    return BasicProfile<S>({.length = length,
+                            .start_velocity = speeds.start,
+                            .start_acceleration = S(0),
+                            .top_velocity = top,
+                            .end_velocity = speeds.end,
+                            .cruise = cruise,
+                            .up = law_.ramp(rising ? peak.from_low : peak.from_high, S(1)),
+                            .down = law_.ramp(rising ? peak.from_high : peak.from_low, S(-1))});
+  }
+
+  [[nodiscard]] Expected<BasicProfile<S>> refuse(S length, const BasicBoundarySpeeds<S>& speeds) const {
+    const auto check = [](S value, S bound, std::string_view field) -> Expected<BasicProfile<S>> {
+      if (!std::isfinite(value)) return detail::refusal(ErrorCode::not_finite, field, value, S(0));
+      if (value < S(0)) return detail::refusal(ErrorCode::negative, field, value, S(0));
+      if (value > bound) return detail::refusal(ErrorCode::above_limit, field, value, bound);
+      return {};
+    };
+    if (auto bad = check(length, std::numeric_limits<S>::max(), "length"); !bad) return bad;
+    if (auto bad = check(speeds.start, velocity_limit_, "start speed"); !bad) return bad;
+    return check(speeds.end, velocity_limit_, "end speed");
+  }
+
+  // The ramp from `start` to the wanted speed is too long; those to speeds nearer to `start` are shorter, and
+  // exactly one of them has the length. Halving the interval as often as there are digits finds it.
+  [[nodiscard]] Expected<BasicProfile<S>> unreachable(S length, const BasicBoundarySpeeds<S>& speeds) const {
+    S within = speeds.start;
+    S beyond = speeds.end;
+    for (int halving = 0; halving < std::numeric_limits<S>::digits; ++halving) {
+      const S middle = within + (beyond - within) / S(2);
+      (law_.distance(speeds.start, middle) <= length ? within : beyond) = middle;
+    }
+    return detail::refusal(ErrorCode::end_speed_unreachable, "end speed", speeds.end, within);
+  }
+
+  BasicRampLaw<S> law_;
+  S velocity_limit_;
+};
+
+using Solver = BasicSolver<double>;
+
+}  // namespace cncplan::profile
