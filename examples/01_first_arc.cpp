@@ -1,5 +1,4 @@
-// A quarter of a circle, travelled from rest to rest within the limits: prints time, x and y at every
-// millisecond.
+// A quarter of a circle, from rest to rest within the limits: prints time, x and y at every millisecond.
 #include <cncplan/cncplan.hpp>
 #include <cstdio>
 

@@ -6,7 +6,7 @@
 #   - No file is longer than 600 lines.
 cmake_minimum_required(VERSION 3.22)
 
-set(needs_heap deque filesystem forward_list fstream functional future iomanip ios iostream istream list map memory
+set(needs_heap deque filesystem forward_list fstream future iomanip ios iostream istream list map memory
   memory_resource mutex ostream queue regex set shared_mutex sstream stack stdexcept streambuf string thread unordered_map
   unordered_set vector)
 
@@ -34,6 +34,10 @@ foreach(header IN LISTS headers)
   endif()
   if(lines GREATER 600)
     complain("has ${lines} lines, more than 600")
+  endif()
+
+  if(text MATCHES "std::function<" AND NOT first_line MATCHES "\\(set-up\\)")
+    complain("has a std::function, but its first line does not say (set-up)")
   endif()
 
   string(REGEX MATCHALL "#[ \t]*include[ \t]*[<\"][^>\"]+" includes "${text}")

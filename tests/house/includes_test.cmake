@@ -30,6 +30,7 @@ expect("core/ includes \"cncplan/path/table.hpp\"" core/edge.hpp ${holds} "#  in
 expect("includes \"table.hpp\", which is no header" path/list.hpp ${holds} "#include \"table.hpp\"")
 expect("includes <boost/rational.hpp>" step/edge.hpp ${holds} "#include <boost/rational.hpp>")
 expect("includes <vector>, but its first line" step/edge.hpp ${holds} "#include <vector>")
+expect("has a std::function" step/edge.hpp ${holds} "std::function<void()> f;")
 expect("its first line is not a comment" step/edge.hpp "#pragma once")
 expect("has no #pragma once" step/edge.hpp "// What it holds.")
 expect("is not included by cncplan.hpp" step/forgotten.hpp ${holds})
