@@ -55,6 +55,24 @@ TEMPLATE_TEST_CASE("Turnings are where the rate changes sign, each of them and n
   CHECK(false_ones == 0);
 }
 
+TEMPLATE_TEST_CASE("Walking from turning to turning neither repeats nor skips one", "", float, double) {
+  using S = TestType;
+  test::Random random;
+  int wrong = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = random.uniform(0.1, 30);
+    const auto axis = random_axis<S>(random, angle);
+    const S last = axis.previous_turning_number(static_cast<S>(angle));
+    for (S n = axis.next_turning_number(S(0)); n <= last; ++n) {
+      const S u = axis.turning(n);
+      for (const S at : {u, std::nextafter(u, S(0)), std::nextafter(u, S(100))})
+        if (axis.next_turning_number(at) != n + 1 || axis.previous_turning_number(at) != n - 1) ++wrong;
+    }
+  }
+  INFO("seed " << test::seed());
+  CHECK(wrong == 0);
+}
+
 TEMPLATE_TEST_CASE("A crossing stands at the wanted value, at turnings as well as between them", "", float,
                    double) {
   using S = TestType;

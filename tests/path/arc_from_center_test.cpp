@@ -56,6 +56,19 @@ TEST_CASE("A full circle needs no exact comparison: ends that rounding parted ar
         6.28);
 }
 
+TEST_CASE("The sweep of a short arc keeps its digits") {
+  for (const double length : {1e-3, 1e-5, 1e-7}) {
+    const Vector3 start(60.1, 80.3, 0);
+    const Vector3 end(start.x() - 0.8 * length, start.y() + 0.6 * length, 0);
+    const auto arc = arc_from_center(start, end, {0, 0, 0}, Turn::counterclockwise, Plane::xy);
+    REQUIRE(arc);
+    using L = long double;
+    const L cross = L(start.x()) * (L(end.y()) - start.y()) - L(start.y()) * (L(end.x()) - start.x());
+    const L dot = L(start.x()) * end.x() + L(start.y()) * end.y();
+    CHECK(std::abs(arc->sweep() / std::atan2(cross, dot) - 1) < 1e-15);
+  }
+}
+
 TEST_CASE("Radii that differ within tolerance make a spiral about the programmed centre") {
   const auto arc = clockwise({10.02, 0, 0}, {5, 0, 0});
   REQUIRE(arc);
@@ -89,7 +102,7 @@ TEST_CASE("Radii that differ too much, or vanish, are refused with their figures
   CHECK(clockwise({0.0026, 0, 0}, {0.0013, 0, 0}));
 }
 
-TEST_CASE("Numbers that are none are refused by name; the centre's third coordinate is not looked at") {
+TEST_CASE("Numbers that are none are refused by name, the centre's third coordinate is not looked at") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(clockwise({nan, 0, 0}, {5, 0, 0}).error().field == "end");
   CHECK(clockwise({10, 0, 0}, {5, nan, 0}).error().field == "center");

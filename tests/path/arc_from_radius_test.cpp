@@ -105,7 +105,7 @@ TEST_CASE("R0 is no arc, however short the chord: it fails by the tolerance rela
   }
 }
 
-TEST_CASE("Coincident ends are an error in R form; a micrometre's thousandth apart they are not") {
+TEST_CASE("Coincident ends are an error in R form, a micrometre's thousandth apart they are not") {
   const auto refused = clockwise({0, 0, 0}, {0, 0, 5}, 5.0);
   REQUIRE_FALSE(refused);
   CHECK(refused.error() == Error{ErrorCode::coincident_points, "end", 0.0, 1e-9});
@@ -138,4 +138,15 @@ TEST_CASE("A radius of 1e12 mm bends ten millimetres by 12.5 picometres, and end
   CHECK(arc->length() == Approx(10).epsilon(1e-15));
   CHECK(arc->position(arc->parameter_end() / 2).y() == Approx(1.25e-11).epsilon(1e-12));
   CHECK((arc->position(std::nextafter(arc->parameter_end(), 0.0)) - arc->end()).norm() < 1e-14);
+}
+
+TEST_CASE("Next to a semicircle whose chord is exact, the centre keeps all its digits") {
+  // sqrt(R^2 - d^2/4) would lose them in R^2; a chord of 6 mm is exact, and so is R - 3.
+  for (const double gap : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
+    const double radius = 3 * (1 + gap);
+    const auto arc = clockwise({0, 0, 0}, {6, 0, 0}, radius);
+    REQUIRE(arc);
+    const long double h = std::sqrt((radius - 3.0L) * (radius + 3.0L));
+    CHECK(std::abs(-arc->center().y() / h - 1) < 4e-16L);
+  }
 }

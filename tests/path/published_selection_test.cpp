@@ -126,6 +126,18 @@ TEST_CASE(
   CHECK(wrong == 0);
 }
 
+TEST_CASE("The first candidate has the smaller x (Eqs. 1-2), for a horizontal chord the larger y") {
+  const Vector2 o(0, 0);
+  for (const Vector2& end :
+       {Vector2(3, 4), Vector2(3, -4), Vector2(-3, 4), Vector2(-3, -4), Vector2(0, 5), Vector2(0, -5)}) {
+    const auto offsets = candidate_offsets(o, end, 6.0);
+    CHECK(offsets[0].x() < offsets[1].x());
+    CHECK(offsets[0] == -offsets[1]);
+    CHECK((end / 2 + offsets[0]).norm() == Approx(6).epsilon(1e-15));
+  }
+  for (const Vector2& end : {Vector2(5, 0), Vector2(-5, 0)}) CHECK(candidate_offsets(o, end, 6.0)[0].y() > 0);
+}
+
 TEST_CASE("Regions are those of Table 1, borders included") {
   const Vector2 o(0, 0);
   CHECK(region(o, Vector2(1, 0), Turn::clockwise) == 1);
@@ -165,7 +177,7 @@ TEST_CASE("The published parametrisation runs from start to end (Eqs. 8-13 with 
   CHECK(worst < 40);
 }
 
-TEST_CASE("Eqs. 4-5 as printed lose the centre next to a horizontal chord; the chord-normal form does not") {
+TEST_CASE("Eqs. 4-5 as printed lose the centre next to a horizontal chord, the chord-normal form does not") {
   // yc = -(2 (x0 - x1) xc + g) / (2 (y0 - y1)): the figures for docs/arcs.md.
   const double radius = 5;
   std::printf("centre error by the printed Eqs. 4-5, and by the chord's normal (chord 6 mm, R 5 mm)\n");
