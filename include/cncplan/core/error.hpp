@@ -32,6 +32,7 @@ enum class ErrorCode : std::uint8_t {
   unused_word,
   line_too_long,
   ignored,
+  discontinuous,
   count_,  // number of codes
 };
 
@@ -59,11 +60,13 @@ enum class ErrorCode : std::uint8_t {
       "is used by nothing on this line",
       "the line is too long",
       "is ignored",
+      "does not begin where the last one ended",
   };
   return table[static_cast<std::size_t>(code)];
 }
 
-/// What went wrong, where and by how much. `field` names a parameter, word or axis and lives for ever (a literal).
+/// What went wrong, where and by how much. `field` names a parameter, word or axis and lives for ever (a
+/// literal).
 struct Error {
   ErrorCode code{};
   std::string_view field;

@@ -31,7 +31,7 @@ inline std::string word_text(std::string_view letter, double number) {
   const Error& error = diagnostic.error;
   const std::string_view sentence = message(error.code);
   const bool has_verb =
-      sentence.starts_with("is ") || sentence.starts_with("must ") || sentence.starts_with("has ");
+      sentence.starts_with("is ") || sentence.starts_with("must ") || sentence.starts_with("has ") || sentence.starts_with("does ");
   std::string text = detail::word_text(error.field, error.value);
   text += has_verb ? " " : ": ";
   text += sentence;

@@ -1,0 +1,260 @@
+// Writes items as G-code that reads back to the same items.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/plane.hpp"
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/motion.hpp"
+#include "cncplan/gcode/reader.hpp"
+
+namespace cncplan::gcode {
+
+/// A number of the text, and whether it reads back to exactly what was meant.
+struct Decimal {
+  double number{};
+  bool exact{};
+};
+
+/// The number that `read` turns into `value`, looked for among the neighbours of a first guess; the one with
+/// the fewest digits where several do. A product or quotient that was computed from a short decimal finds it
+/// again (F1200, not F1199.9999999999998). Without one that is exact, the guess.
+template <std::invocable<double> Read>
+[[nodiscard]] Decimal find_decimal(double value, double guess, Read read) {
+  constexpr int neighbours = 4;
+  std::array<char, 64> digits;
+  const auto length = [&digits](double number) {
+    return std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr - digits.data();
+  };
+  Decimal best{guess, false};
+  double candidate = guess;
+  for (int i = 0; i < neighbours; ++i)
+    candidate = std::nextafter(candidate, -std::numeric_limits<double>::infinity());
+  for (int i = -neighbours; i <= neighbours; ++i) {
+    if (read(candidate) == value && (!best.exact || length(candidate) < length(best.number)))
+      best = {candidate, true};
+    candidate = std::nextafter(candidate, std::numeric_limits<double>::infinity());
+  }
+  return best;
+}
+
+/// Emits millimetres (degrees for rotary axes), absolute end points and absolute centres (G21 G90 G90.1),
+/// only the words that change, and the shortest digits that read back to the same bits. An offset is written
+/// as G43.1, which names it whole whatever it was made of; after a change of it the start of the next motion
+/// may differ by a rounding. Warnings are not written, nor are line numbers.
+///
+///     gcode::Writer writer(dialect);
+///     for (const gcode::Item& item : items) writer.write(item, std::ostreambuf_iterator<char>(stream));
+///     writer.finish(std::ostreambuf_iterator<char>(stream));
+class Writer {
+ public:
+  /// For readers of the same dialect.
+  explicit Writer(const Dialect& dialect = {}) : dialect_(dialect), offset_(dialect.work_offsets[0]) {
+    for (std::size_t i = 0; i < axis_count(); ++i) current_[i] -= offset_[i];
+  }
+
+  /// Writes one item and returns the iterator behind it. Errors, with nothing written: a number that is not
+  /// finite, or beyond `max_number`; a motion that does not begin where the last one ended.
+  template <std::output_iterator<char> Out>
+  Expected<Out> write(const Item& item, Out out) {
+    if (const auto* motion = std::get_if<Motion>(&item)) {
+      if (auto ok = check(*motion); !ok) return tl::unexpected(ok.error());
+      Pen pen{std::move(out)};
+      begin(pen);
+      move(*motion, pen);
+      return std::move(pen.out);
+    }
+    Pen pen{std::move(out)};
+    if (const auto* word = std::get_if<Word>(&item)) {
+      pass(*word, pen);
+    } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
+      begin(pen);
+      put(pen, "G4 P", dwell->seconds);
+    } else if (const auto* stop = std::get_if<Stop>(&item)) {
+      begin(pen);
+      put(pen, "M", stop->code);
+    }
+    return std::move(pen.out);
+  }
+
+  /// Ends the last line.
+  template <std::output_iterator<char> Out>
+  Out finish(Out out) {
+    Pen pen{std::move(out)};
+    end_line(pen);
+    return std::move(pen.out);
+  }
+
+ private:
+  template <class Out>
+  struct Pen {
+    Out out;
+    void text(std::string_view text) {
+      for (const char c : text) {
+        *out = c;
+        ++out;
+      }
+    }
+  };
+  template <class Out>
+  Pen(Out) -> Pen<Out>;
+
+  [[nodiscard]] std::size_t axis_count() const { return dialect_.axes.size(); }
+
+  [[nodiscard]] Expected<void> check(const Motion& motion) const {
+    const auto number = [](double value, std::string_view field) -> Expected<void> {
+      if (std::abs(value) <= max_number) return {};
+      const ErrorCode code = std::isfinite(value) ? ErrorCode::above_limit : ErrorCode::not_finite;
+      return tl::unexpected(Error{code, field, value, max_number});
+    };
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      const std::string_view axis = name(dialect_.axes[i].letter);
+      if (auto ok = number(motion.end[i], axis); !ok) return ok;
+      if (auto ok = number(motion.offset[i], axis); !ok) return ok;
+      const double start = motion.start[i] + motion.offset[i];
+      const double here = current_[i] + offset_[i];
+      const double bound = 1e-12 * (1.0 + std::abs(here) + std::abs(offset_[i]) + std::abs(motion.offset[i]));
+      if (!(std::abs(start - here) <= bound))
+        return tl::unexpected(Error{ErrorCode::discontinuous, axis, start - here, bound});
+    }
+    for (const double coordinate : motion.center)
+      if (auto ok = number(coordinate, "centre"); !ok) return ok;
+    if (auto ok = number(motion.radius, "R"); !ok) return ok;
+    return number(motion.feed.value_or(0.0), "F");
+  }
+
+  template <class Out>
+  void end_line(Pen<Out>& pen) {
+    if (line_open_) pen.text("\n");
+    line_open_ = false;
+    word_line_ = 0;
+  }
+
+  /// The state that the numbers below rely on, whatever the reader's start.
+  template <class Out>
+  void begin(Pen<Out>& pen) {
+    end_line(pen);
+    if (begun_) return;
+    begun_ = true;
+    pen.text("G17 G21 G40 G49 G54 G64 G90 G90.1 G94\n");
+  }
+
+  template <class Out>
+  void put(Pen<Out>& pen, std::string_view word, double number) {
+    std::array<char, 352> digits;  // the longest: 0. and 323 noughts before the digits
+    const char* end =
+        std::to_chars(digits.data(), digits.data() + digits.size(), number, std::chars_format::fixed).ptr;
+    if (line_open_) pen.text(" ");
+    line_open_ = true;
+    pen.text(word);
+    pen.text({digits.data(), end});
+  }
+
+  /// Words that came from one line stay on one: some belong together. The program's number stands before
+  /// everything.
+  template <class Out>
+  void pass(const Word& word, Pen<Out>& pen) {
+    if (word.letter != 'O') {
+      if (!begun_) begin(pen);
+      if (!line_open_ || word.line == 0 || word.line != word_line_) end_line(pen);
+    }
+    put(pen, name(word.letter), word.number);
+    word_line_ = word.line;
+  }
+
+  template <class Out>
+  void move(const Motion& motion, Pen<Out>& pen) {
+    const bool arc = motion.kind == MotionKind::arc_radius || motion.kind == MotionKind::arc_center;
+    if (!arc && motion.start == motion.end) return;
+    if (motion.offset != offset_) shift(motion.offset, pen);
+    if (std::exchange(modal_.exact_stop, motion.exact_stop) != motion.exact_stop)
+      put(pen, "G", motion.exact_stop ? 61 : 64);
+    if (std::exchange(modal_.feed_mode, motion.feed_mode) != motion.feed_mode) {
+      put(pen, "G", motion.feed_mode == FeedMode::inverse_time ? 93 : 94);
+      modal_.feed.reset();
+    }
+    if (std::exchange(modal_.plane, motion.plane) != motion.plane)
+      put(pen, "G", motion.plane == Plane::xy ? 17 : motion.plane == Plane::yz ? 19 : 18);
+    if (motion.kind != MotionKind::rapid) feed(motion, pen);
+    const Code wanted = motion.kind == MotionKind::rapid  ? code(0)
+                        : motion.kind == MotionKind::line ? code(1)
+                        : motion.turn == Turn::clockwise  ? code(2)
+                                                          : code(3);
+    if (std::exchange(modal_.motion, wanted) != wanted) put(pen, "G", wanted / 10);
+    const auto [first, second, third] = axes(motion.plane);
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      const bool named =
+          motion.kind == MotionKind::arc_radius && static_cast<int>(i) == first;  // R wants an end point
+      if (named || motion.end[i] != current_[i]) put_axis(i, motion.end[i], 0.0, pen);
+    }
+    if (motion.kind == MotionKind::arc_radius) put(pen, "R", motion.radius);
+    if (motion.kind == MotionKind::arc_center)
+      for (const int axis : {first, second}) put(pen, name(center_letter(axis)), motion.center[axis]);
+    if (arc && motion.extra_turns > 0) put(pen, "P", motion.extra_turns + 1);
+    current_ = motion.end;
+  }
+
+  /// The axis word that reads back to `value` when `base` is added to it.
+  template <class Out>
+  void put_axis(std::size_t axis, double value, double base, Pen<Out>& pen) {
+    const auto [letter, kind] = dialect_.axes[axis];
+    const double unit = kind == AxisKind::linear ? 1.0 : radians_per_degree;
+    const auto read = [unit, base](double number) { return base + number * unit; };
+    put(pen, name(letter), find_decimal(value, (value - base) / unit, read).number);
+  }
+
+  /// The first motion after a change of offset begins where the reader will stand.
+  template <class Out>
+  void shift(const Position& offset, Pen<Out>& pen) {
+    pen.text("G43.1");
+    line_open_ = true;
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      put_axis(i, offset[i], dialect_.work_offsets[0][i], pen);
+      if (offset[i] != offset_[i]) current_[i] = current_[i] + offset_[i] - offset[i];
+    }
+    offset_ = offset;
+    end_line(pen);
+  }
+
+  /// A feed that was programmed in inches per minute may have no decimal in mm per minute that reads back to
+  /// it.
+  template <class Out>
+  void feed(const Motion& motion, Pen<Out>& pen) {
+    if (!motion.feed) return;
+    if (motion.feed_mode == FeedMode::per_minute && modal_.feed == motion.feed) return;
+    modal_.feed = motion.feed;
+    const double value = *motion.feed;
+    const Decimal metric = find_decimal(value, value * 60.0, [](double number) { return number / 60.0; });
+    if (!metric.exact && motion.feed_mode == FeedMode::per_minute) {
+      const Decimal inches =
+          find_decimal(value, value * 60.0 / 25.4, [](double number) { return number * 25.4 / 60.0; });
+      if (inches.exact) {
+        put(pen, "G20 F", inches.number);
+        end_line(pen);
+        return put(pen, "G", 21);
+      }
+    }
+    put(pen, "F", metric.number);
+  }
+
+  Dialect dialect_;
+  Modal modal_;
+  Position current_{};
+  Position offset_{};
+  int word_line_{};
+  bool begun_{};
+  bool line_open_{};
+};
+
+}  // namespace cncplan::gcode

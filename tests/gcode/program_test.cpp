@@ -1,0 +1,87 @@
+#include "cncplan/gcode/program.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "cncplan/gcode/stream_lines.hpp"
+#include "gcode/linuxcnc.hpp"
+#include "gcode/support.hpp"
+#include "support/catch.hpp"
+#include "support/shared.hpp"
+
+using namespace cncplan;
+using gcode::MotionKind;
+
+namespace {
+
+Vector3 point(const gcode::Position& position) { return {position[0], position[1], position[2]}; }
+
+}  // namespace
+
+TEST_CASE("real programs yield LinuxCNC's motions") {
+  const auto folder = test::shared();
+  if (!folder) {
+    WARN("SKIPPED: CNCPLAN_SHARED is not set");
+    return;
+  }
+  struct Program {
+    const char* name;
+    std::size_t arcs;
+  };
+  for (const auto [name, arcs] : {Program{"3dtest", 3}, {"51MeanderAve", 329}, {"Cereal", 87}, {"arcspiral", 999},
+                                  {"cds", 50}, {"lathe_pawn", 22}, {"test_12mmflat", 39}, {"tort", 138}}) {
+    INFO(name);
+    const std::string path = *folder + "/data/ngc/" + name;
+    std::ifstream stream(path + ".ngc");
+    std::vector<gcode::Motion> motions;
+    gcode::Reader reader;
+    REQUIRE(gcode::read_program(gcode::StreamLines(stream), reader, [&](const gcode::Item& item) {
+      if (const auto* motion = std::get_if<gcode::Motion>(&item)) motions.push_back(*motion);
+    }));
+    const auto expected = test::read_canonical(path + ".motions");
+    REQUIRE(motions.size() == expected.size());
+    std::size_t arcs_seen = 0;
+    double end_error = 0.0;
+    double center_error = 0.0;
+    double feed_error = 0.0;
+    int wrong_kinds = 0;
+    int wrong_turns = 0;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const gcode::Motion& motion = motions[i];
+      const bool arc = motion.kind == MotionKind::arc_radius || motion.kind == MotionKind::arc_center;
+      arcs_seen += arc ? 1 : 0;
+      wrong_kinds += (arc ? MotionKind::arc_center : motion.kind) != expected[i].kind ? 1 : 0;
+      wrong_kinds += motion.plane != expected[i].plane ? 1 : 0;
+      end_error = std::max(end_error, (point(motion.end) - expected[i].end).cwiseAbs().maxCoeff());
+      if (arc) wrong_turns += sign(motion.turn) * (motion.extra_turns + 1) != expected[i].rotation ? 1 : 0;
+      if (motion.kind == MotionKind::arc_center)
+        center_error = std::max(center_error, (motion.center - expected[i].center).cwiseAbs().maxCoeff());
+      if (motion.kind != MotionKind::rapid)
+        feed_error = std::max(feed_error, std::abs(motion.feed.value() - expected[i].feed.value()));
+    }
+    CHECK(arcs_seen == arcs);
+    CHECK(wrong_kinds == 0);
+    CHECK(wrong_turns == 0);
+    CHECK(end_error < 1e-9);
+    CHECK(center_error < 1e-9);
+    CHECK(feed_error < 1e-9);
+  }
+}
+
+TEST_CASE("a sink may end the reading") {
+  gcode::Reader reader;
+  int seen = 0;
+  const auto done = gcode::read_program(gcode::TextLines("G0 X1\nX2\nX3\nX4\n"), reader, [&](const gcode::Item&) {
+    return ++seen < 2;
+  });
+  CHECK(done);
+  CHECK(seen == 2);
+  CHECK(reader.line() == 2);
+}
+
+TEST_CASE("what follows the end of the program is not read") {
+  CHECK(test::read("G0 X1\nM30\n!?").error.empty());
+  CHECK(test::read("%\nG0 X1\n%\n!?").error.empty());
+  CHECK(test::read("G0 X1\n%\n!?").error.empty());
+  CHECK(test::read("%\nG0 X1\n!?").error == "3:1: !: unknown character");
+}
