@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 
 #include "cncplan/core/phase.hpp"
 #include "cncplan/core/state.hpp"
@@ -105,7 +106,7 @@ class BasicProfile {
     if (!(position > S(0))) return S(0);
     if (!(position < length())) return duration();
     const auto table = phases();
-    int index = phase_count - 1;
+    std::size_t index = phase_count - 1;
     while (index > 0 && (table[index].duration == S(0) || position < table[index].position)) --index;
     return table[index].time + table[index].tau_at(position);
   }
@@ -145,8 +146,8 @@ class BasicProfile {
     return {next.time - duration, duration, next.position - distance, velocity, acceleration, jerk};
   }
 
-  static constexpr int phase_index(const std::array<Phase, phase_count>& table, S t) {
-    int index = phase_count - 1;
+  static constexpr std::size_t phase_index(const std::array<Phase, phase_count>& table, S t) {
+    std::size_t index = phase_count - 1;
     while (index > 0 && (t < table[index].time || table[index].duration == S(0))) --index;
     return index;
   }
