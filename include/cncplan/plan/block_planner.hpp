@@ -1,0 +1,75 @@
+// Published planning: one profile a block, zero acceleration at every joint (KK22 section 3).
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <iterator>
+#include <span>
+
+#include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/span.hpp"
+#include "cncplan/profile/solver.hpp"
+
+namespace cncplan::plan {
+
+/// Makes the solver for given limits: the five- or the seven-phase law.
+template <class F, class S>
+concept SolverFactory = requires(const F& factory, const BasicLimits<S>& limits) {
+  { factory(limits) } -> std::same_as<profile::BasicSolver<S>>;
+};
+
+/// The same solver again while the limits stay the same, as they mostly do from block to block.
+template <std::floating_point S, SolverFactory<S> Factory>
+class SolverCache {
+ public:
+  explicit SolverCache(const Factory& factory) : factory_(factory), solver_(factory({S(1), S(1), S(1)})) {}
+
+  const profile::BasicSolver<S>& operator()(const BasicLimits<S>& limits) {
+    if (limits != limits_) {
+      limits_ = limits;
+      solver_ = factory_(limits);
+    }
+    return solver_;
+  }
+
+ private:
+  Factory factory_;
+  BasicLimits<S> limits_{S(1), S(1), S(1)};
+  profile::BasicSolver<S> solver_;
+};
+
+/// The highest speed at each joint, such that every pair of speeds can be driven within its block: a backward
+/// and a forward pass. `speeds` has one entry more than `blocks`; the motion starts and ends at rest.
+template <std::floating_point S, SolverFactory<S> Factory>
+void joint_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory, std::span<S> speeds) {
+  SolverCache<S, Factory> solver(factory);
+  const std::size_t n = blocks.size();
+  speeds[n] = S(0);
+  for (std::size_t i = n; i-- > 0;) {
+    const S reachable = solver(blocks[i].limits).reachable_speed(speeds[i + 1], blocks[i].length);
+    speeds[i] = i == 0 ? S(0) : std::min({blocks[i].entry, blocks[i - 1].limits.velocity, reachable});
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    speeds[i + 1] =
+        std::min(speeds[i + 1], solver(blocks[i].limits).reachable_speed(speeds[i], blocks[i].length));
+}
+
+/// Plans block by block: writes a span for each block, and one for each pause, into `out`. `speeds` is room
+/// for one speed more than there are blocks.
+template <std::floating_point S, SolverFactory<S> Factory, std::output_iterator<BasicSpan<S>> Out>
+Expected<Out> plan_blocks(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory,
+                          std::span<S> speeds, Out out) {
+  joint_speeds(blocks, factory, speeds);
+  SolverCache<S, Factory> solver(factory);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const BasicBlockCaps<S>& block = blocks[i];
+    const auto profile = solver(block.limits)(block.length, {speeds[i], speeds[i + 1]});
+    if (!profile) return tl::unexpected(profile.error());
+    *out++ = BasicSpan<S>{i, 1, *profile};
+    if (block.pause > S(0)) *out++ = pause_span(i + 1, block.pause);
+  }
+  return out;
+}
+
+}  // namespace cncplan::plan
