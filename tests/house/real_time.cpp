@@ -3,10 +3,22 @@
 // the optimiser.
 #include <array>
 #include <cstdio>
+#include <string_view>
 
+#include "cncplan/gcode/reader.hpp"
+#include "cncplan/junction/acceleration_step.hpp"
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/junction/exact_stop.hpp"
+#include "cncplan/junction/minimum.hpp"
+#include "cncplan/junction/published_table.hpp"
+#include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
+#include "cncplan/profile/five_phase.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/step/backend.hpp"
+#include "cncplan/step/merge.hpp"
 #include "support/no_heap.hpp"
 
 using namespace cncplan;
@@ -15,16 +27,30 @@ namespace {
 
 volatile double sink = 0.0;
 
+constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+
+path::Arc helix() {
+  return *path::arc_from_radius<double>({0, 0, 0}, {5, 5, 2}, 5.0, Turn::clockwise, Plane::xy);
+}
+
+// A reader is set up before the machine moves; what it reads then costs nothing.
+gcode::Reader reader;
+
+void read_lines() {
+  std::array<gcode::Item, gcode::max_items_per_line> items;
+  for (const std::string_view line : {"N10 G21 G90 F600 (millimetres)", "G1 X10 Y5", "G2 X20 Y5 R10",
+                                      "G3 I2.5", "G1 X1..5", "G4 P0.5", "M3 S8000"})
+    sink = reader.read_line(line, items.begin()).has_value() ? 1.0 : 0.0;
+}
+
 void make_arcs() {
-  const auto by_radius = path::arc_from_radius<double>({0, 0, 0}, {5, 5, 2}, 5.0, Turn::clockwise, Plane::xy);
   const auto impossible =
       path::arc_from_radius<double>({0, 0, 0}, {50, 0, 0}, 5.0, Turn::clockwise, Plane::xy);
-  sink = by_radius->length() + impossible.error().bound;
+  sink = helix().length() + impossible.error().bound;
 }
 
 void evaluate_a_segment() {
-  const auto arc = path::arc_from_radius<double>({0, 0, 0}, {5, 5, 2}, 5.0, Turn::clockwise, Plane::xy);
-  const path::Segment segment = *arc;
+  const path::Segment segment = helix();
   double sum = 0.0;
   for (int i = 0; i <= 100; ++i) {
     const double u = segment.parameter_at(segment.length() * i / 100.0);
@@ -33,14 +59,52 @@ void evaluate_a_segment() {
   sink = sum;
 }
 
+void judge_a_joint() {
+  const auto policy =
+      junction::minimum(junction::ExactStop{}, junction::Deviation{0.01}, junction::TangentStep{5.0},
+                        junction::AccelerationStep{500.0}, junction::PublishedTable{});
+  junction::Geometry joint{.before = {}, .after = {}, .limits = limits};
+  joint.before.tangent = Vector3::UnitX();
+  joint.after.tangent = Vector3::UnitY();
+  sink = policy.speed_sq(joint);
+}
+
+void plan_profiles() {
+  double sum = 0.0;
+  for (double length = 0.01; length < 100.0; length *= 1.5)
+    for (const double end : {0.0, 10.0, 30.0}) {
+      const auto five = profile::five_phase(length, {.start = 5.0, .end = end}, limits);
+      const auto seven = profile::seven_phase(length, {.start = 5.0, .end = end}, limits);
+      sum += five ? five->at(five->duration() / 3.0).position : five.error().bound;
+      sum += seven ? seven->time_at(length / 3.0) : seven.error().bound;
+    }
+  sink = sum;
+}
+
+void step_a_block() {
+  const path::Arc arc = helix();
+  const auto phases = profile::seven_phase(arc.length(), {.start = 0.0, .end = 0.0}, limits)->phases();
+  const std::array steps_per_unit{400.0, 400.0, 400.0};
+  auto edges =
+      step::block_edges(arc, step::PhaseClock(phases), steps_per_unit, std::array<std::int64_t, 3>{});
+  step::SimulatedBackend<double, 3> backend(Vector3::Constant(400.0));
+  while (const auto edge = edges.next())
+    if (!backend.accept(*edge)) break;
+  sink = static_cast<double>(step::counts(edges)[0]);
+}
+
 struct Job {
   const char* name;
   void (*run)();
 };
 
 constexpr std::array jobs{
+    Job{"gcode: lines, one of them wrong", read_lines},
     Job{"path: arcs from their radius, possible or not", make_arcs},
     Job{"path: a segment evaluated by length", evaluate_a_segment},
+    Job{"junction: a corner, by the lowest of all policies", judge_a_joint},
+    Job{"profile: five and seven phases, possible or not", plan_profiles},
+    Job{"step: the edges of a helix, simulated", step_a_block},
 };
 
 }  // namespace
