@@ -8,6 +8,22 @@
 
 namespace cncplan {
 
+/// A phase turned round: the time within it at which a position is reached. Made by `BasicPhase::inverse`.
+template <std::floating_point S>
+struct PhaseInverse {
+  MonotoneCubic<S> cubic;  ///< distance from the slow end over time from it
+  S position{};            ///< mm, of the slow end
+  S tau{};                 ///< s into the phase, of the slow end
+  S sense{};               ///< +1 where that is the phase's start, -1 where it is its end
+
+  [[nodiscard]] S tau_at(S where) const { return tau + sense * cubic.solve(sense * (where - position)); }
+
+  /// The same, from a guess in [0, duration]: one round where the guess is a step away.
+  [[nodiscard]] S tau_at(S where, S guess) const {
+    return tau + sense * cubic.solve(sense * (where - position), sense * (guess - tau));
+  }
+};
+
 /// Constant jerk for `duration`, from the state at its start. Planned motion goes forward: velocity >= 0
 /// throughout.
 template <std::floating_point S>
@@ -28,13 +44,18 @@ struct BasicPhase {
   /// The first `tau` at which a position is reached; 0 and `duration` for positions before and behind the
   /// phase. Exact to rounding; where the speed vanishes, to the time that one unit in the last place of the
   /// position takes.
-  [[nodiscard]] S tau_at(S where) const {
+  [[nodiscard]] S tau_at(S where) const { return inverse().tau_at(where); }
+
+  /// What `tau_at` works with, for asking many positions of one phase: seen from the end where motion is
+  /// slower.
+  [[nodiscard]] constexpr PhaseInverse<S> inverse() const {
     const BasicState<S> last = at(duration);
     if (last.velocity < velocity)
-      return duration -
-             MonotoneCubic<S>{last.velocity > S(0) ? last.velocity : S(0), -last.acceleration, jerk, duration}
-                 .solve(last.position - where);
-    return MonotoneCubic<S>{velocity, acceleration, jerk, duration}.solve(where - position);
+      return {{last.velocity > S(0) ? last.velocity : S(0), -last.acceleration, jerk, duration},
+              last.position,
+              duration,
+              S(-1)};
+    return {{velocity, acceleration, jerk, duration}, position, S(0), S(1)};
   }
 
   friend bool operator==(const BasicPhase&, const BasicPhase&) = default;

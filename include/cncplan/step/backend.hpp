@@ -1,0 +1,136 @@
+// Where step edges go: the concept of a backend, and the simulated one that measures what it is given.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/vector.hpp"
+#include "cncplan/step/edge.hpp"
+
+namespace cncplan::step {
+
+/// Takes edges in order of time: hardware, a file, a simulation.
+template <class B>
+concept Backend = requires(B& backend, const BasicEdge<typename B::Scalar>& edge) {
+  requires std::floating_point<typename B::Scalar>;
+  { backend.accept(edge) } -> std::same_as<Expected<void>>;
+};
+
+/// What one axis has done. Positions and errors are in the axis' unit (mm or rad).
+template <std::floating_point S>
+struct BasicAxisReport {
+  std::int64_t net_steps{};    ///< steps forward minus steps back
+  std::int64_t total_steps{};  ///< steps in both directions
+  S position{};                ///< where the steps have brought the axis
+  S mean_square_error{};       ///< of stepped against planned position (KK22 Eq. 18); 0 before the first
+                               ///< observation
+  S rms_error{};               ///< its root
+  S max_error{};               ///< the largest magnitude of that difference
+  S rms_jitter{};              ///< s, of edge times against exact crossings
+  S max_jitter{};              ///< s
+  S peak_rate{};               ///< steps/s, from the closest two edges in one direction
+
+  friend bool operator==(const BasicAxisReport&, const BasicAxisReport&) = default;
+};
+
+using AxisReport = BasicAxisReport<double>;
+
+/// Follows the edges of N axes and holds them against the planned motion.
+template <std::floating_point S, int N>
+class SimulatedBackend {
+ public:
+  using Scalar = S;
+
+  /// The axes' steps per unit (> 0), and the counts they start with.
+  explicit SimulatedBackend(const VectorN<S, N>& steps_per_unit,
+                            const std::array<std::int64_t, N>& counts = {})
+      : steps_per_unit_(steps_per_unit) {
+    for (std::size_t i = 0; i < counts.size(); ++i) axes_[i].count = counts[i];
+  }
+
+  /// An edge, no earlier than any before it; else the error names the time. An axis outside [0, N) or a
+  /// direction that is not +-1 is an error too.
+  Expected<void> accept(const BasicEdge<S>& edge) { return accept(edge, edge.time); }
+
+  /// The same for an edge that should have come at another time: the difference is its jitter.
+  Expected<void> accept(const BasicEdge<S>& edge, S exact_time) {
+    const auto refuse = [](ErrorCode code, std::string_view field, S value, S bound) {
+      return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
+    };
+    if (!(edge.time >= time_)) return refuse(ErrorCode::below_limit, "edge time", edge.time, time_);
+    if (edge.axis < 0) return refuse(ErrorCode::negative, "edge axis", S(edge.axis), S(0));
+    if (edge.axis >= N) return refuse(ErrorCode::above_limit, "edge axis", S(edge.axis), S(N - 1));
+    if (edge.direction != 1 && edge.direction != -1)
+      return refuse(ErrorCode::not_supported, "edge direction", S(edge.direction), S(1));
+    Axis& axis = axes_[static_cast<std::size_t>(edge.axis)];
+    if (edge.direction == axis.direction) axis.closest = std::min(axis.closest, edge.time - axis.time);
+    const S jitter = std::abs(edge.time - exact_time);
+    axis.max_jitter = std::max(axis.max_jitter, jitter);
+    axis.square_jitter += jitter * jitter;
+    axis.count += edge.direction;
+    axis.net += edge.direction;
+    ++axis.total;
+    axis.direction = edge.direction;
+    time_ = axis.time = edge.time;
+    return {};
+  }
+
+  /// Holds the stepped positions against the planned ones at the same instant, after the edges up to it.
+  void observe(const VectorN<S, N>& planned) {
+    const VectorN<S, N> error = position() - planned;
+    square_error_ += error.cwiseAbs2();
+    max_error_ = max_error_.cwiseMax(error.cwiseAbs());
+    ++observations_;
+  }
+
+  /// Where the steps have brought the axes.
+  [[nodiscard]] VectorN<S, N> position() const {
+    VectorN<S, N> result;
+    for (int i = 0; i < N; ++i)
+      result(i) = static_cast<S>(axes_[static_cast<std::size_t>(i)].count) / steps_per_unit_(i);
+    return result;
+  }
+
+  [[nodiscard]] BasicAxisReport<S> report(int i) const {
+    const Axis& axis = axes_[static_cast<std::size_t>(i)];
+    const S mean_square = square_error_(i) / static_cast<S>(std::max<std::int64_t>(observations_, 1));
+    const S mean_square_jitter = axis.square_jitter / static_cast<S>(std::max<std::int64_t>(axis.total, 1));
+    return {.net_steps = axis.net,
+            .total_steps = axis.total,
+            .position = position()(i),
+            .mean_square_error = mean_square,
+            .rms_error = std::sqrt(mean_square),
+            .max_error = max_error_(i),
+            .rms_jitter = std::sqrt(mean_square_jitter),
+            .max_jitter = axis.max_jitter,
+            .peak_rate = S(1) / axis.closest};
+  }
+
+ private:
+  struct Axis {
+    std::int64_t count = 0;
+    std::int64_t net = 0;
+    std::int64_t total = 0;
+    int direction = 0;
+    S time{};
+    S closest = std::numeric_limits<S>::infinity();
+    S max_jitter{};
+    S square_jitter{};
+  };
+
+  VectorN<S, N> steps_per_unit_;
+  std::array<Axis, static_cast<std::size_t>(N)> axes_{};
+  S time_ = -std::numeric_limits<S>::infinity();
+  VectorN<S, N> square_error_ = VectorN<S, N>::Zero();
+  VectorN<S, N> max_error_ = VectorN<S, N>::Zero();
+  std::int64_t observations_ = 0;
+};
+
+}  // namespace cncplan::step

@@ -1,0 +1,114 @@
+// Exact step times: when the planned position of an axis crosses the boundaries between its steps.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/step/clock.hpp"
+#include "cncplan/step/edge.hpp"
+
+namespace cncplan::step {
+
+/// A path that knows where each axis turns round, where it passes a value, and the length travelled to there.
+template <class P>
+concept SteppablePath = ParametricPath<P> && requires(const P& path, int axis, typename P::Scalar x) {
+  { path.next_turning(axis, x) } -> std::same_as<typename P::Scalar>;
+  { path.crossing(axis, x, x, x) } -> std::same_as<typename P::Scalar>;
+  { path.length_at(x) } -> std::same_as<typename P::Scalar>;
+};
+
+/// The step count that belongs to a position in steps; half way between two the one farther from zero.
+template <std::floating_point S>
+[[nodiscard]] std::int64_t count_at(S steps) {
+  return static_cast<std::int64_t>(std::llround(steps));
+}
+
+/// The edges of one axis over one block, in order of time.
+///
+///   steps   n+1 |- - - - - - - - - - - - - - - -
+///               |            ___x___              x: edges, at the boundaries n +- 1/2
+///         n+1/2 |---------x-/-------\-x---------
+///               |      __/             \__        touched and not crossed: no edge
+///             n |- - -/- - - - - - - - - -\- -
+///
+/// Count n stands for all positions in [n - 1/2, n + 1/2], ends included, so an edge needs the position to go
+/// beyond the boundary. Between two turnings the axis goes one way: how many boundaries it crosses follows
+/// from the position at the piece's end alone. The count can therefore not drift, whatever rounding does to
+/// the single times, and what a block leaves over is taken up at the start of the next.
+template <SteppablePath P, Clock C>
+  requires std::same_as<typename P::Scalar, typename C::Scalar>
+class StepCursor {
+ public:
+  using Scalar = typename P::Scalar;
+
+  /// `count` is the axis' count where the block before ended (`count_at` the start for the first),
+  /// `steps_per_unit` > 0. The path must outlive the cursor.
+  StepCursor(const P& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count)
+      : path_(&path),
+        clock_(clock),
+        axis_(axis),
+        steps_per_unit_(steps_per_unit),
+        count_(count),
+        parameter_end_(path.parameter_end()),
+        target_(steps_at(Scalar(0))) {}
+
+  /// The next edge, until the block's end. Loops only over pieces too short for an edge.
+  [[nodiscard]] std::optional<BasicEdge<Scalar>> next() {
+    while (left_ == 0)
+      if (!open_piece()) return std::nullopt;
+    --left_;
+    const Scalar boundary = static_cast<Scalar>(count_) + half_step_;
+    count_ += direction_;
+    const bool behind = static_cast<Scalar>(direction_) * (boundary - origin_) <= Scalar(0);
+    if (!behind) parameter_ = path_->crossing(axis_, boundary / steps_per_unit_, parameter_, piece_end_);
+    time_ = std::max(time_, clock_.time_at(path_->length_at(parameter_)));
+    return BasicEdge<Scalar>{time_, axis_, direction_};
+  }
+
+  /// Steps taken, those before the block included.
+  [[nodiscard]] std::int64_t count() const { return count_; }
+
+ private:
+  [[nodiscard]] Scalar steps_at(Scalar u) const { return path_->position(u)(axis_) * steps_per_unit_; }
+
+  // Goes on to the next stretch between turnings; false behind the last.
+  [[nodiscard]] bool open_piece() {
+    if (!(piece_end_ < parameter_end_)) return false;
+    parameter_ = piece_end_;
+    piece_end_ = std::min(path_->next_turning(axis_, parameter_), parameter_end_);
+    if (!(piece_end_ > parameter_)) piece_end_ = parameter_end_;
+    origin_ = target_;
+    target_ = steps_at(piece_end_);
+    direction_ = target_ < origin_ ? -1 : 1;
+    half_step_ = static_cast<Scalar>(direction_) / Scalar(2);
+    // An extremum within rounding of a boundary touches it. At the block's end nothing is rounded away.
+    constexpr Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon();
+    const Scalar slack =
+        piece_end_ < parameter_end_ ? rounding * std::max(std::abs(origin_), std::abs(target_)) : Scalar(0);
+    const Scalar reach = std::ceil(static_cast<Scalar>(direction_) * target_ - Scalar(0.5) - slack);
+    left_ = std::max<std::int64_t>(static_cast<std::int64_t>(reach) - direction_ * count_, 0);
+    return true;
+  }
+
+  const P* path_;
+  C clock_;
+  int axis_;
+  int direction_ = 1;
+  Scalar steps_per_unit_;
+  Scalar half_step_{};
+  std::int64_t count_;
+  std::int64_t left_ = 0;  // edges before the next turning
+  Scalar parameter_end_;
+  Scalar parameter_{};  // of the last edge, or where the piece starts
+  Scalar piece_end_{};
+  Scalar origin_{};  // steps, where the piece starts
+  Scalar target_;    // steps, where it ends
+  Scalar time_ = -std::numeric_limits<Scalar>::infinity();
+};
+
+}  // namespace cncplan::step

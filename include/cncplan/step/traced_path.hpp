@@ -1,0 +1,114 @@
+// Turnings, crossings and lengths of a curve that has no closed form for them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/step/bracket.hpp"
+
+namespace cncplan::step {
+
+/// A curve of which the length travelled is known: by `length_at`, or as the inverse of `parameter_at`.
+template <class P>
+concept MeasuredPath = ParametricPath<P> &&(Path<P> || requires(const P& path, typename P::Scalar u) {
+  { path.length_at(u) } -> std::same_as<typename P::Scalar>;
+});
+
+/// Any curve as a `SteppablePath`, by bounded root finds: splines, machine axes behind kinematics, measured
+/// curves. No turning is missed as long as the second derivative of an axis changes sign at most once in each
+/// of `pieces` equal parts of the parameter range. The curve must outlive its tracing.
+template <MeasuredPath P>
+class TracedPath {
+ public:
+  using Scalar = typename P::Scalar;
+  using Vector = typename P::Vector;
+
+  explicit TracedPath(const P& path, int pieces = 16)
+      : path_(&path), width_(path.parameter_end() / static_cast<Scalar>(pieces)) {}
+
+  [[nodiscard]] Scalar length() const { return path_->length(); }
+  [[nodiscard]] Scalar parameter_end() const { return path_->parameter_end(); }
+  [[nodiscard]] Vector position(Scalar u) const { return path_->position(u); }
+  [[nodiscard]] Vector derivative(Scalar u) const { return path_->derivative(u); }
+  [[nodiscard]] Vector second_derivative(Scalar u) const { return path_->second_derivative(u); }
+
+  /// Smallest parameter > u at which the axis' velocity changes sign, parameter_end() if there is none. In a
+  /// piece where it has one sign at both ends it can still dip through zero and back; then the bend changes
+  /// sign there too.
+  [[nodiscard]] Scalar next_turning(int axis, Scalar u) const {
+    const Scalar end = parameter_end();
+    Scalar sense = rate(axis, u);
+    if (sense == Scalar(0)) sense = bend(axis, u);
+    Scalar number = std::floor(u / width_);
+    for (Scalar low = u; low < end;) {
+      number += Scalar(1);
+      Scalar high = std::min(number * width_, end);
+      if (end - high < width_ / Scalar(2)) high = end;
+      if (!(high > low)) continue;
+      if (sense == Scalar(0)) sense = rate(axis, high);
+      sense = std::copysign(sense == Scalar(0) ? Scalar(0) : Scalar(1), sense);
+      if (sense * rate(axis, high) < Scalar(0)) return turning(axis, sense, low, high);
+      if (sense * bend(axis, low) < Scalar(0) && sense * bend(axis, high) > Scalar(0)) {
+        const auto bending = [&](Scalar x) { return Slope<Scalar>{sense * bend(axis, x), Scalar(0)}; };
+        const Scalar dip = bracketed_root(bending, low, high, low + (high - low) / Scalar(2));
+        if (sense * rate(axis, dip) < Scalar(0)) return turning(axis, sense, low, dip);
+      }
+      low = high;
+    }
+    return end;
+  }
+
+  /// The parameter in [low, high] at which the axis stands at `value`; no turning lies between, and value
+  /// lies between the axis' values there.
+  [[nodiscard]] Scalar crossing(int axis, Scalar value, Scalar low, Scalar high) const {
+    const Scalar first = position(low)(axis);
+    const Scalar last = position(high)(axis);
+    const Scalar sense = last < first ? Scalar(-1) : Scalar(1);
+    if (sense * (value - first) <= Scalar(0)) return low;
+    if (sense * (value - last) >= Scalar(0)) return high;
+    const auto ahead = [&](Scalar x) {
+      return Slope<Scalar>{sense * (position(x)(axis) - value), sense * rate(axis, x)};
+    };
+    return bracketed_root(ahead, low, high, low);
+  }
+
+  [[nodiscard]] Scalar length_at(Scalar u) const {
+    if constexpr (requires { path_->length_at(u); }) {
+      return path_->length_at(u);
+    } else {
+      if (u <= Scalar(0)) return Scalar(0);
+      if (u >= parameter_end()) return length();
+      const auto ahead = [&](Scalar s) {
+        const Scalar x = path_->parameter_at(s);
+        return Slope<Scalar>{x - u, Scalar(1) / derivative(x).norm()};
+      };
+      return bracketed_root(ahead, Scalar(0), length(), u / parameter_end() * length());
+    }
+  }
+
+ private:
+  [[nodiscard]] Scalar rate(int axis, Scalar u) const { return derivative(u)(axis); }
+  [[nodiscard]] Scalar bend(int axis, Scalar u) const { return second_derivative(u)(axis); }
+
+  // The root of the velocity, moved on by rounding until the velocity has its new sign.
+  [[nodiscard]] Scalar turning(int axis, Scalar sense, Scalar low, Scalar high) const {
+    const auto slowing = [&](Scalar x) {
+      return Slope<Scalar>{-sense * rate(axis, x), -sense * bend(axis, x)};
+    };
+    const Scalar root = bracketed_root(slowing, low, high, low + (high - low) / Scalar(2));
+    Scalar x = root;
+    for (Scalar step = std::numeric_limits<Scalar>::epsilon() * high; x < high; step *= Scalar(2)) {
+      if (sense * rate(axis, x) < Scalar(0)) break;
+      x = std::min(root + step, high);
+    }
+    return x;
+  }
+
+  const P* path_;
+  Scalar width_;
+};
+
+}  // namespace cncplan::step

@@ -1,0 +1,261 @@
+// Exact step times against bisection in long double and against step counts known beforehand.
+#include "cncplan/step/crossing.hpp"
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "cncplan/step/merge.hpp"
+#include "cncplan/step/traced_path.hpp"
+#include "doubles.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using test::SineAxis;
+using test::Straight;
+
+namespace {
+
+// A curve without closed forms: what TracedPath gets.
+struct BareSine {
+  using Scalar = double;
+  using Vector = VectorN<double, 2>;
+  SineAxis<double> curve;
+  [[nodiscard]] double length() const { return curve.length(); }
+  [[nodiscard]] double parameter_end() const { return curve.end; }
+  [[nodiscard]] double length_at(double u) const { return u; }
+  [[nodiscard]] Vector position(double u) const { return curve.position(u); }
+  [[nodiscard]] Vector derivative(double u) const { return curve.derivative(u); }
+  [[nodiscard]] Vector second_derivative(double u) const { return curve.second_derivative(u); }
+};
+
+template <class P, class C>
+std::vector<step::BasicEdge<typename P::Scalar>> all(step::StepCursor<P, C>& cursor) {
+  std::vector<step::BasicEdge<typename P::Scalar>> edges;
+  while (const auto edge = cursor.next()) edges.push_back(*edge);
+  return edges;
+}
+
+long double length_at_time(const std::vector<Phase>& phases, long double t) {
+  std::size_t i = 0;
+  while (i + 1 < phases.size() && t > static_cast<long double>(phases[i + 1].time)) ++i;
+  const Phase& p = phases[i];
+  const long double x = t - static_cast<long double>(p.time);
+  return p.position + x * (p.velocity + x * (p.acceleration / 2.0L + x * p.jerk / 6.0L));
+}
+
+struct Found {
+  long double time;
+  int direction;
+};
+
+// A dense scan in time with bisection between the samples, of count = the nearest integer with hysteresis.
+std::vector<Found> brute_force(const std::vector<Phase>& phases, long double amplitude, double per_unit,
+                               int samples) {
+  const auto position = [&](long double t) {
+    return amplitude * std::sin(length_at_time(phases, t)) * static_cast<long double>(per_unit);
+  };
+  const long double end = static_cast<long double>(phases.back().time + phases.back().duration);
+  std::vector<Found> found;
+  std::int64_t count = 0;
+  for (int k = 1; k <= samples; ++k) {
+    const long double from = end * (k - 1) / samples, to = end * k / samples, q = position(to);
+    while (std::abs(q - static_cast<long double>(count)) > 0.5L) {
+      const int direction = q > static_cast<long double>(count) ? 1 : -1;
+      const long double boundary = static_cast<long double>(count) + direction * 0.5L;
+      long double low = from, high = to;
+      for (int i = 0; i < 70; ++i) {
+        const long double middle = (low + high) / 2;
+        ((position(middle) - boundary) * direction > 0 ? high : low) = middle;
+      }
+      found.push_back({high, direction});
+      count += direction;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a steady line steps at equal times, half a period after its start", "", float, double) {
+  using S = TestType;
+  const Straight<S> line{S(0), S(10)};
+  const auto phases = test::steady(S(10), S(2));
+  step::StepCursor cursor(line, step::PhaseClock(phases, S(1)), 0, S(4), 0);
+  const auto edges = all(cursor);
+  REQUIRE(edges.size() == 40);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    CHECK(edges[i].time == Approx(1.0 + (static_cast<double>(i) + 0.5) / 8.0));
+    CHECK(edges[i].direction == 1);
+  }
+  CHECK(cursor.count() == 40);
+}
+
+TEST_CASE("an axis that turns round steps when brute force says, with and without closed forms") {
+  test::Random random;
+  double worst = 0, worst_traced = 0, worst_amplitude = 0, worst_end = 0, worst_per_unit = 0;
+  for (int run = 0; run < 60; ++run) {
+    const double amplitude = random.log_uniform(0.05, 20.0);
+    const double end = random.uniform(0.1, 20.0);
+    const double per_unit = random.log_uniform(0.5, 20.0);
+    const auto array = test::rest_to_rest(end, random.log_uniform(0.1, 1000.0));
+    const std::vector<Phase> phases(array.begin(), array.end());
+    const SineAxis<double> path{amplitude, 1.0, end, 0.0};
+    CAPTURE(test::seed(), run, amplitude, end, per_unit);
+    const auto expected = brute_force(phases, static_cast<long double>(amplitude), per_unit, 20000);
+
+    step::StepCursor cursor(path, step::PhaseClock(phases), 0, per_unit, 0);
+    const auto edges = all(cursor);
+    const BareSine bare{path};
+    const step::TracedPath traced(bare, 16);
+    step::StepCursor traced_cursor(traced, step::PhaseClock(phases), 0, per_unit, 0);
+    const auto traced_edges = all(traced_cursor);
+    REQUIRE(edges.size() == expected.size());
+    REQUIRE(traced_edges.size() == expected.size());
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const bool same =
+          edges[i].direction == expected[i].direction && traced_edges[i].direction == expected[i].direction;
+      if (!same) FAIL("direction of edge " << i);
+      // Allowed: 1 ns, or what four units in the last place of the position take at this speed and bend.
+      const double t = edges[i].time;
+      const double s = static_cast<double>(length_at_time(phases, expected[i].time));
+      const double before = static_cast<double>(length_at_time(phases, expected[i].time - 1e-6L));
+      const double speed = std::abs(amplitude * std::cos(s)) * (s - before) / 1e-6;
+      const double rounding = 1e-15 * std::max(amplitude, 1.0);
+      const double allowed = 1e-9 + rounding / std::max(speed, 1e-9);
+      const double error = std::abs(t - static_cast<double>(expected[i].time)) / allowed;
+      const double traced_error =
+          std::abs(traced_edges[i].time - static_cast<double>(expected[i].time)) / allowed;
+      if (error > worst)
+        worst = error, worst_amplitude = amplitude, worst_end = end, worst_per_unit = per_unit;
+      worst_traced = std::max(worst_traced, traced_error);
+    }
+  }
+  CAPTURE(test::seed(), worst_amplitude, worst_end, worst_per_unit);
+  CHECK(worst < 1.0);
+  CHECK(worst_traced < 1.0);
+}
+
+TEST_CASE("a boundary touched and not crossed gives no edge") {
+  // Amplitude 2.5 steps: the extremum is the boundary between 2 and 3, up to rounding of the sine.
+  const SineAxis<double> path{2.5, 0.0, 20 * std::numbers::pi, 0.0};
+  const auto phases = test::steady(path.length(), 1.0);
+  step::StepCursor cursor(path, step::PhaseClock(phases), 0, 1.0, 0);
+  const auto edges = all(cursor);
+  CHECK(edges.size() == 80);  // ten turns of 2 up, 4 down, 2 up
+  CHECK(cursor.count() == 0);
+
+  const SineAxis<double> beyond{2.5 * (1 + 1e-12), 0.0, 20 * std::numbers::pi, 0.0};
+  step::StepCursor crossing(beyond, step::PhaseClock(phases), 0, 1.0, 0);
+  CHECK(all(crossing).size() == 120);
+}
+
+TEST_CASE("an axis that ends on a boundary steps only if the next block goes on") {
+  const Straight<double> up{0.0, 2.5}, on{2.5, 4.0}, back{2.5, 1.0};
+  const auto clock = [](const auto& phases) { return step::PhaseClock(phases); };
+  const auto first_phases = test::steady(2.5, 1.0);
+  const auto next_phases = test::steady(1.5, 1.0);
+  step::StepCursor first(up, clock(first_phases), 0, 1.0, 0);
+  CHECK(all(first).size() == 2);
+  step::StepCursor onward(on, clock(next_phases), 0, 1.0, first.count());
+  const auto onward_edges = all(onward);
+  REQUIRE(onward_edges.size() == 2);
+  CHECK(onward_edges[0] == step::Edge{0.0, 0, 1});
+  CHECK(onward_edges[1] == step::Edge{1.0, 0, 1});
+  CHECK(onward.count() == 4);
+  step::StepCursor backward(back, clock(next_phases), 0, 1.0, first.count());
+  const auto back_edges = all(backward);
+  REQUIRE(back_edges.size() == 1);
+  CHECK(back_edges[0] == step::Edge{1.0, 0, -1});
+  // A start on a boundary, rounded away from zero, and left downwards at once.
+  step::StepCursor started(back, clock(next_phases), 0, 1.0, step::count_at(2.5));
+  const auto started_edges = all(started);
+  REQUIRE(started_edges.size() == 2);
+  CHECK(started_edges[0] == step::Edge{0.0, 0, -1});
+  CHECK(started.count() == 1);
+}
+
+TEST_CASE("a block of length zero and an axis at rest have no edges") {
+  const Straight<double> nowhere{3.0, 3.0};
+  const std::array<Phase, 0> none{};
+  step::StepCursor still(nowhere, step::PhaseClock<double>(none), 0, 100.0, 300);
+  CHECK_FALSE(still.next());
+  CHECK_FALSE(still.next());
+  CHECK(still.count() == 300);
+  const SineAxis<double> path{1.0, 0.0, 5.0, 0.25};
+  const auto phases = test::steady(5.0, 1.0);
+  step::StepCursor flat(path, step::PhaseClock(phases), 1, 10.0, 3);
+  CHECK_FALSE(flat.next());
+}
+
+TEST_CASE("a program of random blocks ends on the rounded target, whatever its borders") {
+  test::Random random;
+  double at = 0.0;
+  const double per_unit = 173.2;
+  std::int64_t count = step::count_at(at * per_unit);
+  double start = 0.0;
+  double last = 0.0;
+  bool in_order = true, on_target = true;
+  for (int block = 0; block < 20000; ++block) {
+    // Some targets on boundaries, some in place, some a rounding away from where the axis is.
+    double to = random.uniform(-1.0, 1.0);
+    if (random.integer(0, 3) == 0) to = (std::round(to * per_unit) + 0.5) / per_unit;
+    if (random.integer(0, 9) == 0) to = std::nextafter(at, to);
+    const Straight<double> line{at, to};
+    const auto phases = test::steady(line.length(), random.log_uniform(0.1, 100.0));
+    step::StepCursor cursor(line, step::PhaseClock(phases, start), 0, per_unit, count);
+    while (const auto edge = cursor.next()) {
+      in_order = in_order && edge->time >= last;
+      last = edge->time;
+    }
+    count = cursor.count();
+    at = to;
+    start += line.length() > 0.0 ? phases[0].duration : 0.0;
+    on_target = on_target && std::abs(at * per_unit - static_cast<double>(count)) <= 0.5;
+  }
+  CHECK(in_order);
+  CHECK(on_target);
+}
+
+TEST_CASE("1e8 steps are counted exactly") {
+  const Straight<double> line{0.0, 100000.0};
+  const auto phases = test::rest_to_rest(100000.0, 1000.0);
+  step::StepCursor cursor(line, step::PhaseClock(phases), 0, 1000.0, 0);
+  std::int64_t edges = 0;
+  double last = 0.0;
+  bool in_order = true;
+  while (const auto edge = cursor.next()) {
+    ++edges;
+    in_order = in_order && edge->time >= last;
+    last = edge->time;
+  }
+  CHECK(edges == 100000000);
+  CHECK(cursor.count() == 100000000);
+  CHECK(in_order);
+  CHECK(last <= phases[3].time + phases[3].duration);
+}
+
+TEST_CASE("merged axes come in order of time, and leave their counts") {
+  const SineAxis<double> path{3.0, 0.7, 30.0, 0.0};
+  const auto phases = test::rest_to_rest(30.0, 50.0);
+  auto edges = step::block_edges(path, step::PhaseClock(phases, 5.0), std::array{40.0, 25.0},
+                                 std::array<std::int64_t, 2>{});
+  std::array<std::int64_t, 2> sum{};
+  double last = 5.0;
+  bool in_order = true;
+  const std::size_t allocations = test::heap_allocations_of([&] {
+    while (const auto edge = edges.next()) {
+      in_order = in_order && edge->time >= last;
+      last = edge->time;
+      sum[static_cast<std::size_t>(edge->axis)] += edge->direction;
+    }
+  });
+  CHECK(allocations == 0);
+  CHECK(in_order);
+  CHECK(sum == step::counts(edges));
+  CHECK(sum[0] == step::count_at(3.0 * std::sin(30.0) * 40.0));
+  CHECK(sum[1] == step::count_at(0.7 * 30.0 * 25.0));
+  CHECK_FALSE(edges.next());
+}
