@@ -12,8 +12,6 @@ int main() {
   const auto profile = profile::five_phase(arc->length(), {.start = 0.0, .end = 0.0}, limits);
   if (!profile) return 1;
 
-  for (double time = 0.0; time < profile->duration(); time += 1e-3) {
-    const Vector3 point = arc->position(arc->parameter_at(profile->at(time).position));
-    std::printf("%.3f %.6f %.6f\n", time, point.x(), point.y());
-  }
+  for (const auto& sample : interpolate::samples(*arc, *profile, 1e-3))
+    std::printf("%.6f %.6f %.6f\n", sample.time, sample.position.x(), sample.position.y());
 }

@@ -50,6 +50,7 @@
 #include "cncplan/plan/cursor.hpp"
 #include "cncplan/plan/program.hpp"
 #include "cncplan/plan/span.hpp"
+#include "cncplan/plan/timing.hpp"
 #include "cncplan/profile/boundary.hpp"
 #include "cncplan/profile/constant_speed.hpp"
 #include "cncplan/profile/five_phase.hpp"

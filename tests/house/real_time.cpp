@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cncplan/gcode/reader.hpp"
+#include "cncplan/interpolate/exact.hpp"
 #include "cncplan/junction/acceleration_step.hpp"
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/exact_stop.hpp"
@@ -81,6 +82,14 @@ void plan_profiles() {
   sink = sum;
 }
 
+void sample_a_block() {
+  const path::Arc arc = helix();
+  const auto profile = profile::seven_phase(arc.length(), {.start = 0.0, .end = 0.0}, limits);
+  double sum = 0.0;
+  for (const auto& sample : interpolate::samples(arc, *profile, 1e-3)) sum += sample.position.x();
+  sink = sum;
+}
+
 void step_a_block() {
   const path::Arc arc = helix();
   const auto phases = profile::seven_phase(arc.length(), {.start = 0.0, .end = 0.0}, limits)->phases();
@@ -104,6 +113,7 @@ constexpr std::array jobs{
     Job{"path: a segment evaluated by length", evaluate_a_segment},
     Job{"junction: a corner, by the lowest of all policies", judge_a_joint},
     Job{"profile: five and seven phases, possible or not", plan_profiles},
+    Job{"interpolate: the samples of a helix", sample_a_block},
     Job{"step: the edges of a helix, simulated", step_a_block},
 };
 
