@@ -35,7 +35,8 @@ inline std::vector<CanonicalMotion> read_canonical(const std::string& path) {
     const std::size_t open = line.find('(');
     if (open == std::string::npos) continue;
     std::array<double, 6> v{};
-    std::sscanf(line.c_str() + open, "(%lf, %lf, %lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3], &v[4], &v[5]);
+    std::sscanf(line.c_str() + open, "(%lf, %lf, %lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3], &v[4],
+                &v[5]);
     if (name_is("USE_LENGTH_UNITS")) unit = name_is("INCHES") ? 25.4 : 1.0;
     if (name_is("SELECT_PLANE")) plane = name_is("XY") ? Plane::xy : name_is("YZ") ? Plane::yz : Plane::zx;
     if (name_is("SET_FEED_RATE")) feed = v[0] * unit / 60.0;

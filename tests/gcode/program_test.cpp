@@ -28,8 +28,14 @@ TEST_CASE("real programs yield LinuxCNC's motions") {
     const char* name;
     std::size_t arcs;
   };
-  for (const auto [name, arcs] : {Program{"3dtest", 3}, {"51MeanderAve", 329}, {"Cereal", 87}, {"arcspiral", 999},
-                                  {"cds", 50}, {"lathe_pawn", 22}, {"test_12mmflat", 39}, {"tort", 138}}) {
+  for (const auto [name, arcs] : {Program{"3dtest", 3},
+                                  {"51MeanderAve", 329},
+                                  {"Cereal", 87},
+                                  {"arcspiral", 999},
+                                  {"cds", 50},
+                                  {"lathe_pawn", 22},
+                                  {"test_12mmflat", 39},
+                                  {"tort", 138}}) {
     INFO(name);
     const std::string path = *folder + "/data/ngc/" + name;
     std::ifstream stream(path + ".ngc");
@@ -71,9 +77,8 @@ TEST_CASE("real programs yield LinuxCNC's motions") {
 TEST_CASE("a sink may end the reading") {
   gcode::Reader reader;
   int seen = 0;
-  const auto done = gcode::read_program(gcode::TextLines("G0 X1\nX2\nX3\nX4\n"), reader, [&](const gcode::Item&) {
-    return ++seen < 2;
-  });
+  const auto done = gcode::read_program(gcode::TextLines("G0 X1\nX2\nX3\nX4\n"), reader,
+                                        [&](const gcode::Item&) { return ++seen < 2; });
   CHECK(done);
   CHECK(seen == 2);
   CHECK(reader.line() == 2);

@@ -32,8 +32,8 @@ inline Reading read(std::string_view text, const gcode::Dialect& dialect = {}) {
   const auto done = gcode::read_program(gcode::TextLines(text), reader,
                                         [&](const gcode::Item& item) { reading.items.push_back(item); });
   if (!done)
-    reading.error = std::to_string(done.error().line) + ':' + std::to_string(done.error().column) +
-                    ": " + gcode::to_text(done.error());
+    reading.error = std::to_string(done.error().line) + ':' + std::to_string(done.error().column) + ": " +
+                    gcode::to_text(done.error());
   return reading;
 }
 

@@ -1,4 +1,4 @@
-// Diagnostics as sentences, for programs that print them.
+// Diagnostics as sentences, for programs that print them (set-up).
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ inline std::string word_text(std::string_view letter, double number) {
 [[nodiscard]] inline std::string to_text(const Diagnostic& diagnostic) {
   const Error& error = diagnostic.error;
   const std::string_view sentence = message(error.code);
-  const bool has_verb =
-      sentence.starts_with("is ") || sentence.starts_with("must ") || sentence.starts_with("has ") || sentence.starts_with("does ");
+  const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
+                        sentence.starts_with("has ") || sentence.starts_with("does ");
   std::string text = detail::word_text(error.field, error.value);
   text += has_verb ? " " : ": ";
   text += sentence;

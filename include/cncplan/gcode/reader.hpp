@@ -177,11 +177,20 @@ class Reader {
            (kind == AxisKind::linear ? modal_.millimetres_per_unit : radians_per_degree);
   }
 
+  /// A coordinate that some word names: the radians of a rotary axis are those of a number of degrees, sums
+  /// too, so that whatever was read can be written again.
+  [[nodiscard]] double nameable(std::size_t axis, double coordinate) const {
+    return dialect_.axes[axis].kind == AxisKind::linear
+               ? coordinate
+               : coordinate / radians_per_degree * radians_per_degree;
+  }
+
   /// Where the axis words lead, in work coordinates.
   [[nodiscard]] Position target() const {
     Position end = current_;
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i)) end[i] = modal_.incremental ? current_[i] + *value : *value;
+      if (const auto value = coordinate(i))
+        end[i] = modal_.incremental ? nameable(i, current_[i] + *value) : *value;
     return end;
   }
 
@@ -189,7 +198,7 @@ class Reader {
   [[nodiscard]] Position machine_target() const {
     Position end = current_;
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i)) end[i] = *value - offset_[i];
+      if (const auto value = coordinate(i)) end[i] = nameable(i, *value - offset_[i]);
     return end;
   }
 
@@ -249,7 +258,7 @@ class Reader {
     const bool all = (block_.letters() & alphabet_.axes) == 0;
     Position end = current_;
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (all || block_.has(dialect_.axes[i].letter)) end[i] = machine[i] - offset_[i];
+      if (all || block_.has(dialect_.axes[i].letter)) end[i] = nameable(i, machine[i] - offset_[i]);
     straight(code(0), end, emit);
   }
 
@@ -302,7 +311,7 @@ class Reader {
   /// The machine stays where it is; the work coordinates of that place change with the offset.
   void update_offset() {
     for (std::size_t i = 0; i < axis_count(); ++i) {
-      const double offset = dialect_.work_offsets[work_system_][i] + shift_[i] + tool_[i];
+      const double offset = nameable(i, dialect_.work_offsets[work_system_][i] + shift_[i] + tool_[i]);
       if (offset == offset_[i]) continue;  // not even a rounding
       current_[i] = current_[i] + offset_[i] - offset;
       offset_[i] = offset;

@@ -1,4 +1,4 @@
-// Lines of a stream, in memory that does not grow with the program.
+// Lines of a stream, in memory that does not grow with the program (set-up).
 #pragma once
 
 #include <array>

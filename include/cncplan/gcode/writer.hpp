@@ -1,6 +1,7 @@
 // Writes items as G-code that reads back to the same items.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -37,14 +38,14 @@ template <std::invocable<double> Read>
   const auto length = [&digits](double number) {
     return std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr - digits.data();
   };
-  Decimal best{guess, false};
-  double candidate = guess;
-  for (int i = 0; i < neighbours; ++i)
-    candidate = std::nextafter(candidate, -std::numeric_limits<double>::infinity());
-  for (int i = -neighbours; i <= neighbours; ++i) {
-    if (read(candidate) == value && (!best.exact || length(candidate) < length(best.number)))
-      best = {candidate, true};
-    candidate = std::nextafter(candidate, std::numeric_limits<double>::infinity());
+  Decimal best{guess, read(guess) == value};
+  for (const double side : {-1.0, 1.0}) {
+    double candidate = guess;
+    for (int i = 0; i < neighbours; ++i) {
+      candidate = std::nextafter(candidate, side * std::numeric_limits<double>::infinity());
+      if (read(candidate) == value && (!best.exact || length(candidate) < length(best.number)))
+        best = {candidate, true};
+    }
   }
   return best;
 }
@@ -60,7 +61,12 @@ template <std::invocable<double> Read>
 class Writer {
  public:
   /// For readers of the same dialect.
-  explicit Writer(const Dialect& dialect = {}) : dialect_(dialect), offset_(dialect.work_offsets[0]) {
+  explicit Writer(const Dialect& dialect = {}) : dialect_(dialect) {
+    // A system with its origin at the machine's leaves the offset to G43.1 alone, and so exact.
+    const auto& systems = dialect_.work_offsets;
+    const auto zero = std::find(systems.begin(), systems.end(), Position{});
+    if (zero != systems.end()) work_system_ = static_cast<std::size_t>(zero - systems.begin());
+    offset_ = systems[work_system_];
     for (std::size_t i = 0; i < axis_count(); ++i) current_[i] -= offset_[i];
   }
 
@@ -147,7 +153,11 @@ class Writer {
     end_line(pen);
     if (begun_) return;
     begun_ = true;
-    pen.text("G17 G21 G40 G49 G54 G64 G90 G90.1 G94\n");
+    pen.text("G17 G21 G40 G49 G64 G90 G90.1 G94");
+    line_open_ = true;
+    const auto system = static_cast<int>(work_system_);
+    put(pen, "G", system < 6 ? 54 + system : 59 + (system - 5) / 10.0);
+    end_line(pen);
   }
 
   template <class Out>
@@ -178,8 +188,10 @@ class Writer {
     const bool arc = motion.kind == MotionKind::arc_radius || motion.kind == MotionKind::arc_center;
     if (!arc && motion.start == motion.end) return;
     if (motion.offset != offset_) shift(motion.offset, pen);
-    if (std::exchange(modal_.exact_stop, motion.exact_stop) != motion.exact_stop)
+    if (std::exchange(modal_.exact_stop, motion.exact_stop) != motion.exact_stop) {
       put(pen, "G", motion.exact_stop ? 61 : 64);
+      end_line(pen);  // a P on the line of G64 would be its own
+    }
     if (std::exchange(modal_.feed_mode, motion.feed_mode) != motion.feed_mode) {
       put(pen, "G", motion.feed_mode == FeedMode::inverse_time ? 93 : 94);
       modal_.feed.reset();
@@ -209,6 +221,7 @@ class Writer {
   template <class Out>
   void put_axis(std::size_t axis, double value, double base, Pen<Out>& pen) {
     const auto [letter, kind] = dialect_.axes[axis];
+    if (kind == AxisKind::linear && base == 0.0) return put(pen, name(letter), value);
     const double unit = kind == AxisKind::linear ? 1.0 : radians_per_degree;
     const auto read = [unit, base](double number) { return base + number * unit; };
     put(pen, name(letter), find_decimal(value, (value - base) / unit, read).number);
@@ -220,7 +233,7 @@ class Writer {
     pen.text("G43.1");
     line_open_ = true;
     for (std::size_t i = 0; i < axis_count(); ++i) {
-      put_axis(i, offset[i], dialect_.work_offsets[0][i], pen);
+      put_axis(i, offset[i], dialect_.work_offsets[work_system_][i], pen);
       if (offset[i] != offset_[i]) current_[i] = current_[i] + offset_[i] - offset[i];
     }
     offset_ = offset;
@@ -252,6 +265,7 @@ class Writer {
   Modal modal_;
   Position current_{};
   Position offset_{};
+  std::size_t work_system_{};
   int word_line_{};
   bool begun_{};
   bool line_open_{};

@@ -1,0 +1,88 @@
+#include "cncplan/gcode/dialect.hpp"
+
+#include "gcode/support.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+using gcode::AxisKind;
+using gcode::Dialect;
+
+TEST_CASE("a dialect is checked") {
+  CHECK(gcode::validate({}));
+  const auto with_axes = [](std::vector<gcode::Axis> axes) {
+    Dialect dialect;
+    dialect.axes = std::move(axes);
+    const auto valid = gcode::validate(dialect);
+    return valid ? std::string() : std::string(valid.error().field);
+  };
+  CHECK(with_axes({{'R', AxisKind::linear}, {'Z', AxisKind::linear}, {'A', AxisKind::rotary}}).empty());
+  CHECK(with_axes({}) == "number of axes");
+  CHECK(with_axes(std::vector<gcode::Axis>(7, {'X', AxisKind::linear})) == "number of axes");
+  CHECK(with_axes({{'X', AxisKind::linear}, {'X', AxisKind::linear}}) == "X");
+  CHECK(with_axes({{'F', AxisKind::linear}}) == "F");
+  CHECK(with_axes({{'x', AxisKind::linear}}) == "axis letter");
+  Dialect dialect;
+  dialect.tools = {{1, NAN}};
+  CHECK(gcode::validate(dialect).error().code == ErrorCode::not_finite);
+  dialect.tools = {{1, 10.0}};
+  CHECK(gcode::validate(dialect));
+  dialect.axes = {{'X', AxisKind::linear}};
+  CHECK(gcode::validate(dialect).error().field == "Z");
+  dialect = {};
+  dialect.work_offsets[8][5] = INFINITY;
+  CHECK(gcode::validate(dialect).error().field == "work offset");
+  dialect = {};
+  dialect.home_g30[0] = NAN;
+  CHECK(gcode::validate(dialect).error().field == "home position of G30");
+}
+
+TEST_CASE("the thesis' program reads back: R is an axis, A and C are degrees, its own words pass through") {
+  Dialect dialect;
+  dialect.axes = {
+      {'R', AxisKind::linear}, {'Z', AxisKind::linear}, {'A', AxisKind::rotary}, {'C', AxisKind::rotary}};
+  dialect.pass_through = {{'G', 251.0}, {'G', 8.0}, {'G', 5.0}};
+  REQUIRE(gcode::validate(dialect));
+  const auto reading = test::read(
+      "%\n00001 ( )\nG17 G80 G49 G021 G40\nG251\nG08 P1\nG05 P10000 Q3\nT00 M6\n"
+      "G00 G90 R244.365 Z134.545 A-3.006 C58.954 S20000 M03\nG43 R245.414 Z154.518 A-3.006 C58.954 H00\n"
+      "G01 R244.354 Z134.346 A-3.006 C58.954 F1000.\nR244.349 Z134.346 A-3.003 C59.935\nM30\n%\n",
+      dialect);
+  REQUIRE(reading.error.empty());
+  const auto words = reading.all<gcode::Word>();
+  CHECK(words == std::vector<gcode::Word>{{'O', 1, 2, 1},
+                                          {'G', 251, 4, 1},
+                                          {'G', 8, 5, 1},
+                                          {'P', 1, 5, 5},
+                                          {'G', 5, 6, 1},
+                                          {'P', 10000, 6, 5},
+                                          {'Q', 3, 6, 12},
+                                          {'T', 0, 7, 1},
+                                          {'S', 20000, 8, 43},
+                                          {'M', 3, 8, 50}});
+  const auto motions = reading.motions();
+  REQUIRE(motions.size() == 4);
+  CHECK(motions[0].end[0] == 244.365);
+  CHECK(motions[0].end[2] == Approx(-3.006 * M_PI / 180));
+  CHECK(motions[3].end[3] == Approx(59.935 * M_PI / 180));
+  CHECK(motions[3].kind == gcode::MotionKind::line);
+  CHECK(*motions[3].feed == Approx(1000.0 / 60));
+  CHECK(motions[3].column == 1);
+}
+
+TEST_CASE("without a list nothing passes through") {
+  CHECK(test::read("G251\n").error == "1:1: G251 is not supported");
+  CHECK(test::read("G8 P1\n").error == "1:4: P is used by nothing on this line");
+  CHECK(test::read("D3\n").error == "1:1: D is not supported");
+}
+
+TEST_CASE("a letter passes through with any number") {
+  Dialect dialect;
+  dialect.pass_through = {{'D', {}}, {'M', 98.0}};
+  CHECK(test::read("G0 X1 D3\nD4\n", dialect).all<gcode::Word>().size() == 2);
+  CHECK(test::read("M98 L2 P100\n", dialect).all<gcode::Word>() ==
+        std::vector<gcode::Word>{{'M', 98, 1, 1}, {'L', 2, 1, 5}, {'P', 100, 1, 8}});
+  CHECK(test::read("G4 P1 M98 L2\n", dialect).all<gcode::Word>().size() == 2);  // P is G4's
+  std::string many;
+  for (int i = 0; i < 17; ++i) many += "D1";
+  CHECK(test::read(many, dialect).error == "1:33: number of words to pass through is above the limit 16");
+}

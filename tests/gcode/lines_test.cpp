@@ -1,0 +1,90 @@
+#include "cncplan/gcode/lines.hpp"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cncplan/gcode/stream_lines.hpp"
+#include "gcode/support.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+template <gcode::LineSource Lines>
+std::vector<std::string> all(Lines& lines) {
+  std::vector<std::string> found;
+  while (const auto line = lines.next()) found.emplace_back(*line);
+  return found;
+}
+
+std::vector<std::string> of_text(const std::string& text) {
+  gcode::TextLines lines(text);
+  return all(lines);
+}
+
+std::vector<std::string> of_stream(const std::string& text) {
+  std::istringstream stream(text);
+  gcode::StreamLines lines(stream);
+  return all(lines);
+}
+
+/// A stream's worth of program that is never in memory.
+class Endless : public std::streambuf {
+ public:
+  explicit Endless(long lines) : lines_(lines) {}
+
+ private:
+  int_type underflow() override {
+    if (lines_-- == 0) return traits_type::eof();
+    setg(line_.data(), line_.data(), line_.data() + line_.size());
+    line_[5] = line_[5] == '9' ? '0' : static_cast<char>(line_[5] + 1);
+    return traits_type::to_int_type(line_[0]);
+  }
+  std::string line_ = "G1 X10.25 Y-3.125 Z.5 F1200\n";
+  long lines_;
+};
+
+}  // namespace
+
+TEST_CASE("lines end at line feeds, the last one without") {
+  const std::vector<std::string> expected{"a", "", "b\r", "c"};
+  CHECK(of_text("a\n\nb\r\nc") == expected);
+  CHECK(of_stream("a\n\nb\r\nc") == expected);
+  CHECK(of_text("").empty());
+  CHECK(of_stream("").empty());
+  CHECK(of_text("a\n") == std::vector<std::string>{"a"});
+  CHECK(of_stream("a\n") == std::vector<std::string>{"a"});
+}
+
+TEST_CASE("a stream's lines are a text's, wherever the buffer ends") {
+  test::Random random;
+  std::string text;
+  for (int i = 0; i < 5000; ++i)
+    text += std::string(static_cast<std::size_t>(random.integer(0, 300)), 'x') + '\n';
+  CHECK(of_stream(text) == of_text(text));
+}
+
+TEST_CASE("a line that the buffer cannot take is one line, too long for the reader") {
+  const std::string monster(200000, 'x');
+  const auto lines = of_stream("a\n" + monster + "\nb\n");
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[1].size() > gcode::max_line_length);
+  CHECK(lines[2] == "b");
+  CHECK(of_stream(monster).size() == 1);
+}
+
+TEST_CASE("a long program takes no memory") {
+  Endless buffer(300000);
+  std::istream stream(&buffer);
+  gcode::StreamLines lines(stream);
+  gcode::Reader reader;
+  long motions = 0;
+  CHECK(test::heap_allocations_of([&] {
+          if (!gcode::read_program(lines, reader, [&](const gcode::Item&) { ++motions; })) motions = -1;
+        }) == 0);
+  CHECK(motions == 300000);
+}
