@@ -79,7 +79,8 @@ class BasicSolver {
     if (!(length > S(0))) return start;
     // half of a peak between equal speeds over twice the length
     const auto peak = peak_between(law_, start, start, S(0), S(2) * length, std::sqrt(room));
-    return start + peak.from_high * peak.from_high;
+    const S top = start + peak.from_high * peak.from_high;
+    return std::max(start, top - S(4) * std::numeric_limits<S>::epsilon() * top);
   }
 
  private:

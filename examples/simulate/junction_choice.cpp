@@ -1,0 +1,64 @@
+#include "junction_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "failure.hpp"
+
+namespace simulate {
+
+namespace {
+
+[[noreturn]] void refuse(std::string_view item, std::string_view why) {
+  throw Failure(Exit::bad_input, fmt::format("--junction: '{}' {}", item, why));
+}
+
+double bound(std::string_view item, std::string_view number) {
+  double value = 0.0;
+  const char* const last = number.data() + number.size();
+  const auto [end, code] = std::from_chars(number.data(), last, value);
+  if (code != std::errc{} || end != last || !std::isfinite(value))
+    refuse(item, "needs a number behind its =");
+  if (value < 0.0) refuse(item, "must not be negative");
+  return value;
+}
+
+void add(JunctionChoice& choice, std::string_view item) {
+  const auto equals = item.find('=');
+  const std::string_view name = item.substr(0, equals);
+  const bool has_number = equals != std::string_view::npos;
+  const auto number = [&] { return bound(item, has_number ? item.substr(equals + 1) : std::string_view{}); };
+  if (name == "tangent")
+    choice.tangent = {number()};
+  else if (name == "deviation")
+    choice.deviation = {number()};
+  else if (name == "acceleration-step")
+    choice.acceleration_step = {number()};
+  else if (has_number)
+    refuse(item, "is not a policy that takes a number");
+  else if (name == "table")
+    choice.table = {cncplan::junction::Norm::rotation};
+  else if (name == "table-absolute")
+    choice.table = {cncplan::junction::Norm::absolute};
+  else if (name == "stop")
+    choice.stop = cncplan::junction::ExactStop{};
+  else
+    refuse(item, "is not one of table, table-absolute, stop, tangent=, deviation=, acceleration-step=");
+}
+
+}  // namespace
+
+JunctionChoice junction_choice(std::string_view text) {
+  JunctionChoice choice;
+  for (;;) {
+    const auto plus = text.find('+');
+    add(choice, text.substr(0, plus));
+    if (plus == std::string_view::npos) return choice;
+    text.remove_prefix(plus + 1);
+  }
+}
+
+}  // namespace simulate

@@ -1,0 +1,232 @@
+#include "machine.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+#include "failure.hpp"
+
+namespace simulate {
+
+namespace {
+
+using namespace cncplan;
+
+// A table of the file, with the means to complain about what is in it.
+class Section {
+ public:
+  Section(const std::string& file, const toml::table& table, std::string name)
+      : file_(file), table_(table), name_(std::move(name)) {}
+
+  [[noreturn]] void refuse(const toml::node& node, const std::string& why) const {
+    const auto at = node.source().begin;
+    throw Failure(Exit::bad_input, fmt::format("{}:{}:{}: error: {}", file_, at.line, at.column, why));
+  }
+
+  void allow(std::initializer_list<std::string_view> keys) const {
+    for (const auto& [key, node] : table_)
+      if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
+        const auto at = key.source().begin;
+        throw Failure(Exit::bad_input,
+                      fmt::format("{}:{}:{}: error: unknown key '{}'{}", file_, at.line, at.column, key.str(),
+                                  name_.empty() ? "" : " in " + name_));
+      }
+  }
+
+  [[nodiscard]] const toml::node* find(std::string_view key) const { return table_.get(key); }
+
+  [[nodiscard]] double number(const toml::node& node, std::string_view what) const {
+    const auto value = node.value<double>();
+    if (!value || !std::isfinite(*value) || !node.is_number())
+      refuse(node, fmt::format("{} must be a number", what));
+    return *value;
+  }
+  void positive(std::string_view key, double& into, double unit = 1.0) const {
+    if (const toml::node* node = find(key)) {
+      const double value = number(*node, key);
+      if (value <= 0.0) refuse(*node, fmt::format("{} must be greater than zero", key));
+      into = value * unit;
+    }
+  }
+  [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what,
+                                            std::size_t count) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != count)
+      refuse(node, fmt::format("{} must be a list of {} numbers", what, count));
+    std::vector<double> values;
+    for (const toml::node& item : *array) values.push_back(number(item, what));
+    return values;
+  }
+  [[nodiscard]] std::string text(const toml::node& node, std::string_view what) const {
+    const auto value = node.value<std::string>();
+    if (!value) refuse(node, fmt::format("{} must be a text", what));
+    return *value;
+  }
+  [[nodiscard]] Section section(std::string_view key, const toml::node& node) const {
+    if (!node.is_table()) refuse(node, fmt::format("{} must be a table", key));
+    return {file_, *node.as_table(), std::string(key)};
+  }
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const toml::table& table() const { return table_; }
+
+ private:
+  const std::string& file_;
+  const toml::table& table_;
+  std::string name_;
+};
+
+constexpr double radians(double degrees) { return degrees * (3.14159265358979323846 / 180.0); }
+
+void read_axis(const Section& section, Machine& machine) {
+  section.allow(
+      {"letter", "kind", "steps_per_unit", "travel", "velocity", "acceleration", "jerk", "pulse_width"});
+  MachineAxis axis;
+  gcode::Axis word{};
+  const toml::node* letter = section.find("letter");
+  if (letter == nullptr) section.refuse(section.table(), "an axis needs a letter");
+  const std::string name = section.text(*letter, "letter");
+  if (name.size() != 1) section.refuse(*letter, "letter must be one letter");
+  axis.letter = word.letter = name[0];
+  if (const toml::node* kind = section.find("kind")) {
+    const std::string value = section.text(*kind, "kind");
+    if (value != "linear" && value != "rotary")
+      section.refuse(*kind, "kind must be \"linear\" or \"rotary\"");
+    word.kind = value == "rotary" ? gcode::AxisKind::rotary : gcode::AxisKind::linear;
+  }
+  section.positive("steps_per_unit", axis.steps_per_unit);
+  section.positive("velocity", axis.limits.velocity);
+  section.positive("acceleration", axis.limits.acceleration);
+  section.positive("jerk", axis.limits.jerk);
+  section.positive("pulse_width", axis.pulse_width);
+  if (const toml::node* travel = section.find("travel")) {
+    const auto range = section.numbers(*travel, "travel", 2);
+    if (!(range[0] < range[1])) section.refuse(*travel, "travel must go from the lower to the higher end");
+    axis.low = range[0];
+    axis.high = range[1];
+  }
+  machine.axes.push_back(axis);
+  machine.dialect.axes.push_back(word);
+}
+
+gcode::Position position(const Section& section, const toml::node& node, std::string_view what,
+                         const Machine& machine) {
+  const auto values = section.numbers(node, what, machine.dialect.axes.size());
+  gcode::Position result{};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    result[i] = machine.dialect.axes[i].kind == gcode::AxisKind::rotary ? radians(values[i]) : values[i];
+  return result;
+}
+
+void read_tools(const Section& section, Machine& machine) {
+  for (const auto& [key, node] : section.table()) {
+    int number = 0;
+    const std::string_view digits = key.str();
+    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (code != std::errc{} || end != digits.data() + digits.size() || number < 0)
+      section.refuse(node, fmt::format("'{}' is not a tool number", digits));
+    machine.dialect.tools.push_back({number, section.number(node, "tool length")});
+  }
+}
+
+void read_offsets(const Section& section, Machine& machine) {
+  constexpr std::array<std::string_view, gcode::work_systems> names{"G54", "G55",   "G56",   "G57",  "G58",
+                                                                    "G59", "G59.1", "G59.2", "G59.3"};
+  for (const auto& [key, node] : section.table()) {
+    const auto it = std::find(names.begin(), names.end(), key.str());
+    if (it == names.end())
+      section.refuse(node, fmt::format("'{}' is not a work coordinate system", key.str()));
+    machine.dialect.work_offsets[static_cast<std::size_t>(it - names.begin())] =
+        position(section, node, *it, machine);
+  }
+}
+
+void read_pass_through(const Section& section, const toml::node& node, Machine& machine) {
+  const toml::array* words = node.as_array();
+  if (words == nullptr) section.refuse(node, "pass_through must be a list of words");
+  for (const toml::node& item : *words) {
+    const std::string word = section.text(item, "a word to pass through");
+    gcode::PassThrough passed{};
+    if (word.empty() || word[0] < 'A' || word[0] > 'Z')
+      section.refuse(item, "a word begins with a letter A to Z");
+    passed.letter = word[0];
+    if (word.size() > 1) {
+      double value = 0.0;
+      const auto [end, code] =
+          std::from_chars(word.data() + 1, word.data() + word.size(), value, std::chars_format::fixed);
+      if (code != std::errc{} || end != word.data() + word.size())
+        section.refuse(item, "'" + word + "' is not a word");
+      passed.number = value;
+    }
+    machine.dialect.pass_through.push_back(passed);
+  }
+}
+
+Machine interpret(const std::string& file, const toml::table& root) {
+  const Section top(file, root, "");
+  top.allow({"name", "rapid_rate", "axis", "tools", "offsets", "home", "pass_through"});
+  Machine machine;
+  if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
+  if (top.find("rapid_rate") != nullptr) top.positive("rapid_rate", machine.rapid_rate.emplace());
+  if (const toml::node* node = top.find("axis")) {
+    const toml::array* list = node->as_array();
+    if (list == nullptr || list->empty()) top.refuse(*node, "axis must be a list of tables, [[axis]]");
+    machine.axes.clear();
+    machine.dialect.axes.clear();
+    for (const toml::node& item : *list) read_axis(top.section("axis", item), machine);
+  }
+  if (const toml::node* node = top.find("tools")) read_tools(top.section("tools", *node), machine);
+  if (const toml::node* node = top.find("offsets")) read_offsets(top.section("offsets", *node), machine);
+  if (const toml::node* node = top.find("home")) {
+    const Section home = top.section("home", *node);
+    home.allow({"G28", "G30"});
+    if (const toml::node* place = home.find("G28"))
+      machine.dialect.home_g28 = position(home, *place, "G28", machine);
+    if (const toml::node* place = home.find("G30"))
+      machine.dialect.home_g30 = position(home, *place, "G30", machine);
+  }
+  if (const toml::node* node = top.find("pass_through")) read_pass_through(top, *node, machine);
+  if (const auto valid = gcode::validate(machine.dialect); !valid)
+    throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {} {}", file, valid.error().field,
+                                               message(valid.error().code)));
+  constexpr std::string_view letters = "XYZ";
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    if (machine.axes.size() != 3 || machine.axes[i].letter != letters[i])
+      throw Failure(Exit::bad_input,
+                    fmt::format("{}:1:1: error: the axes must be X, Y, Z, in this order", file));
+  return machine;
+}
+
+}  // namespace
+
+Limits Machine::limits_along(const plan::Block& block) const {
+  Limits limits = block.limits;
+  for (int i = 0; i < 3; ++i) {
+    const double share = block.segment.arc() == nullptr ? std::abs(block.segment.start_tangent()[i]) : 1.0;
+    const auto span = block.segment.bounds();
+    if (span.low[i] == span.high[i] || share == 0.0) continue;
+    const Limits& axis = axes[static_cast<std::size_t>(i)].limits;
+    limits.velocity = std::min(limits.velocity, axis.velocity / share);
+    limits.acceleration = std::min(limits.acceleration, axis.acceleration / share);
+    limits.jerk = std::min(limits.jerk, axis.jerk / share);
+  }
+  return limits;
+}
+
+Machine read_machine(const std::string& file) {
+  toml::table root;
+  try {
+    root = toml::parse_file(file);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    if (at.line == 0) throw Failure(Exit::bad_input, fmt::format("{}: {}", file, error.description()));
+    throw Failure(Exit::bad_input,
+                  fmt::format("{}:{}:{}: error: {}", file, at.line, at.column, error.description()));
+  }
+  return interpret(file, root);
+}
+
+}  // namespace simulate

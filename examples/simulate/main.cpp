@@ -1,0 +1,116 @@
+// The reference integration, G-code in, step and direction out: reads a program, plans it, samples it, turns
+// it into step edges, and says what it measured. Its options and outputs are the contract of
+// docs/simulate.md.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/timer/progress_display.hpp>
+#include <iostream>
+#include <memory>
+
+#include "failure.hpp"
+#include "options.hpp"
+#include "output_file.hpp"
+#include "plots.hpp"
+#include "report.hpp"
+#include "run.hpp"
+#include "tables.hpp"
+
+namespace simulate {
+
+namespace {
+
+// Shows on a terminal how far the samples are.
+class Progress {
+ public:
+  Progress(bool wanted, double duration, double period)
+      : stride_(std::max<std::size_t>(1, static_cast<std::size_t>(duration / period) / 50)) {
+    if (wanted && ::isatty(STDERR_FILENO) != 0)
+      bar_ = std::make_unique<boost::timer::progress_display>(
+          static_cast<unsigned long>(duration / period) + 1, std::cerr);
+  }
+  void step() {
+    if (bar_ && ++since_ == stride_) {
+      *bar_ += static_cast<unsigned long>(stride_);
+      since_ = 0;
+    }
+  }
+
+ private:
+  std::unique_ptr<boost::timer::progress_display> bar_;
+  std::size_t stride_;
+  std::size_t since_ = 0;
+};
+
+std::unique_ptr<OutputFile> open(const std::optional<std::string>& path) {
+  return path ? std::make_unique<OutputFile>(*path) : nullptr;
+}
+
+// At most so many points are drawn.
+constexpr std::size_t drawn_points = 20000;
+
+int run(const Options& options) {
+  Machine machine;
+  if (options.machine) machine = read_machine(*options.machine);
+  const Program program = read_program(options.program, machine, options.limits);
+  Measures measures;
+  const Plan plan = make_plan(program, options, measures);
+
+  const auto motions = open(options.motions), blocks = open(options.blocks), samples = open(options.samples),
+             steps = open(options.steps);
+  if (motions) write_motions(motions->stream(), program);
+  if (blocks) write_blocks(blocks->stream(), program, plan);
+  if (samples) write_samples_header(samples->stream());
+
+  Progress progress(!options.quiet, plan.duration, options.period);
+  std::vector<Sample> drawn;
+  const auto every = static_cast<std::size_t>(plan.duration / options.period) / drawn_points + 1;
+  make_samples(program, plan, options, measures, [&](const Sample& sample) {
+    if (samples) write_sample(samples->stream(), program, sample);
+    if (options.plot && (measures.samples % every == 0 || !(sample.time < plan.duration)))
+      drawn.push_back(sample);
+    progress.step();
+  });
+  measure_axes(program, plan, measures);
+
+  if (steps) {
+    std::vector<cncplan::step::Trace> traces;
+    for (const MachineAxis& axis : machine.axes)
+      traces.push_back({std::string(1, axis.letter), axis.pulse_width, 0.0});
+    auto vcd = cncplan::step::vcd_writer(steps->stream(), traces);
+    make_steps(program, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
+      if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
+    });
+    vcd.finish();
+  } else {
+    make_steps(program, plan, options, machine, measures, [](const cncplan::step::Edge&) {});
+  }
+
+  for (OutputFile* file : {motions.get(), blocks.get(), samples.get(), steps.get()})
+    if (file != nullptr) file->commit();
+  if (options.plot) draw(*options.plot, drawn);
+  if (options.json)
+    fmt::print("{}", json_summary(program, plan, options, machine, measures));
+  else if (!options.quiet)
+    fmt::print("{}", table_summary(program, plan, machine, measures));
+  return static_cast<int>(Exit::done);
+}
+
+}  // namespace
+
+}  // namespace simulate
+
+int main(int argc, char** argv) {
+  try {
+    const auto options = simulate::parse_options(argc, argv);
+    return options ? simulate::run(*options) : 0;
+  } catch (const simulate::Failure& failure) {
+    const std::string text = failure.what();
+    fmt::print(stderr, "{}{}\n", text.find(": error: ") == std::string::npos ? "error: " : "", text);
+    return static_cast<int>(failure.code);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return static_cast<int>(simulate::Exit::other);
+  }
+}

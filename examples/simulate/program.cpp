@@ -1,0 +1,90 @@
+#include "program.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <variant>
+
+#include "cncplan/gcode/diagnostic_text.hpp"
+#include "cncplan/gcode/stream_lines.hpp"
+#include "failure.hpp"
+
+namespace simulate {
+
+namespace {
+
+using namespace cncplan;
+
+[[noreturn]] void refuse(const std::string& file, const gcode::Diagnostic& diagnostic) {
+  throw Failure(Exit::bad_input, gcode::to_text(file, diagnostic));
+}
+
+// Turns items into blocks, in order.
+class Builder {
+ public:
+  Builder(const std::string& file, const Machine& machine, const Limits& limits, Program& program)
+      : file_(file), machine_(machine), limits_(limits), program_(program) {}
+
+  void operator()(const gcode::Motion& motion) {
+    auto block = plan::block(motion, limits_, machine_.rapid_rate.value_or(limits_.velocity));
+    if (!block) refuse(file_, {block.error(), motion.line, motion.column, {}});
+    check_travel(*block, motion);
+    block->limits = machine_.limits_along(*block);
+    program_.blocks.push_back(*block);
+    program_.origins.push_back({motion.line, motion.plane, plan::xyz(motion.offset)});
+  }
+  void operator()(const gcode::Dwell& dwell) { last_block(dwell.line).pause += dwell.seconds; }
+  void operator()(const gcode::Stop& stop) { last_block(stop.line).stop_at_end = true; }
+  void operator()(const gcode::Word&) {}  // spindle, coolant, tools: for others to act on, without a stop
+  void operator()(const gcode::Warning& warning) {
+    ++program_.warnings;
+    fmt::print(stderr, "{}\n", gcode::to_text(file_, warning.about, "warning"));
+  }
+
+ private:
+  // A pause before any motion stands on a block of its own, of length zero.
+  plan::Block& last_block(int line) {
+    if (program_.blocks.empty()) {
+      program_.blocks.push_back(
+          {path::Line(Vector3::Zero(), Vector3::Zero()), limits_, junction::Kind::rapid, true, 0.0});
+      program_.origins.push_back({line, Plane::xy, Vector3::Zero()});
+    }
+    return program_.blocks.back();
+  }
+
+  void check_travel(const plan::Block& block, const gcode::Motion& motion) const {
+    const auto bounds = block.segment.bounds();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto& [letter, low, high] = machine_.travel(axis);
+      const double beyond = bounds.low[axis] < low ? bounds.low[axis] : bounds.high[axis];
+      if (bounds.low[axis] >= low && bounds.high[axis] <= high) continue;
+      throw Failure(
+          Exit::bad_input,
+          fmt::format("{}:{}:{}: error: axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}",
+                      file_, motion.line, motion.column, letter, beyond, low, high));
+    }
+  }
+
+  const std::string& file_;
+  const Machine& machine_;
+  const Limits& limits_;
+  Program& program_;
+};
+
+}  // namespace
+
+Program read_program(const std::string& file, const Machine& machine, const Limits& limits) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+  Program program;
+  gcode::Reader reader(machine.dialect);
+  Builder build(file, machine, limits, program);
+  const auto read = gcode::read_program(gcode::StreamLines(stream), reader,
+                                        [&](const gcode::Item& item) { std::visit(build, item); });
+  if (!read) refuse(file, read.error());
+  program.lines = static_cast<std::size_t>(reader.line());
+  return program;
+}
+
+}  // namespace simulate

@@ -1,0 +1,104 @@
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace simulate {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Counts {
+  std::size_t motions = 0;
+  std::size_t arcs = 0;
+};
+
+Counts count(const Program& program) {
+  Counts counts;
+  for (const auto& block : program.blocks) {
+    if (block.segment.length() > 0.0) ++counts.motions;
+    if (block.segment.arc() != nullptr) ++counts.arcs;
+  }
+  return counts;
+}
+
+// An object with one member per axis.
+template <class F>
+Json per_axis(const Machine& machine, F&& value) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    object[std::string(1, machine.axes[i].letter)] = value(i);
+  return object;
+}
+
+}  // namespace
+
+std::string json_summary(const Program& program, const Plan& plan, const Options& options,
+                         const Machine& machine, const Measures& m) {
+  const auto [motions, arcs] = count(program);
+  const auto steps = [&](std::size_t i) -> const auto& { return m.steps[i]; };
+  Json json;
+  json["lines"] = program.lines;
+  json["motions"] = motions;
+  json["arcs"] = arcs;
+  json["length_mm"] = plan.length;
+  json["time_s"] = plan.duration;
+  json["samples"] = m.samples;
+  json["peak"] = {
+      {"velocity", m.peak.velocity}, {"acceleration", m.peak.acceleration}, {"jerk", m.peak.jerk}};
+  json["axis_peak"]["velocity"] =
+      per_axis(machine, [&](std::size_t i) { return m.axis_velocity[static_cast<int>(i)]; });
+  json["axis_peak"]["acceleration"] =
+      per_axis(machine, [&](std::size_t i) { return m.axis_acceleration[static_cast<int>(i)]; });
+  json["corner_velocity_step"] = m.corner_velocity_step;
+  json["end_error_mm"] = m.end_error;
+  json["contour_error_mm"] = m.contour_error;
+  json["junctions_limited"] = m.junctions_limited;
+  json["steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).total_steps; });
+  json["net_steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).net_steps; });
+  json["step_error_max"] =
+      per_axis(machine, [&](std::size_t i) { return steps(i).max_error * machine.axes[i].steps_per_unit; });
+  json["rmse"] = per_axis(machine, [&](std::size_t i) { return steps(i).rms_error; });
+  json["plan_s"] = m.plan_seconds;
+  json["interpolate_s"] = m.interpolate_seconds;
+  json["steps_s"] = m.steps_seconds;
+  json["limits"] = {{"velocity", options.limits.velocity},
+                    {"acceleration", options.limits.acceleration},
+                    {"jerk", options.limits.jerk},
+                    {"period", options.period}};
+  json["warnings"] = program.warnings;
+  return json.dump(2) + "\n";
+}
+
+std::string table_summary(const Program& program, const Plan& plan, const Machine& machine,
+                          const Measures& m) {
+  const auto [motions, arcs] = count(program);
+  std::string text;
+  const auto row = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<28}{}\n", name, value);
+  };
+  row("lines, motions, arcs", fmt::format("{}, {}, {}", program.lines, motions, arcs));
+  row("path length", fmt::format("{:.4f} mm", plan.length));
+  row("time", fmt::format("{:.4f} s, {} samples", plan.duration, m.samples));
+  row("peak along the path", fmt::format("{:.4g} mm/s, {:.4g} mm/s^2, {:.4g} mm/s^3", m.peak.velocity,
+                                         m.peak.acceleration, m.peak.jerk));
+  row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
+  row("joints below their feed", fmt::format("{}", m.junctions_limited));
+  row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
+  row("plan, interpolate, step",
+      fmt::format("{:.4f} s, {:.4f} s, {:.4f} s", m.plan_seconds, m.interpolate_seconds, m.steps_seconds));
+  text += fmt::format("\n{:<6}{:>12}{:>14}{:>12}{:>12}{:>14}{:>14}\n", "axis", "peak mm/s", "peak mm/s^2",
+                      "edges", "net", "error steps", "rmse mm");
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const auto& steps = m.steps[i];
+    const auto axis = static_cast<int>(i);
+    text += fmt::format("{:<6}{:>12.4f}{:>14.3f}{:>12}{:>12}{:>14.4f}{:>14.3g}\n", machine.axes[i].letter,
+                        m.axis_velocity[axis], m.axis_acceleration[axis], steps.total_steps, steps.net_steps,
+                        steps.max_error * machine.axes[i].steps_per_unit, steps.rms_error);
+  }
+  return text;
+}
+
+}  // namespace simulate
