@@ -1,5 +1,5 @@
-// Random profiles over the whole domain, each checked against oracles that share nothing with the solver; prints the
-// worst of each error with the case that caused it. Exit 1 if a bound is broken.
+// Random profiles over the whole domain, each checked against oracles that share nothing with the solver;
+// prints the worst of each error with the case that caused it. Exit 1 if a bound is broken.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@ using namespace cncplan;
 
 struct Quantity {
   const char* name;
-  double test::ProfileErrors::* member;
+  double test::ProfileErrors::*member;
   double bound;
   double worst = -1.0;
   test::ProfileCase where{};
@@ -30,9 +30,12 @@ int main(int argc, char** argv) {
   std::uint64_t count = 1'000'000;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string_view option = argv[i];
-    if (option == "--seed") seed = std::strtoull(argv[i + 1], nullptr, 10);
-    else if (option == "--count") count = static_cast<std::uint64_t>(std::strtod(argv[i + 1], nullptr));
-    else return std::fprintf(stderr, "usage: soak [--seed N] [--count N]\n"), 2;
+    if (option == "--seed")
+      seed = std::strtoull(argv[i + 1], nullptr, 10);
+    else if (option == "--count")
+      count = static_cast<std::uint64_t>(std::strtod(argv[i + 1], nullptr));
+    else
+      return std::fprintf(stderr, "usage: soak [--seed N] [--count N]\n"), 2;
   }
 
   using E = test::ProfileErrors;
@@ -67,7 +70,8 @@ int main(int argc, char** argv) {
       ++solved;
       auto errors = test::examine(c, *profile);
       if (feasible)
-        errors.time_loss = std::abs(static_cast<double>(profile->duration() / test::best_duration(c, seven) - 1));
+        errors.time_loss =
+            std::abs(static_cast<double>(profile->duration() / test::best_duration(c, seven) - 1));
       for (Quantity& q : quantities)
         if (!(errors.*q.member <= q.worst)) q = {q.name, q.member, q.bound, errors.*q.member, c, seven};
     }
@@ -79,8 +83,8 @@ int main(int argc, char** argv) {
   for (const Quantity& q : quantities) {
     const bool within = q.worst <= q.bound;
     held = held && within;
-    std::printf("%-20s worst %-10.3g bound %-8.3g %s  %s %s\n", q.name, q.worst, q.bound, within ? "ok " : "BROKEN",
-                q.seven ? "seven" : "five", q.where.literal().c_str());
+    std::printf("%-20s worst %-10.3g bound %-8.3g %s  %s %s\n", q.name, q.worst, q.bound,
+                within ? "ok " : "BROKEN", q.seven ? "seven" : "five", q.where.literal().c_str());
   }
   return held ? 0 : 1;
 }

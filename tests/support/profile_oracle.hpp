@@ -1,5 +1,5 @@
-// What a profile does, found by integrating its emitted phases in long double, and what it could do at best, found by
-// bisection: oracles that share nothing with the solver.
+// What a profile does, found by integrating its emitted phases in long double, and what it could do at best,
+// found by bisection: oracles that share nothing with the solver.
 #pragma once
 
 #include <algorithm>
@@ -24,14 +24,14 @@ struct ProfileCase {
   /// A literal to paste into a regression test.
   [[nodiscard]] std::string literal() const {
     char text[256];
-    std::snprintf(text, sizeof text, "ProfileCase{%.17g, {%.17g, %.17g}, {%.17g, %.17g, %.17g}}", length, speeds.start,
-                  speeds.end, limits.velocity, limits.acceleration, limits.jerk);
+    std::snprintf(text, sizeof text, "ProfileCase{%.17g, {%.17g, %.17g}, {%.17g, %.17g, %.17g}}", length,
+                  speeds.start, speeds.end, limits.velocity, limits.acceleration, limits.jerk);
     return text;
   }
 };
 
-/// Errors of one profile. Position and speed in units of the machine epsilon times the largest magnitude involved; the
-/// rest relative.
+/// Errors of one profile. Position and speed in units of the machine epsilon times the largest magnitude
+/// involved; the rest relative.
 struct ProfileErrors {
   double end_position{};
   double end_speed{};
@@ -110,29 +110,39 @@ inline ProfileErrors examine(const ProfileCase& c, const profile::Profile& p) {
   return errors;
 }
 
-/// Draws over the whole domain: lengths 1e-9 to 1e6, speeds to 1e4, accelerations 1 to 1e7, jerks 1 to 1e10, with the
-/// corners (equal speeds, rest, already at the top speed, ramps that just fit) drawn often.
+/// Draws over the whole domain: lengths 1e-9 to 1e6, speeds to 1e4, accelerations 1 to 1e7, jerks 1 to 1e10,
+/// with the corners (equal speeds, rest, already at the top speed, ramps that just fit) drawn often.
 inline ProfileCase draw(Random& random) {
   ProfileCase c{};
   c.limits = {random.log_uniform(1e-3, 1e4), random.log_uniform(1.0, 1e7), random.log_uniform(1.0, 1e10)};
   const auto speed = [&] {
     switch (random.integer(0, 5)) {
-      case 0: return 0.0;
-      case 1: return c.limits.velocity;
-      case 2: return c.limits.velocity * random.log_uniform(1e-12, 1.0);
-      case 3: return c.limits.velocity * (1.0 - random.log_uniform(1e-15, 1.0));
-      default: return c.limits.velocity * random.uniform(0.0, 1.0);
+      case 0:
+        return 0.0;
+      case 1:
+        return c.limits.velocity;
+      case 2:
+        return c.limits.velocity * random.log_uniform(1e-12, 1.0);
+      case 3:
+        return c.limits.velocity * (1.0 - random.log_uniform(1e-15, 1.0));
+      default:
+        return c.limits.velocity * random.uniform(0.0, 1.0);
     }
   };
   c.speeds.start = speed();
   switch (random.integer(0, 4)) {
-    case 0: c.speeds.end = c.speeds.start; break;
-    case 1: c.speeds.end = c.speeds.start * (1.0 - random.log_uniform(1e-16, 1e-2)); break;
-    default: c.speeds.end = speed();
+    case 0:
+      c.speeds.end = c.speeds.start;
+      break;
+    case 1:
+      c.speeds.end = c.speeds.start * (1.0 - random.log_uniform(1e-16, 1e-2));
+      break;
+    default:
+      c.speeds.end = speed();
   }
   if (random.coin()) std::swap(c.speeds.start, c.speeds.end);
-  const double direct = static_cast<double>(ramp_distance(c.speeds.start, c.speeds.end, c.limits.acceleration,
-                                                          c.limits.jerk, random.coin()));
+  const double direct = static_cast<double>(
+      ramp_distance(c.speeds.start, c.speeds.end, c.limits.acceleration, c.limits.jerk, random.coin()));
   c.length = random.log_uniform(1e-9, 1e6);
   const double near_direct = direct * (1.0 + random.log_uniform(1e-16, 1e3));
   if (random.integer(0, 3) != 0 && near_direct >= 1e-9 && near_direct <= 1e6) c.length = near_direct;

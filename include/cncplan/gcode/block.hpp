@@ -4,8 +4,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <string_view>
-#include <vector>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
@@ -25,7 +25,7 @@ class Block {
   /// Sorts the words of `line`, from a byte on. Errors: a character that begins no word, a letter without
   /// number or given twice, two codes of one group, a G or M code that is neither known nor passed through.
   Expected<void, Diagnostic> parse(std::string_view line, std::size_t from,
-                                   const std::vector<PassThrough>& pass_through) {
+                                   std::span<const PassThrough> pass_through) {
     clear();
     for (Scanner scanner(line, from);;) {
       const auto word = scanner.next();
@@ -87,7 +87,7 @@ class Block {
     passes_code_ = false;
   }
 
-  Expected<void, Diagnostic> add(const Word& word, const std::vector<PassThrough>& pass_through) {
+  Expected<void, Diagnostic> add(const Word& word, std::span<const PassThrough> pass_through) {
     for (const PassThrough& entry : pass_through)
       if (entry.letter == word.letter && (!entry.number || *entry.number == word.number)) {
         passes_code_ = passes_code_ || word.letter == 'G' || word.letter == 'M';

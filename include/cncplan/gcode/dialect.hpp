@@ -1,4 +1,4 @@
-// What a machine brings to the reading of a program: its axes, tables and words of its own.
+// What a machine brings to the reading of a program: its axes, tables and words of its own (set-up).
 #pragma once
 
 #include <array>
