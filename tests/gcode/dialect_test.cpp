@@ -82,6 +82,8 @@ TEST_CASE("a letter passes through with any number") {
   CHECK(test::read("M98 L2 P100\n", dialect).all<gcode::Word>() ==
         std::vector<gcode::Word>{{'M', 98, 1, 1}, {'L', 2, 1, 5}, {'P', 100, 1, 8}});
   CHECK(test::read("G4 P1 M98 L2\n", dialect).all<gcode::Word>().size() == 2);  // P is G4's
+  CHECK(test::read("M98 X1\n", dialect).error == "1:5: G0, G1, G2 or G3: a required word is missing");
+  CHECK(test::read("M98 G80 X1\n", dialect).error == "1:9: X is used by nothing on this line");
   std::string many;
   for (int i = 0; i < 17; ++i) many += "D1";
   CHECK(test::read(many, dialect).error == "1:33: number of words to pass through is above the limit 16");

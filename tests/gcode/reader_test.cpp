@@ -186,6 +186,17 @@ TEST_CASE("G92 and its kin") {
   CHECK(read("G0 X.1\nG92 X.3\nG0 X.3\n").motions().size() == 1);  // exactly there: nowhere to go
 }
 
+TEST_CASE("a change of offset leaves no motion of a rounding's length") {
+  Dialect dialect;
+  dialect.home_g28 = xyz(0.3, 0, 0);
+  dialect.work_offsets[1] = xyz(0.1, 0, 0);
+  dialect.work_offsets[2] = xyz(0.7, 0, 0);
+  CHECK(read("G28\nG55 G28\nG56 G28\nG92 X.9\nG28\nG92.1\nG54 G28\n", dialect).motions().size() == 1);
+  const auto circle = read("G55 G0 X.6\nG56\nG55 G2 X.6 I1", dialect).motions();
+  REQUIRE(circle.size() == 2);
+  CHECK(circle[1].end == circle[1].start);
+}
+
 TEST_CASE("tool lengths") {
   Dialect dialect;
   dialect.tools = {{1, 20.0}, {2, 30.0}};

@@ -1,9 +1,11 @@
 // Reads G-code line by line: text in, motions and words out.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -185,12 +187,19 @@ class Reader {
                : coordinate / radians_per_degree * radians_per_degree;
   }
 
+  /// An axis of a target. Nearer than the roundings that changes of offset have left is where the axis
+  /// already is: no motion, and the full circle that was meant.
+  [[nodiscard]] double meet(std::size_t axis, double coordinate) const {
+    const double target = nameable(axis, coordinate);
+    return std::abs(target - current_[axis]) <= rounding_[axis] ? current_[axis] : target;
+  }
+
   /// Where the axis words lead, in work coordinates.
   [[nodiscard]] Position target() const {
     Position end = current_;
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (const auto value = coordinate(i))
-        end[i] = modal_.incremental ? nameable(i, current_[i] + *value) : *value;
+        end[i] = meet(i, modal_.incremental ? current_[i] + *value : *value);
     return end;
   }
 
@@ -198,7 +207,7 @@ class Reader {
   [[nodiscard]] Position machine_target() const {
     Position end = current_;
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i)) end[i] = nameable(i, *value - offset_[i]);
+      if (const auto value = coordinate(i)) end[i] = meet(i, *value - offset_[i]);
     return end;
   }
 
@@ -214,6 +223,11 @@ class Reader {
     return motion;
   }
 
+  void arrive(const Position& end) {
+    current_ = end;
+    for (std::size_t i = 0; i < axis_count(); ++i) machine_[i] = end[i] + offset_[i];
+  }
+
   template <class Emit>
   void straight(Code code_of_motion, const Position& end, Emit& emit) {
     if (end == current_) return;
@@ -222,7 +236,7 @@ class Reader {
     if (motion.kind == MotionKind::line) motion.feed = modal_.feed;
     motion.column = block_.first_column(alphabet_.axes);
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
-    current_ = end;
+    arrive(end);
     emit(motion);
   }
 
@@ -247,7 +261,7 @@ class Reader {
       }
       motion.column = block_.first_column(bits("IJK"));
     }
-    current_ = motion.end;
+    arrive(motion.end);
     emit(motion);
   }
 
@@ -258,7 +272,7 @@ class Reader {
     const bool all = (block_.letters() & alphabet_.axes) == 0;
     Position end = current_;
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (all || block_.has(dialect_.axes[i].letter)) end[i] = nameable(i, machine[i] - offset_[i]);
+      if (all || block_.has(dialect_.axes[i].letter)) end[i] = meet(i, machine[i] - offset_[i]);
     straight(code(0), end, emit);
   }
 
@@ -305,15 +319,17 @@ class Reader {
       }
     kept_shift_ = shift_;
     update_offset();
-    current_ = named;  // exactly: the round trip over the machine's coordinates would leave a rounding
+    current_ = named;  // to the last bit
   }
 
   /// The machine stays where it is; the work coordinates of that place change with the offset.
   void update_offset() {
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const double offset = nameable(i, dialect_.work_offsets[work_system_][i] + shift_[i] + tool_[i]);
-      if (offset == offset_[i]) continue;  // not even a rounding
-      current_[i] = current_[i] + offset_[i] - offset;
+      if (offset == offset_[i]) continue;
+      const double scale = std::abs(machine_[i]) + std::abs(offset_[i]) + std::abs(offset);
+      rounding_[i] = std::max(rounding_[i], 8.0 * std::numeric_limits<double>::epsilon() * scale);
+      current_[i] = machine_[i] - offset;
       offset_[i] = offset;
     }
   }
@@ -322,8 +338,10 @@ class Reader {
   Alphabet alphabet_;
   Block block_;
   Modal modal_;
-  Position current_{};
+  Position current_{};  ///< in work coordinates
+  Position machine_{};  ///< what stays when the offset changes
   Position offset_{};
+  Position rounding_{};  ///< what changes of offset may have left; 0 without any
   Position shift_{};
   Position kept_shift_{};
   Position tool_{};

@@ -135,12 +135,13 @@ using Check = Expected<void, Diagnostic>;
   return {};
 }
 
-/// What becomes of words that nothing has used: they go with a passed-through code, or they are errors.
+/// What becomes of words that nothing has used: they go with a passed-through code, or they are errors. Axis
+/// words and feeds are never for others: what moves the machine is read here or refused.
 [[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
   const Letters known = bits("FHIJKNPQST") | alphabet.axes | (alphabet.has_radius ? bit('R') : 0);
   for (char letter = 'A'; letter <= 'Z'; ++letter) {
     if ((unused & bit(letter)) == 0) continue;
-    if (block.passes_code()) {
+    if (block.passes_code() && (bit(letter) & (alphabet.axes | bit('F'))) == 0) {
       if (auto ok = block.pass(letter); !ok) return ok;
     } else if (block.column(letter) ==
                block.first_column(unused)) {  // the first in the text is the one to report

@@ -129,7 +129,7 @@ class Writer {
       if (auto ok = number(motion.end[i], axis); !ok) return ok;
       if (auto ok = number(motion.offset[i], axis); !ok) return ok;
       const double start = motion.start[i] + motion.offset[i];
-      const double here = current_[i] + offset_[i];
+      const double here = machine_[i];
       const double bound = 1e-12 * (1.0 + std::abs(here) + std::abs(offset_[i]) + std::abs(motion.offset[i]));
       if (!(std::abs(start - here) <= bound))
         return tl::unexpected(Error{ErrorCode::discontinuous, axis, start - here, bound});
@@ -175,10 +175,8 @@ class Writer {
   /// everything.
   template <class Out>
   void pass(const Word& word, Pen<Out>& pen) {
-    if (word.letter != 'O') {
-      if (!begun_) begin(pen);
-      if (!line_open_ || word.line == 0 || word.line != word_line_) end_line(pen);
-    }
+    if (word.letter != 'O' && !begun_) begin(pen);
+    if (word.line == 0 || word.line != word_line_) end_line(pen);
     put(pen, name(word.letter), word.number);
     word_line_ = word.line;
   }
@@ -215,6 +213,7 @@ class Writer {
       for (const int axis : {first, second}) put(pen, name(center_letter(axis)), motion.center[axis]);
     if (arc && motion.extra_turns > 0) put(pen, "P", motion.extra_turns + 1);
     current_ = motion.end;
+    for (std::size_t i = 0; i < axis_count(); ++i) machine_[i] = current_[i] + offset_[i];
   }
 
   /// The axis word that reads back to `value` when `base` is added to it.
@@ -234,7 +233,7 @@ class Writer {
     line_open_ = true;
     for (std::size_t i = 0; i < axis_count(); ++i) {
       put_axis(i, offset[i], dialect_.work_offsets[work_system_][i], pen);
-      if (offset[i] != offset_[i]) current_[i] = current_[i] + offset_[i] - offset[i];
+      if (offset[i] != offset_[i]) current_[i] = machine_[i] - offset[i];
     }
     offset_ = offset;
     end_line(pen);
@@ -264,6 +263,7 @@ class Writer {
   Dialect dialect_;
   Modal modal_;
   Position current_{};
+  Position machine_{};
   Position offset_{};
   std::size_t work_system_{};
   int word_line_{};

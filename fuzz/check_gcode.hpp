@@ -1,0 +1,119 @@
+// What must hold for any bytes that are read as G-code.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "cncplan/gcode/diagnostic_text.hpp"
+#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/writer.hpp"
+
+namespace cncplan::fuzz {
+
+inline void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "does not hold: %s\n", what);
+  std::abort();
+}
+
+/// Dialects that between them take every branch: a mill, a mill with rotary axes, tables and offsets, and a
+/// machine whose R is an axis. The first byte of the input chooses.
+inline const std::array<gcode::Dialect, 3>& dialects() {
+  static const std::array<gcode::Dialect, 3> all = [] {
+    using gcode::AxisKind;
+    std::array<gcode::Dialect, 3> made;
+    made[1].axes.push_back({'A', AxisKind::rotary});
+    made[1].axes.push_back({'R', AxisKind::linear});
+    made[1].tools = {{1, 12.5}, {2, -3.0}};
+    made[1].home_g28 = {1.0, 2.0, 3.0};
+    for (std::size_t i = 1; i < made[1].work_offsets.size(); ++i)
+      made[1].work_offsets[i] = {0.1 * static_cast<double>(i), 7.0, -0.3, 0.5};
+    made[1].block_delete = false;
+    made[2].axes = {
+        {'R', AxisKind::linear}, {'Z', AxisKind::linear}, {'A', AxisKind::rotary}, {'C', AxisKind::rotary}};
+    made[2].pass_through = {{'G', 251.0}, {'G', 8.0}, {'G', 5.0}, {'D', {}}, {'O', {}}};
+    return made;
+  }();
+  return all;
+}
+
+/// A motion without its place in the text.
+inline gcode::Motion placeless(gcode::Motion motion) {
+  motion.line = motion.column = 0;
+  return motion;
+}
+
+inline bool finite(const gcode::Motion& motion) {
+  for (const auto& place : {motion.start, motion.end, motion.offset})
+    for (const double coordinate : place)
+      if (!std::isfinite(coordinate)) return false;
+  return motion.center.allFinite() && std::isfinite(motion.radius) &&
+         std::isfinite(motion.feed.value_or(0.0));
+}
+
+/// Reads the bytes line by line: no more items on a line than promised, every number finite, motions joined
+/// end to start, every error within its line and with a sentence. What was read can be written and read
+/// again, to the same motions bit for bit as long as the offset does not change.
+inline void check_gcode(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const gcode::Dialect& dialect = dialects()[static_cast<unsigned char>(bytes[0]) % dialects().size()];
+  gcode::Reader reader(dialect);
+  gcode::TextLines lines(bytes.substr(1));
+  std::array<gcode::Item, gcode::max_items_per_line> items;
+  std::vector<gcode::Item> all;
+  gcode::Position place{};
+  bool offset_changes = false;
+  while (const auto line = lines.next()) {
+    const auto end = reader.read_line(*line, items.begin());
+    if (!end) {
+      require(end.error().line == reader.line(), "an error is on its line");
+      require(end.error().column >= 1 && end.error().column <= static_cast<int>(line->size()) + 1,
+              "an error is within its line");
+      require(!gcode::to_text(end.error()).empty(), "an error has a sentence");
+      continue;  // a line in error changes nothing: the rest is read as if it were not there
+    }
+    offset_changes = offset_changes || reader.offset() != gcode::Position{};
+    for (auto item = items.begin(); item != *end; ++item) {
+      if (const auto* motion = std::get_if<gcode::Motion>(&*item)) {
+        require(finite(*motion), "numbers are finite");
+        require(offset_changes || place == motion->start, "motions begin where the last ended");
+        place = motion->end;
+      }
+      all.push_back(*item);
+    }
+  }
+
+  std::string text;
+  gcode::Writer writer(dialect);
+  for (const auto& item : all)
+    if (!writer.write(item, std::back_inserter(text))) return;  // beyond the numbers that a text may have
+  writer.finish(std::back_inserter(text));
+  std::vector<gcode::Motion> again;
+  gcode::Reader second(dialect);
+  for (gcode::TextLines written(text); const auto line = written.next();) {
+    if (line->size() > gcode::max_line_length) return;  // hundreds of noughts behind the point
+    const auto end = second.read_line(*line, items.begin());
+    require(end.has_value(), "what is written reads");
+    for (auto item = items.begin(); item != *end; ++item)
+      if (const auto* motion = std::get_if<gcode::Motion>(&*item)) again.push_back(*motion);
+  }
+  if (offset_changes) return;  // it may round the start of the next motion
+  std::size_t at = 0;
+  for (const auto& item : all) {
+    const auto* motion = std::get_if<gcode::Motion>(&item);
+    if (motion == nullptr) continue;
+    require(at < again.size(), "as many motions are read as written");
+    require(placeless(*motion) == placeless(again[at]), "motions read as they were written");
+    ++at;
+  }
+  require(at == again.size(), "no motion is read that was not written");
+}
+
+}  // namespace cncplan::fuzz
