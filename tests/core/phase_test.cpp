@@ -1,8 +1,11 @@
 // The inverse of a constant-jerk phase against long double bisection.
 #include "cncplan/core/phase.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -88,4 +91,35 @@ TEST_CASE("a phase whose acceleration changes sign is still inverted") {
     const double where = phase.at(tau).position;
     REQUIRE(std::abs(phase.tau_at(where) - tau) < 1e-14);
   }
+}
+
+TEMPLATE_TEST_CASE("many positions at once are inverted as one by one", "", float, double) {
+  using S = TestType;
+  test::Random random;
+  const S eps = std::numeric_limits<S>::epsilon();
+  S worst = 0;
+  BasicPhase<S> worst_phase;
+  for (int i = 0; i < 20000; ++i) {
+    BasicPhase<S> phase = random_phase<S>(random);
+    phase.position = S(0);
+    const BasicState<S> end = phase.at(phase.duration);
+    if (!(end.position > S(0)) || phase.velocity < S(0) || end.velocity < S(0)) continue;
+    // A stretch anywhere, reaching beyond the phase at times; guessed from its start.
+    std::array<S, 50> where;
+    const S from = S(random.uniform(-0.1, 1.0)) * end.position;
+    const S width = S(random.log_uniform(1e-6, 1.0)) * end.position;
+    for (std::size_t k = 0; k < where.size(); ++k) where[k] = from + width * S(k) / S(50);
+    std::array<S, 50> taus = where;
+    phase.inverse().tau_at(std::span<S>(taus), phase.tau_at(from));
+    for (std::size_t k = 0; k < where.size(); ++k) {
+      const S tau = phase.tau_at(where[k]);
+      // Where the phase starts or ends at rest, both may be off by what rounding of the position takes there.
+      const S speed = phase.at(std::min(tau, taus[k])).velocity;
+      const S error = std::abs(taus[k] - tau) * speed / (end.position + phase.duration * speed) / eps;
+      if (!(error <= worst)) worst = error, worst_phase = phase;
+    }
+  }
+  CAPTURE(test::seed(), worst_phase.duration, worst_phase.velocity, worst_phase.acceleration,
+          worst_phase.jerk);
+  CHECK(worst < S(4));
 }

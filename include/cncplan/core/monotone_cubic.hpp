@@ -1,11 +1,15 @@
 // The inverse of a distance that grows as a cubic of time: how planned motion is turned round into times.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace cncplan {
 
@@ -35,8 +39,6 @@ struct MonotoneCubic {
     if (!(target < distance(duration))) return duration;
     if (jerk == S(0)) return quadratic_root(target);
     constexpr int rounds = 2 * std::numeric_limits<S>::digits;
-    constexpr S last_correction =
-        S(1) / static_cast<S>(std::int64_t{1} << std::numeric_limits<S>::digits / 2);
     S low = S(0), high = duration, x = guess;
     for (int round = 0; round < rounds; ++round) {
       const S excess = distance(x) - target;
@@ -57,7 +59,54 @@ struct MonotoneCubic {
     return x;
   }
 
+  /// `solve` for each of `targets` in place, from one guess near them all. The rounds are those of `solve`,
+  /// for all at once and without branches, so that they are vectorised; what two of them leave open is solved
+  /// one by one.
+  void solve_all(std::span<S> targets, S guess) const {
+    constexpr std::size_t chunk = 32;
+    for (; targets.size() > chunk; targets = targets.subspan(chunk)) solve_all(targets.first(chunk), guess);
+    if (jerk == S(0)) {
+      for (S& target : targets) target = target > S(0) ? quadratic_root(target) : S(0);
+      return;
+    }
+    const S half_jerk = jerk / S(2);
+    const S third = S(1) / S(3);
+    const std::size_t count = targets.size();
+    std::array<S, chunk> x, excess, slope, root;
+    std::fill_n(x.begin(), count, guess);
+    std::int64_t open = 1;
+    for (int round = 0; round < 3 && open > 0; ++round) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const S bend = acceleration + x[i] * jerk;
+        excess[i] = distance(x[i]) - targets[i];
+        slope[i] = velocity + x[i] * (acceleration + x[i] * half_jerk);
+        root[i] = slope[i] * slope[i] - S(2) * bend * excess[i];
+      }
+      Eigen::Map<Eigen::Array<S, Eigen::Dynamic, 1>> roots(root.data(), static_cast<Eigen::Index>(count));
+      roots = roots.max(S(0)).sqrt();
+      open = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const S step = S(-2) * excess[i] / (slope[i] + root[i]);
+        const S cube = half_jerk * step * step;
+        const S correction = third * cube * step / (root[i] + cube);
+        const S next = x[i] + (step - correction);
+        const bool last = next > S(0) && next < duration && std::abs(correction) <= last_correction * next;
+        open += last ? 0 : 1;
+        x[i] = next;
+      }
+    }
+    const S total = distance(duration);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool inside = targets[i] > S(0) && targets[i] < total && open == 0;
+      targets[i] = inside ? x[i] : solve(targets[i]);
+    }
+  }
+
  private:
+  // Corrections below this part of x leave an error below rounding.
+  static constexpr S last_correction =
+      S(1) / static_cast<S>(std::int64_t{1} << std::numeric_limits<S>::digits / 2);
+
   [[nodiscard]] S quadratic_root(S target) const {
     if (acceleration == S(0)) return std::min(target / velocity, duration);
     const S square = velocity * velocity + S(2) * acceleration * target;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <span>
 
 #include "cncplan/core/monotone_cubic.hpp"
 #include "cncplan/core/state.hpp"
@@ -18,9 +19,12 @@ struct PhaseInverse {
 
   [[nodiscard]] S tau_at(S where) const { return tau + sense * cubic.solve(sense * (where - position)); }
 
-  /// The same, from a guess in [0, duration]: one round where the guess is a step away.
-  [[nodiscard]] S tau_at(S where, S guess) const {
-    return tau + sense * cubic.solve(sense * (where - position), sense * (guess - tau));
+  /// The same for each of many positions near each other, in place, from a guess in [0, duration] near them
+  /// all.
+  void tau_at(std::span<S> positions, S guess) const {
+    for (S& where : positions) where = sense * (where - position);
+    cubic.solve_all(positions, sense * (guess - tau));
+    for (S& x : positions) x = tau + sense * x;
   }
 };
 

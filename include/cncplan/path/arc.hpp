@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <span>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/path/arc_axis.hpp"
 #include "cncplan/path/box.hpp"
+#include "cncplan/path/circle_crossings.hpp"
 #include "cncplan/path/plane.hpp"
 #include "cncplan/path/spiral.hpp"
 
@@ -145,6 +147,13 @@ class BasicArc {
     if (axis == axes(plane_).third)
       return spiral_.rise == S(0) ? low : std::clamp((value - start_(axis)) / spiral_.rise, low, high);
     return in_plane(axis).crossing(value, low, high);
+  }
+
+  /// `crossing` for each of `values`, in place.
+  void crossings(int axis, std::span<S> values, S low, S high) const {
+    if (axis != axes(plane_).third && is_circular())
+      return circle_crossings(in_plane(axis), values, low, high);
+    for (S& value : values) value = crossing(axis, value, low, high);
   }
 
   /// The box that the arc touches on all sides. The radius is monotone, so the first and the last two

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/path/box.hpp"
@@ -55,6 +56,11 @@ class BasicLine {
   [[nodiscard]] S crossing(int axis, S value, S low, S high) const {
     if (direction_(axis) == S(0)) return low;
     return std::clamp((value - start_(axis)) / direction_(axis), low, high);
+  }
+
+  /// `crossing` for each of `values`, in place.
+  void crossings(int axis, std::span<S> values, S low, S high) const {
+    for (S& value : values) value = crossing(axis, value, low, high);
   }
 
   [[nodiscard]] BasicBox<S> bounds() const { return {start_.cwiseMin(end_), start_.cwiseMax(end_)}; }

@@ -1,6 +1,7 @@
 // One piece of a tool path: a line or an arc, as a value.
 #pragma once
 
+#include <span>
 #include <variant>
 
 #include "cncplan/path/arc.hpp"
@@ -76,6 +77,9 @@ class BasicSegment {
   }
   [[nodiscard]] S crossing(int axis, S value, S low, S high) const {
     return visit([=](const auto& p) { return p.crossing(axis, value, low, high); });
+  }
+  void crossings(int axis, std::span<S> values, S low, S high) const {
+    visit([=](const auto& p) { p.crossings(axis, values, low, high); });
   }
   [[nodiscard]] BasicBox<S> bounds() const {
     return visit([](const auto& p) { return p.bounds(); });

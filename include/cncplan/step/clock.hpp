@@ -1,8 +1,11 @@
 // Times along a block: when the planned motion reaches a given length of path.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
@@ -10,11 +13,11 @@
 
 namespace cncplan::step {
 
-/// Tells the time at which a path length is reached, for lengths asked in ascending order.
+/// Turns path lengths, ascending from call to call, into the times at which they are reached, in place.
 template <class C>
-concept Clock = requires(C& clock, typename C::Scalar s) {
-  requires std::floating_point<typename C::Scalar>;
-  { clock.time_at(s) } -> std::same_as<typename C::Scalar>;
+concept Clock = std::floating_point<typename C::Scalar> &&
+    requires(C& clock, std::span<typename C::Scalar> lengths) {
+  clock.lengths_to_times(lengths);
 };
 
 /// Walks along the constant-jerk phases of a profile; each time is found from the one before it. The phases
@@ -30,15 +33,21 @@ class PhaseClock {
     if (!phases_.empty()) enter(0);
   }
 
-  /// Time at which the block's length s is reached: the first such time where motion rests. Lengths that
-  /// rounding puts outside the phases fall on their ends.
-  [[nodiscard]] S time_at(S s) {
-    if (phases_.empty()) return start_;
-    const S where = origin_ + s;
-    while (index_ + 1 < phases_.size() && where > phases_[index_ + 1].position) enter(index_ + 1);
-    tau_ = fresh_ ? inverse_.tau_at(where) : inverse_.tau_at(where, tau_);
-    fresh_ = false;
-    return start_ + (phases_[index_].time + tau_);
+  /// The first times at which the motion is there. Lengths that rounding puts outside the phases fall on
+  /// their ends.
+  void lengths_to_times(std::span<S> lengths) {
+    while (!lengths.empty()) {
+      if (phases_.empty()) return std::fill(lengths.begin(), lengths.end(), start_);
+      while (index_ + 1 < phases_.size() && origin_ + lengths.front() > phases_[index_ + 1].position)
+        enter(index_ + 1);
+      const S end =
+          index_ + 1 < phases_.size() ? phases_[index_ + 1].position : std::numeric_limits<S>::infinity();
+      const auto behind =
+          std::find_if(lengths.begin(), lengths.end(), [&](S s) { return origin_ + s > end; });
+      const auto count = static_cast<std::size_t>(behind - lengths.begin());
+      within_phase(lengths.first(count));
+      lengths = lengths.subspan(count);
+    }
   }
 
  private:
@@ -46,6 +55,15 @@ class PhaseClock {
     index_ = index;
     inverse_ = phases_[index].inverse();
     fresh_ = true;
+  }
+
+  void within_phase(std::span<S> lengths) {
+    for (S& s : lengths) s += origin_;
+    if (fresh_) tau_ = inverse_.tau_at(lengths.front());
+    fresh_ = false;
+    inverse_.tau_at(lengths, tau_);
+    tau_ = lengths.back();
+    for (S& tau : lengths) tau = start_ + (phases_[index_].time + tau);
   }
 
   std::span<const BasicPhase<S>> phases_;
@@ -72,7 +90,9 @@ class ProfileClock {
 
   explicit ProfileClock(const F& profile, Scalar start = Scalar(0)) : profile_(&profile), start_(start) {}
 
-  [[nodiscard]] Scalar time_at(Scalar s) const { return start_ + profile_->time_at(s); }
+  void lengths_to_times(std::span<Scalar> lengths) const {
+    for (Scalar& value : lengths) value = start_ + profile_->time_at(value);
+  }
 
  private:
   const F* profile_;

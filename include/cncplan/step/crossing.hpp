@@ -2,11 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/step/clock.hpp"
@@ -57,24 +60,47 @@ class StepCursor {
         parameter_end_(path.parameter_end()),
         target_(steps_at(Scalar(0))) {}
 
-  /// The next edge, until the block's end. Loops only over pieces too short for an edge.
+  /// The next edge, until the block's end.
   [[nodiscard]] std::optional<BasicEdge<Scalar>> next() {
-    while (left_ == 0)
-      if (!open_piece()) return std::nullopt;
-    --left_;
-    const Scalar boundary = static_cast<Scalar>(count_) + half_step_;
+    if (taken_ == ready_ && !refill()) return std::nullopt;
     count_ += direction_;
-    const bool behind = static_cast<Scalar>(direction_) * (boundary - origin_) <= Scalar(0);
-    if (!behind) parameter_ = path_->crossing(axis_, boundary / steps_per_unit_, parameter_, piece_end_);
-    time_ = std::max(time_, clock_.time_at(path_->length_at(parameter_)));
-    return BasicEdge<Scalar>{time_, axis_, direction_};
+    return BasicEdge<Scalar>{times_[taken_++], axis_, direction_};
   }
 
   /// Steps taken, those before the block included.
   [[nodiscard]] std::int64_t count() const { return count_; }
 
  private:
+  static constexpr int batch = 32;
+
   [[nodiscard]] Scalar steps_at(Scalar u) const { return path_->position(u)(axis_) * steps_per_unit_; }
+
+  // Solves for a batch of edges of one piece at a time: independent of each other, they overlap in the
+  // processor. Loops only over pieces too short for an edge.
+  [[nodiscard]] bool refill() {
+    while (left_ == 0)
+      if (!open_piece()) return false;
+    const Scalar low = parameter_;
+    taken_ = 0;
+    ready_ = static_cast<std::size_t>(std::min<std::int64_t>(left_, batch));
+    left_ -= static_cast<std::int64_t>(ready_);
+    const Scalar forward = static_cast<Scalar>(direction_);
+    const Scalar first = static_cast<Scalar>(count_) + forward / Scalar(2);
+    const std::span<Scalar> edges(times_.data(), ready_);
+    for (std::size_t i = 0; i < ready_; ++i) {
+      const Scalar boundary = first + forward * static_cast<Scalar>(static_cast<int>(i));
+      edges[i] = boundary / steps_per_unit_;
+    }
+    std::span<Scalar> ahead = edges;
+    while (!ahead.empty() && forward * (ahead.front() * steps_per_unit_ - origin_) <= Scalar(0)) {
+      ahead.front() = path_->length_at(low);
+      ahead = ahead.subspan(1);
+    }
+    find_crossings(ahead, low);
+    clock_.lengths_to_times(edges);
+    for (Scalar& time : edges) time_ = time = std::max(time_, time);
+    return true;
+  }
 
   // Goes on to the next stretch between turnings; false behind the last.
   [[nodiscard]] bool open_piece() {
@@ -85,7 +111,6 @@ class StepCursor {
     origin_ = target_;
     target_ = steps_at(piece_end_);
     direction_ = target_ < origin_ ? -1 : 1;
-    half_step_ = static_cast<Scalar>(direction_) / Scalar(2);
     // An extremum within rounding of a boundary touches it. At the block's end nothing is rounded away.
     constexpr Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon();
     const Scalar slack =
@@ -95,19 +120,32 @@ class StepCursor {
     return true;
   }
 
+  // Positions to lengths, in place; by the path's own way for many if it has one.
+  void find_crossings(std::span<Scalar> values, Scalar low) {
+    if (values.empty()) return;
+    if constexpr (requires { path_->crossings(axis_, values, low, piece_end_); })
+      path_->crossings(axis_, values, low, piece_end_);
+    else
+      for (Scalar& value : values) value = path_->crossing(axis_, value, low, piece_end_);
+    parameter_ = values.back();
+    for (Scalar& value : values) value = path_->length_at(value);
+  }
+
   const P* path_;
   C clock_;
   int axis_;
   int direction_ = 1;
   Scalar steps_per_unit_;
-  Scalar half_step_{};
   std::int64_t count_;
-  std::int64_t left_ = 0;  // edges before the next turning
+  std::int64_t left_ = 0;  // edges before the next turning, those in the batch not counted
   Scalar parameter_end_;
   Scalar parameter_{};  // of the last edge, or where the piece starts
   Scalar piece_end_{};
   Scalar origin_{};  // steps, where the piece starts
   Scalar target_;    // steps, where it ends
+  std::array<Scalar, batch> times_{};
+  std::size_t taken_ = 0;
+  std::size_t ready_ = 0;
   Scalar time_ = -std::numeric_limits<Scalar>::infinity();
 };
 

@@ -27,8 +27,12 @@ class Merge {
 
   [[nodiscard]] std::optional<BasicEdge<Scalar>> next() {
     std::size_t first = 0;
-    for (std::size_t i = 1; i < N; ++i)
-      if (pending_[i].time < pending_[first].time) first = i;
+    Scalar time = pending_[0].time;
+    for (std::size_t i = 1; i < N; ++i) {
+      const bool earlier = pending_[i].time < time;
+      first = earlier ? i : first;
+      time = earlier ? pending_[i].time : time;
+    }
     const BasicEdge<Scalar> edge = pending_[first];
     if (edge.direction == 0) return std::nullopt;
     pull(first);
