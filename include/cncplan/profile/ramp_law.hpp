@@ -45,7 +45,7 @@ struct BasicRampLaw {
   [[nodiscard]] constexpr BasicRamp<S> ramp(S root, S sign) const {
     if (root <= root_break) {
       const S time = root * inverse_root_jerk;
-      return {time, S(0), time, sign * root * root_jerk, sign * jerk};
+      return {time, S(0), time, sign * jerk * time, sign * jerk};
     }
     const S full = root * root / acceleration;
     if (!holds) return {full, S(0), full, sign * acceleration, sign * acceleration / full};
@@ -62,8 +62,9 @@ template <std::floating_point S>
   const S inverse = smooth ? S(1) / root : S(0);
   const S root_break =
       std::isfinite(limits.acceleration) ? limits.acceleration * inverse : limits.acceleration;
-  return {smooth ? limits.jerk : S(0), root, inverse, limits.acceleration, root_break,
-          S(1) / limits.acceleration,  S(0), false};
+  // J to within rounding, such that the rounded times and speeds of a ramp belong together.
+  const S jerk = smooth ? S(1) / (inverse * inverse) : S(0);
+  return {jerk, root, inverse, limits.acceleration, root_break, S(1) / limits.acceleration, S(0), false};
 }
 
 /// The law of the time-optimal ramp between rest accelerations.
@@ -71,7 +72,8 @@ template <std::floating_point S>
 [[nodiscard]] BasicRampLaw<S> seven_phase_law(const BasicLimits<S>& limits) {
   BasicRampLaw<S> law = five_phase_law(limits);
   law.slope /= S(2);
-  law.offset = std::isfinite(law.root_break) ? law.root_break * law.inverse_root_jerk / S(2) : S(0);
+  const bool bound = std::isfinite(limits.acceleration) && law.jerk > S(0);
+  law.offset = bound ? limits.acceleration / law.jerk / S(2) : S(0);
   law.holds = true;
   return law;
 }

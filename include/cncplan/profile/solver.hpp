@@ -51,24 +51,18 @@ class BasicSolver {
     const S room_below = std::sqrt(velocity_limit_ - low);
     const S ramps = (high + velocity_limit_) * law_.half_duration(room_above) +
                     (low + velocity_limit_) * law_.half_duration(room_below);
-    if (ramps <= length)
-      return assemble(length, speeds, {room_above, room_below}, velocity_limit_,
-                      (length - ramps) / velocity_limit_);
+    if (ramps <= length) return assemble(length, speeds, {room_above, room_below});
 
     const S direct = (high + low) * law_.half_duration(root_d);
-    constexpr S rounding = S(4) * std::numeric_limits<S>::epsilon();
+    constexpr S rounding = S(2) * std::numeric_limits<S>::epsilon();
     if (!(direct <= length)) {
       if (direct > length + rounding * length) return unreachable(length, speeds);
-      return assemble(length, speeds, {S(0), root_d}, high, S(0));
+      return assemble(length, speeds, {S(0), root_d});
     }
     if (length == S(0))
       return BasicProfile<S>(
           {.length = S(0), .start_velocity = start, .top_velocity = start, .end_velocity = end});
-    const auto peak = peak_between(law_, high, low, root_d, length, room_above);
-    const S top = high + peak.from_high * peak.from_high;
-    const S covered =
-        (high + top) * law_.half_duration(peak.from_high) + (low + top) * law_.half_duration(peak.from_low);
-    return assemble(length, speeds, peak, top, std::max((length - covered) / top, S(0)));
+    return assemble(length, speeds, peak_between(law_, high, low, root_d, length, room_above));
   }
 
   /// The highest speed to which the motion can change from `start` within `length` (both >= 0), or from which
@@ -84,17 +78,26 @@ class BasicSolver {
   }
 
  private:
-  BasicProfile<S> assemble(S length, const BasicBoundarySpeeds<S>& speeds, const detail::Peak<S>& peak, S top,
-                           S cruise) const {
+  // The rest of the length is a cruise, reckoned with the ramps as they are rounded, so that all phases
+  // together end where they should.
+  Expected<BasicProfile<S>> assemble(S length, const BasicBoundarySpeeds<S>& speeds,
+                                     const detail::Peak<S>& peak) const {
     const bool rising = speeds.start <= speeds.end;
+    const BasicRamp<S> up = law_.ramp(rising ? peak.from_low : peak.from_high, S(1));
+    const BasicRamp<S> down = law_.ramp(rising ? peak.from_high : peak.from_low, S(-1));
+    const S gain = up.acceleration * (up.first + up.hold);
+    const S loss = down.acceleration * (down.first + down.hold);
+    const S top = speeds.start + gain;
+    const S covered = (speeds.start + top) * (up.first + up.hold / S(2)) +
+                      (top + top + loss) * (down.first + down.hold / S(2));
     return BasicProfile<S>({.length = length,
                             .start_velocity = speeds.start,
                             .start_acceleration = S(0),
                             .top_velocity = top,
                             .end_velocity = speeds.end,
-                            .cruise = cruise,
-                            .up = law_.ramp(rising ? peak.from_low : peak.from_high, S(1)),
-                            .down = law_.ramp(rising ? peak.from_high : peak.from_low, S(-1))});
+                            .cruise = std::max((length - covered) / top, S(0)),
+                            .up = up,
+                            .down = down});
   }
 
   [[nodiscard]] Expected<BasicProfile<S>> refuse(S length, const BasicBoundarySpeeds<S>& speeds) const {
