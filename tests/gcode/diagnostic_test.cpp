@@ -13,7 +13,7 @@ TEST_CASE("diagnostics are sentences") {
   CHECK(text({ErrorCode::not_supported, "G", 92.4, 0}) == "G92.4 is not supported");
   CHECK(text({ErrorCode::not_supported, "E", 5, 0}) == "E is not supported");
   CHECK(text({ErrorCode::conflicting_words, "G", 3, 2}, "G") == "G3: words exclude each other (G2)");
-  CHECK(text({ErrorCode::above_limit, "P", 1e7, 1e6}) == "P is above the limit 1e+06");
+  CHECK(text({ErrorCode::above_limit, "P", 1e7, 1e6}) == "P is above the limit 1000000");
   CHECK(text({ErrorCode::missing_number, "X", 0, 0}) == "X has no number");
   CHECK(to_text("a.nc", {{ErrorCode::not_positive, "F", 0, 0}, 3, 8}) ==
         "a.nc:3:8: error: F must be greater than zero");

@@ -74,6 +74,45 @@ TEST_CASE("real programs yield LinuxCNC's motions") {
   }
 }
 
+TEST_CASE("arc blocks are taken or refused as LinuxCNC does, as far as their words go") {
+  const auto folder = test::shared();
+  if (!folder) {
+    WARN("SKIPPED: CNCPLAN_SHARED is not set");
+    return;
+  }
+  std::ifstream stream(*folder + "/data/arc_errors_linuxcnc.csv");
+  std::string row;
+  std::getline(stream, row);
+  int words = 0;
+  int geometry = 0;
+  while (std::getline(stream, row)) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : row) {
+      if (c == '"') {
+        quoted = !quoted;
+      } else if (c == ',' && !quoted) {
+        cells.emplace_back();
+      } else {
+        cells.back() += c;
+      }
+    }
+    REQUIRE(cells.size() == 4);
+    std::string block = cells[1];
+    if (const std::size_t at = block.find("\\n"); at != std::string::npos)
+      block = block.substr(0, at) + '\n' + block.substr(at + 2);
+    bool accepted = cells[2] == "1";
+    for (const char* about_geometry :
+         {"Current point same", "Arc radius too small", "Radius to end", "Zero-radius"})
+      if (cells[3].find(about_geometry) != std::string::npos) accepted = true;  // for path/ to refuse
+    ++(accepted ? geometry : words);
+    INFO(row);
+    CHECK(test::read("G21 G90 G17 G91.1 G94 F100\n" + block).error.empty() == accepted);
+  }
+  CHECK(words == 19);
+  CHECK(geometry == 15);
+}
+
 TEST_CASE("a sink may end the reading") {
   gcode::Reader reader;
   int seen = 0;

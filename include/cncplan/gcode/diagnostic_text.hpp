@@ -14,8 +14,11 @@ namespace detail {
 
 inline std::string number_text(double number) {
   std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  return {digits.data(), end};
+  const double size = number < 0.0 ? -number : number;
+  const auto format =
+      size == 0.0 || (size > 1e-4 && size < 1e9) ? std::chars_format::fixed : std::chars_format::general;
+  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number, format).ptr;
+  return std::string(digits.data(), end);
 }
 
 /// A code is known by its number (G41), any other word by its letter.
@@ -35,7 +38,8 @@ inline std::string word_text(std::string_view letter, double number) {
   std::string text = detail::word_text(error.field, error.value);
   text += has_verb ? " " : ": ";
   text += sentence;
-  if (error.code == ErrorCode::above_limit) text += ' ' + detail::number_text(error.bound);
+  if (error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit)
+    text += ' ' + detail::number_text(error.bound);
   if (!diagnostic.other.empty()) text += " (" + detail::word_text(diagnostic.other, error.bound) + ')';
   return text;
 }
