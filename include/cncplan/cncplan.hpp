@@ -39,6 +39,7 @@
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
 #include "cncplan/path/box.hpp"
+#include "cncplan/path/circle_crossings.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/plane.hpp"
 #include "cncplan/path/published_selection.hpp"
