@@ -33,6 +33,7 @@ enum class ErrorCode : std::uint8_t {
   line_too_long,
   ignored,
   discontinuous,
+  malformed,
   count_,  // number of codes
 };
 
@@ -61,6 +62,7 @@ enum class ErrorCode : std::uint8_t {
       "the line is too long",
       "is ignored",
       "does not begin where the last one ended",
+      "does not have its documented form",
   };
   return table[static_cast<std::size_t>(code)];
 }
