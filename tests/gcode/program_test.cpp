@@ -74,6 +74,41 @@ TEST_CASE("real programs yield LinuxCNC's motions") {
   }
 }
 
+TEST_CASE("arcs in inches, increments, absolute centres and turns end where LinuxCNC's do") {
+  const auto folder = test::shared();
+  if (!folder) {
+    WARN("SKIPPED: CNCPLAN_SHARED is not set");
+    return;
+  }
+  std::ifstream stream(*folder + "/data/arcs_linuxcnc_extra.csv");
+  std::string row;
+  std::getline(stream, row);
+  int rows = 0;
+  int by_center = 0;
+  while (std::getline(stream, row)) {
+    std::vector<std::string> cells;
+    std::istringstream line(row);
+    for (std::string cell; std::getline(line, cell, ',');) cells.push_back(cell);
+    REQUIRE(cells.size() == 22);
+    INFO(row);
+    const bool inches = cells[4] == "inch";
+    const auto number = [&](std::size_t cell) { return std::stod(cells[cell]) * (inches ? 25.4 : 1.0); };
+    const auto reading = test::read(std::string(inches ? "G20" : "G21") + " G90 G0 X" + cells[9] + " Y" +
+                                    cells[10] + " Z" + cells[11] + '\n' + cells[12] + '\n' + cells[13]);
+    REQUIRE(reading.error == "");
+    const gcode::Motion arc = reading.motions().back();
+    ++rows;
+    CHECK((point(arc.end) - Vector3(number(18), number(19), number(20))).norm() < 1e-9);
+    CHECK(sign(arc.turn) * (arc.extra_turns + 1) == std::stoi(cells[17]));
+    CHECK(arc.plane == (cells[1] == "17" ? Plane::xy : cells[1] == "18" ? Plane::zx : Plane::yz));
+    if (arc.kind != MotionKind::arc_center) continue;
+    ++by_center;
+    CHECK((arc.center - Vector3(number(14), number(15), number(16))).norm() < 1e-9);
+  }
+  CHECK(rows == 100);
+  CHECK(by_center > 30);
+}
+
 TEST_CASE("arc blocks are taken or refused as LinuxCNC does, as far as their words go") {
   const auto folder = test::shared();
   if (!folder) {
