@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/timer/progress_display.hpp>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 
@@ -47,6 +49,28 @@ std::unique_ptr<OutputFile> open(const std::optional<std::string>& path) {
   return path ? std::make_unique<OutputFile>(*path) : nullptr;
 }
 
+void print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+    throw Failure(Exit::other, "standard output cannot be written");
+}
+
+// Refuses what would not come to its end: a period or a number of steps that is a slip of the keyboard.
+void check_size(const Plan& plan, const Options& options, const Machine& machine) {
+  constexpr double most = 1e10;
+  const double samples = plan.duration / options.period;
+  if (!(samples <= most))
+    throw Failure(Exit::bad_input, fmt::format("the program takes {:.6g} s, which is {:.3g} samples at a "
+                                               "period of {:.6g} s: more than {:.0e}",
+                                               plan.duration, samples, options.period, most));
+  for (const MachineAxis& axis : machine.axes) {
+    const double steps = plan.length * axis.steps_per_unit;
+    if (!(steps <= most))
+      throw Failure(Exit::bad_input, fmt::format("a path of {:.6g} mm at {:.6g} steps of {} per mm: more "
+                                                 "than {:.0e} steps",
+                                                 plan.length, axis.steps_per_unit, axis.letter, most));
+  }
+}
+
 // At most so many points are drawn.
 constexpr std::size_t drawn_points = 20000;
 
@@ -56,6 +80,8 @@ int run(const Options& options) {
   const Program program = read_program(options.program, machine, options.limits);
   Measures measures;
   const Plan plan = make_plan(program, options, measures);
+  check_size(plan, options, machine);
+  if (options.plot) make_folder(*options.plot);
 
   const auto motions = open(options.motions), blocks = open(options.blocks), samples = open(options.samples),
              steps = open(options.steps);
@@ -87,14 +113,23 @@ int run(const Options& options) {
     make_steps(program, plan, options, machine, measures, [](const cncplan::step::Edge&) {});
   }
 
-  for (OutputFile* file : {motions.get(), blocks.get(), samples.get(), steps.get()})
-    if (file != nullptr) file->commit();
+  const std::array files{motions.get(), blocks.get(), samples.get(), steps.get()};
+  for (OutputFile* file : files)
+    if (file != nullptr) file->finish();
   if (options.plot) draw(*options.plot, drawn);
+  for (OutputFile* file : files)
+    if (file != nullptr) file->commit();
   if (options.json)
-    fmt::print("{}", json_summary(program, plan, options, machine, measures));
+    print(json_summary(program, plan, options, machine, measures));
   else if (!options.quiet)
-    fmt::print("{}", table_summary(program, plan, machine, measures));
+    print(table_summary(program, plan, machine, measures));
   return static_cast<int>(Exit::done);
+}
+
+// One line, whatever it quotes.
+void complain(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  fmt::print(stderr, "{}{}\n", text.find(": error: ") == std::string::npos ? "error: " : "", text);
 }
 
 }  // namespace
@@ -106,11 +141,10 @@ int main(int argc, char** argv) {
     const auto options = simulate::parse_options(argc, argv);
     return options ? simulate::run(*options) : 0;
   } catch (const simulate::Failure& failure) {
-    const std::string text = failure.what();
-    fmt::print(stderr, "{}{}\n", text.find(": error: ") == std::string::npos ? "error: " : "", text);
+    simulate::complain(failure.what());
     return static_cast<int>(failure.code);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    simulate::complain(error.what());
     return static_cast<int>(simulate::Exit::other);
   }
 }

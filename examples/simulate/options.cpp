@@ -3,8 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "failure.hpp"
 
@@ -20,6 +25,38 @@ const CLI::Validator positive(
                                                            : "must be a number greater than zero: " + text;
     },
     "POSITIVE");
+
+// Adds an option whose value goes by one of a few names; its default is the value as it stands.
+template <class E>
+void add_choice(CLI::App& app, const std::string& name, E& value, const std::map<std::string, E>& names,
+                const std::string& text) {
+  const auto standing =
+      std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == value; });
+  app.add_option_function<std::string>(
+         name, [&value, names](const std::string& chosen) { value = names.at(chosen); }, text)
+      ->check(CLI::IsMember(names))
+      ->default_str(standing->first);
+}
+
+// No output may overwrite an input or another output.
+void refuse_shared_files(const Options& options) {
+  std::vector<std::pair<std::string_view, std::filesystem::path>> seen;
+  const auto look = [&](std::string_view name, const std::optional<std::string>& file) {
+    std::error_code ignored;
+    if (!file || std::filesystem::is_other(*file, ignored)) return;
+    const auto path = std::filesystem::weakly_canonical(*file, ignored);
+    for (const auto& [other, used] : seen)
+      if (used == path)
+        throw Failure(Exit::bad_input, fmt::format("{} and {} are the same file: {}", other, name, *file));
+    seen.emplace_back(name, path);
+  };
+  look("PROGRAM", options.program);
+  look("--machine", options.machine);
+  look("--motions", options.motions);
+  look("--blocks", options.blocks);
+  look("--samples", options.samples);
+  look("--steps", options.steps);
+}
 
 }  // namespace
 
@@ -41,19 +78,15 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--junction", junction,
                  "table, table-absolute, stop, tangent=MM/S, deviation=MM, acceleration-step=MM/S^2; several "
                  "joined by +");
-  const auto choice = [&](const std::string& name, auto& value, const auto& names, const std::string& text) {
-    app.add_option(name, value, text)->transform(CLI::CheckedTransformer(names));
-  };
-  choice("--profile", options.law, std::map<std::string, Law>{{"five", Law::five}, {"seven", Law::seven}},
-         "five: KK22's phases; seven: acceleration held at its limit");
-  choice("--plan", options.planning,
-         std::map<std::string, Planning>{{"span", Planning::span}, {"block", Planning::block}},
-         "span: ramps cross blocks; block: zero acceleration at every block end, as published");
-  choice("--interpolator", options.interpolator,
-         std::map<std::string, Interpolator>{{"exact", Interpolator::exact},
-                                             {"taylor", Interpolator::taylor},
-                                             {"constant", Interpolator::constant}},
-         "how samples are made");
+  add_choice(app, "--profile", options.law, {{"five", Law::five}, {"seven", Law::seven}},
+             "five: KK22's phases; seven: acceleration held at its limit");
+  add_choice(app, "--plan", options.planning, {{"span", Planning::span}, {"block", Planning::block}},
+             "span: ramps cross blocks; block: zero acceleration at every block end, as published");
+  add_choice(app, "--interpolator", options.interpolator,
+             {{"exact", Interpolator::exact},
+              {"taylor", Interpolator::taylor},
+              {"constant", Interpolator::constant}},
+             "how samples are made");
   app.option_defaults()->always_capture_default(false);
   app.add_option("--machine", options.machine, "machine file, TOML");
   app.add_option("--motions", options.motions, "write the program's motions, CSV");
@@ -71,6 +104,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
     return std::nullopt;
   }
   options.junction = junction_choice(junction);
+  refuse_shared_files(options);
   return options;
 }
 

@@ -16,13 +16,23 @@ namespace {
 
 bool have_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
+// As gnuplot reads it between single quotes.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
 }  // namespace
 
-void draw(const std::string& folder, const std::vector<Sample>& samples) {
+void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error || ::access(folder.c_str(), W_OK) != 0)
+  if (error || !std::filesystem::is_directory(folder, error) || ::access(folder.c_str(), W_OK) != 0)
     throw Failure(Exit::other, folder + ": cannot be written");
+}
+
+void draw(const std::string& folder, const std::vector<Sample>& samples) {
   if (!have_gnuplot()) {
     fmt::print(stderr, "no pictures: gnuplot is not installed\n");
     return;
@@ -34,7 +44,7 @@ void draw(const std::string& folder, const std::vector<Sample>& samples) {
     fmt::print(pipe, "{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", s.time, s.position.x(),
                s.position.y(), s.position.z(), s.along.velocity, s.along.acceleration, s.along.jerk);
   fmt::print(pipe, "EOD\nset terminal svg size 900,700 background 'white'\nset grid\nunset key\n");
-  fmt::print(pipe, "cd '{}'\n", folder);
+  fmt::print(pipe, "cd {}\n", quoted(folder));
   fmt::print(pipe,
              "set output 'path.svg'\nset size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
              "set cblabel 'speed mm/s'\nset palette defined (0 '#2166ac', 0.5 '#66bd63', 1 '#d73027')\n"
