@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <initializer_list>
 #include <string_view>
 
@@ -128,6 +129,8 @@ void read_tools(const Section& section, Machine& machine) {
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
     if (code != std::errc{} || end != digits.data() + digits.size() || number < 0)
       section.refuse(node, fmt::format("'{}' is not a tool number", digits));
+    for (const gcode::Tool& tool : machine.dialect.tools)
+      if (tool.number == number) section.refuse(node, fmt::format("tool {} is there twice", number));
     machine.dialect.tools.push_back({number, section.number(node, "tool length")});
   }
 }
@@ -204,25 +207,31 @@ Machine interpret(const std::string& file, const toml::table& root) {
 
 Limits Machine::limits_along(const plan::Block& block) const {
   Limits limits = block.limits;
+  const bool curved = block.segment.arc() != nullptr;
+  // On an arc both the acceleration along the path and the one across it stay below this; at right angles to
+  // each other, they add up to the axis' limit at most.
+  const double shared = curved ? std::sqrt(2.0) : 1.0;
+  const auto box = block.segment.bounds();
   for (int i = 0; i < 3; ++i) {
-    const double share = block.segment.arc() == nullptr ? std::abs(block.segment.start_tangent()[i]) : 1.0;
-    const auto span = block.segment.bounds();
-    if (span.low[i] == span.high[i] || share == 0.0) continue;
+    const double share = curved ? 1.0 : std::abs(block.segment.start_tangent()[i]);
+    if (box.low[i] == box.high[i] || share == 0.0) continue;
     const Limits& axis = axes[static_cast<std::size_t>(i)].limits;
     limits.velocity = std::min(limits.velocity, axis.velocity / share);
-    limits.acceleration = std::min(limits.acceleration, axis.acceleration / share);
+    limits.acceleration = std::min(limits.acceleration, axis.acceleration / (share * shared));
     limits.jerk = std::min(limits.jerk, axis.jerk / share);
   }
   return limits;
 }
 
 Machine read_machine(const std::string& file) {
+  if (std::filesystem::is_directory(file))
+    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
   toml::table root;
   try {
     root = toml::parse_file(file);
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
-    if (at.line == 0) throw Failure(Exit::bad_input, fmt::format("{}: {}", file, error.description()));
+    if (at.line == 0) throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
     throw Failure(Exit::bad_input,
                   fmt::format("{}:{}:{}: error: {}", file, at.line, at.column, error.description()));
   }

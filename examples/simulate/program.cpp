@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <limits>
 #include <variant>
 
 #include "cncplan/gcode/diagnostic_text.hpp"
@@ -27,31 +29,39 @@ class Builder {
       : file_(file), machine_(machine), limits_(limits), program_(program) {}
 
   void operator()(const gcode::Motion& motion) {
-    auto block = plan::block(motion, limits_, machine_.rapid_rate.value_or(limits_.velocity));
+    const double rapid_rate = machine_.rapid_rate.value_or(limits_.velocity);
+    auto block = plan::block(motion, limits_, rapid_rate);
     if (!block) refuse(file_, {block.error(), motion.line, motion.column, {}});
     check_travel(*block, motion);
     block->limits = machine_.limits_along(*block);
     program_.blocks.push_back(*block);
-    program_.origins.push_back({motion.line, motion.plane, plan::xyz(motion.offset)});
+    const bool says_feed = motion.feed || motion.kind == gcode::MotionKind::rapid;
+    const double feed =
+        says_feed ? plan::feed(motion, block->segment.length(), unlimited, rapid_rate) : limits_.velocity;
+    program_.origins.push_back({motion.line, motion.plane, plan::xyz(motion.offset), feed});
   }
   void operator()(const gcode::Dwell& dwell) { last_block(dwell.line).pause += dwell.seconds; }
   void operator()(const gcode::Stop& stop) { last_block(stop.line).stop_at_end = true; }
-  void operator()(const gcode::Word&) {}  // spindle, coolant, tools: for others to act on, without a stop
+  void operator()(const gcode::Word& word) {
+    if (word.letter == 'T') last_block(word.line).stop_at_end = true;
+  }  // spindle and coolant are for others to act on, without a stop
   void operator()(const gcode::Warning& warning) {
     ++program_.warnings;
     fmt::print(stderr, "{}\n", gcode::to_text(file_, warning.about, "warning"));
   }
 
- private:
-  // A pause before any motion stands on a block of its own, of length zero.
+  /// A pause before any motion stands on a block of its own, of length zero.
   plan::Block& last_block(int line) {
     if (program_.blocks.empty()) {
       program_.blocks.push_back(
           {path::Line(Vector3::Zero(), Vector3::Zero()), limits_, junction::Kind::rapid, true, 0.0});
-      program_.origins.push_back({line, Plane::xy, Vector3::Zero()});
+      program_.origins.push_back({line, Plane::xy, Vector3::Zero(), 0.0});
     }
     return program_.blocks.back();
   }
+
+ private:
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
   void check_travel(const plan::Block& block, const gcode::Motion& motion) const {
     const auto bounds = block.segment.bounds();
@@ -76,13 +86,15 @@ class Builder {
 
 Program read_program(const std::string& file, const Machine& machine, const Limits& limits) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+  if (!stream || std::filesystem::is_directory(file))
+    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
   Program program;
   gcode::Reader reader(machine.dialect);
   Builder build(file, machine, limits, program);
   const auto read = gcode::read_program(gcode::StreamLines(stream), reader,
                                         [&](const gcode::Item& item) { std::visit(build, item); });
   if (!read) refuse(file, read.error());
+  (void)build.last_block(1);
   program.lines = static_cast<std::size_t>(reader.line());
   return program;
 }

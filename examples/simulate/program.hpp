@@ -15,8 +15,10 @@ struct Origin {
   int line{};
   cncplan::Plane plane{};
   cncplan::Vector3 offset;  ///< machine = work + offset
+  double feed{};            ///< mm/s as programmed; of a rapid the rapid rate
 };
 
+/// There is always a block: a program without motion is one of length zero.
 struct Program {
   std::vector<cncplan::plan::Block> blocks;
   std::vector<Origin> origins;  ///< one a block

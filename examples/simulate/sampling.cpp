@@ -80,7 +80,6 @@ void make_samples(const Program& program, const Plan& plan, const Options& optio
     ++measures.samples;
     take({time, place.block, position, place.state});
   };
-  if (program.blocks.empty()) return;
   for (std::size_t k = 0; static_cast<double>(k) * options.period < plan.duration; ++k)
     sample(static_cast<double>(k) * options.period);
   sample(plan.duration);

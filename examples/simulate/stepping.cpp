@@ -39,7 +39,6 @@ class Observer {
 
 void make_steps(const Program& program, const Plan& plan, const Options& options, const Machine& machine,
                 Measures& measures, const std::function<void(const step::Edge&)>& take) {
-  if (program.blocks.empty()) return;
   const Stopwatch watch(measures.steps_seconds);
   std::array<double, 3> steps_per_unit{};
   std::array<std::int64_t, 3> counts{};

@@ -45,7 +45,7 @@ void write_motions(std::ostream& out, const Program& program) {
     } else {
       out << ",,,,,";
     }
-    put(out, block.segment.length(), block.limits.velocity);
+    put(out, block.segment.length(), origin.feed);
     out << '\n';
   }
 }
