@@ -19,7 +19,7 @@ struct Options {
   double period = 0.001;
   JunctionChoice junction;
   Law law = Law::seven;
-  Planning planning = Planning::block;
+  Planning planning = Planning::span;
   Interpolator interpolator = Interpolator::exact;
   std::optional<std::string> machine;
   std::optional<std::string> motions;

@@ -1,0 +1,246 @@
+// Look-ahead over spans: ramps cross blocks, and the acceleration is zero only where a joint's cap binds.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <span>
+
+#include "cncplan/plan/block_planner.hpp"
+#include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/span.hpp"
+#include "cncplan/profile/solver.hpp"
+
+namespace cncplan::plan {
+
+/// A joint at which the speed limit changes or is lower than on both sides: the only joints look-ahead has to
+/// look at.
+template <std::floating_point S>
+struct BasicGate {
+  std::size_t block{};    ///< the block that starts here
+  S cap{};                ///< mm/s, highest speed here
+  S speed{};              ///< mm/s, the planned one where the gate is a knot
+  S gap{};                ///< mm to the next gate
+  BasicLimits<S> limits;  ///< from here to the next gate; acceleration and jerk the same over a whole region
+  bool knot{};            ///< zero acceleration here
+  bool fixed{};           ///< a knot by force
+};
+
+using Gate = BasicGate<double>;
+
+/// Blocks whose acceleration and jerk limits differ by less than this share the lowest of them; where they
+/// differ by more, a knot divides them.
+inline constexpr double shared_limits_ratio = 1.3;
+
+/// Reduces blocks to gates: writes at most one more than there are blocks into `gates`, the last behind the
+/// end, and returns how many. The motion starts at `start_speed` and ends at rest.
+template <std::floating_point S>
+std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
+                       std::span<BasicGate<S>> gates) {
+  if (blocks.empty()) return 0;
+  std::size_t count = 0;
+  std::size_t region = 0;  // its first gate
+  BasicLimits<S> low{}, high{};
+  const auto close_region = [&] {
+    for (; region < count; ++region) {
+      gates[region].limits.acceleration = low.acceleration;
+      gates[region].limits.jerk = low.jerk;
+    }
+  };
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const BasicLimits<S>& limits = blocks[i].limits;
+    const S before = i == 0 ? start_speed : blocks[i - 1].limits.velocity;
+    const BasicLimits<S> lower{S(0), std::min(low.acceleration, limits.acceleration),
+                               std::min(low.jerk, limits.jerk)};
+    const BasicLimits<S> higher{S(0), std::max(high.acceleration, limits.acceleration),
+                                std::max(high.jerk, limits.jerk)};
+    const S ratio = static_cast<S>(shared_limits_ratio);
+    const bool new_region =
+        i == 0 || higher.acceleration > ratio * lower.acceleration || higher.jerk > ratio * lower.jerk;
+    const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before, limits.velocity});
+    if (new_region) {
+      close_region();
+      low = high = limits;
+    } else {
+      low = lower;
+      high = higher;
+    }
+    if (new_region || cap < before || cap < limits.velocity)
+      gates[count++] = {i, cap, cap, S(0), limits, true, new_region};
+    gates[count - 1].gap += blocks[i].length;
+  }
+  close_region();
+  gates[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true};
+  return count;
+}
+
+/// Plans between gates. A gate is a knot (zero acceleration, at its cap) where its cap is within reach of the
+/// knots on both sides; the others are passed in mid-ramp. Where a ramp would pass one too fast, the gate
+/// becomes a fixed knot, at no more than what is within reach, and the speeds are found anew.
+///
+/// That nearest knots suffice: with r(v, d) the speed reached from v over d, r(r(v, d1), d2) <= r(v, d1 +
+/// d2), so a knot within reach of its neighbour is a stronger bound on what lies beyond it than the neighbour
+/// is.
+template <std::floating_point S, SolverFactory<S> Factory>
+class GatePlanner {
+ public:
+  using Gate = BasicGate<S>;
+  using Profile = profile::BasicProfile<S>;
+
+  GatePlanner(std::span<Gate> gates, const Factory& factory) : gates_(gates), solver_(factory) {}
+
+  /// Finds the knots and their speeds.
+  void solve() {
+    for (int round = 0;; ++round) {
+      pass_backward();
+      pass_forward();
+      if (!fix_violations(round)) return;
+    }
+  }
+
+  /// The next knot after a gate that is one.
+  [[nodiscard]] std::size_t next_knot(std::size_t gate) const {
+    do ++gate;
+    while (!gates_[gate].knot);
+    return gate;
+  }
+
+  /// The profile from one knot to the next.
+  [[nodiscard]] Expected<Profile> profile(std::size_t from, std::size_t to) {
+    BasicLimits<S> limits = gates_[from].limits;
+    S length = S(0);
+    for (std::size_t i = from; i < to; ++i) {
+      limits.velocity = std::max(limits.velocity, gates_[i].limits.velocity);
+      length += gates_[i].gap;
+    }
+    return solver_(limits)(length, {gates_[from].speed, gates_[to].speed});
+  }
+
+ private:
+  // In the first rounds only the worst gate of a span becomes a knot, as that often mends the others; then
+  // all that are passed too fast do, and in the end all gates, so that the number of rounds is bounded.
+  static constexpr int careful_rounds = 6;
+  static constexpr int last_round = 12;
+
+  S reach(const Gate& region, S speed, S distance) {
+    BasicLimits<S> limits = region.limits;
+    limits.velocity = fastest_;
+    return solver_(limits).reachable_speed(speed, distance);
+  }
+
+  void pass_backward() {
+    fastest_ = S(0);
+    for (const Gate& gate : gates_) fastest_ = std::max({fastest_, gate.limits.velocity, gate.cap});
+    std::size_t right = gates_.size() - 1;
+    S distance = S(0);
+    gates_[right].speed = gates_[right].cap;
+    for (std::size_t i = right; i-- > 0;) {
+      Gate& gate = gates_[i];
+      distance += gate.gap;
+      const S reachable = reach(gate, gates_[right].speed, distance);
+      gate.knot = gate.fixed || gate.cap <= reachable;
+      if (!gate.knot) continue;
+      gate.speed = std::min(gate.cap, reachable);
+      right = i;
+      distance = S(0);
+    }
+  }
+
+  void pass_forward() {
+    std::size_t left = 0;
+    S distance = S(0);
+    for (std::size_t i = 1; i < gates_.size(); ++i) {
+      Gate& gate = gates_[i];
+      distance += gates_[i - 1].gap;
+      if (!gate.knot) continue;
+      const S reachable = reach(gates_[left], gates_[left].speed, distance);
+      gate.knot = gate.fixed || gate.speed <= reachable;
+      if (!gate.knot) continue;
+      gate.speed = std::min(gate.speed, reachable);
+      left = i;
+      distance = S(0);
+    }
+  }
+
+  // Whether any gate is passed too fast; those become fixed knots.
+  bool fix_violations(int round) {
+    bool any = false;
+    for (std::size_t from = 0; from + 1 < gates_.size();) {
+      const std::size_t to = next_knot(from);
+      if (to - from > 1) any = fix_violations(from, to, round) || any;
+      from = to;
+    }
+    return any;
+  }
+
+  bool fix_violations(std::size_t from, std::size_t to, int round) {
+    const auto planned = profile(from, to);
+    if (!planned || round >= last_round) {
+      for (std::size_t i = from + 1; i < to; ++i) gates_[i].fixed = true;
+      return true;
+    }
+    constexpr S tolerance = S(1) + S(64) * std::numeric_limits<S>::epsilon();
+    const auto phases = planned->phases();
+    const S top = planned->top_velocity();
+    const S top_from = phases[3].position;
+    const S top_until = phases[4].position;
+    S worst = tolerance;
+    std::size_t worst_gate = 0;
+    const auto weigh = [&](std::size_t gate, S speed, S allowed) {
+      if (!(speed > allowed * tolerance) || gate == from || gate == to) return;
+      if (round >= careful_rounds) gates_[gate].fixed = true;
+      if (speed <= worst * allowed) return;
+      worst = speed / allowed;
+      worst_gate = gate;
+    };
+    S position = S(0);
+    S speed_here = gates_[from].speed;
+    for (std::size_t i = from; i < to; ++i) {
+      const S here = position;
+      position += gates_[i].gap;
+      const bool last = i + 1 == to;
+      const S allowed = gates_[i].limits.velocity;
+      const bool matters = !last && (top > gates_[i + 1].cap * tolerance || top > allowed * tolerance);
+      const S speed_there =
+          last ? gates_[to].speed : (matters ? planned->at(planned->time_at(position)).velocity : top);
+      if (!last && matters) weigh(i + 1, speed_there, gates_[i + 1].cap);
+      const bool holds_top = top_from <= position && top_until >= here;
+      const S highest = holds_top ? top : std::max(speed_here, speed_there);
+      weigh(i, highest, allowed);
+      weigh(i + 1, highest, allowed);
+      speed_here = speed_there;
+    }
+    if (worst_gate == 0) return false;
+    gates_[worst_gate].fixed = true;
+    return true;
+  }
+
+  std::span<Gate> gates_;
+  SolverCache<S, Factory> solver_;
+  S fastest_{};
+};
+
+/// Plans whole spans: writes them, and the pauses, into `out`. `gates` is room for one gate more than there
+/// are blocks.
+template <std::floating_point S, SolverFactory<S> Factory, std::output_iterator<BasicSpan<S>> Out>
+Expected<Out> plan_spans(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory,
+                         std::span<BasicGate<S>> gates, Out out) {
+  if (blocks.empty()) return out;
+  gates = gates.first(make_gates(blocks, S(0), gates));
+  GatePlanner<S, Factory> planner(gates, factory);
+  planner.solve();
+  for (std::size_t from = 0; from + 1 < gates.size();) {
+    const std::size_t to = planner.next_knot(from);
+    const auto profile = planner.profile(from, to);
+    if (!profile) return tl::unexpected(profile.error());
+    *out++ = BasicSpan<S>{gates[from].block, gates[to].block - gates[from].block, *profile};
+    const S pause = blocks[gates[to].block - 1].pause;
+    if (pause > S(0)) *out++ = pause_span(gates[to].block, pause);
+    from = to;
+  }
+  return out;
+}
+
+}  // namespace cncplan::plan
