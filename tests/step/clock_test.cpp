@@ -68,7 +68,7 @@ TEST_CASE("a clock finds the length again at the times it tells, batch by batch"
   CHECK(apart < 1e-9);
 }
 
-TEST_CASE("a block within a longer profile starts where its origin is; rests count") {
+TEST_CASE("a block within a longer profile starts where its origin is, rests count") {
   const std::array<Phase, 3> phases{{{0, 2, 0, 1, 0, 0}, {2, 5, 2, 0, 0, 0}, {7, 2, 2, 1, 0, 0}}};
   step::PhaseClock clock(phases, 10.0, 1.0);
   std::array<double, 4> values{0.0, 0.5, 1.0, 1.5};

@@ -23,7 +23,7 @@ struct Listed {
 
 }  // namespace
 
-TEST_CASE("edges of one tick share a word; directions stay") {
+TEST_CASE("edges of one tick share a word, directions stay") {
   step::FixedTicks ticks(Listed{{{0.101, 0, 1}, {0.104, 2, -1}, {0.26, 1, 1}, {0.34, 2, 1}}}, 10.0);
   CHECK(**ticks.next() == Tick{1, 0b101, 0xfffffffb});
   CHECK(**ticks.next() == Tick{3, 0b110, 0xffffffff});
