@@ -258,4 +258,8 @@ TEST_CASE("merged axes come in order of time, and leave their counts") {
   CHECK(sum[0] == step::count_at(3.0 * std::sin(30.0) * 40.0));
   CHECK(sum[1] == step::count_at(0.7 * 30.0 * 25.0));
   CHECK_FALSE(edges.next());
+  // Nothing before the last edge of the block before.
+  auto later = step::block_edges(path, step::PhaseClock(phases, 5.0), std::array{40.0, 25.0},
+                                 std::array<std::int64_t, 2>{}, 6.0);
+  CHECK(later.next()->time == 6.0);
 }

@@ -1,7 +1,6 @@
 // The inverse of a distance that grows as a cubic of time: how planned motion is turned round into times.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -82,8 +81,7 @@ struct MonotoneCubic {
         slope[i] = velocity + x[i] * (acceleration + x[i] * half_jerk);
         root[i] = slope[i] * slope[i] - S(2) * bend * excess[i];
       }
-      Eigen::Map<Eigen::Array<S, Eigen::Dynamic, 1>> roots(root.data(), static_cast<Eigen::Index>(count));
-      roots = roots.max(S(0)).sqrt();
+      for (std::size_t i = 0; i < count; ++i) root[i] = std::sqrt(std::max(root[i], S(0)));
       open = 0;
       for (std::size_t i = 0; i < count; ++i) {
         const S step = S(-2) * excess[i] / (slope[i] + root[i]);

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <span>
 
-#include "cncplan/core/vector.hpp"
 #include "cncplan/path/arc_axis.hpp"
 
 namespace cncplan::path {
@@ -63,8 +62,7 @@ void circle_crossings(const ArcAxis<S>& axis, std::span<S> values, S low, S high
       const S delta = values[i] - value;
       speeds[i] = speed_sq - delta * (delta + 2 * radial);
     }
-    Eigen::Map<Eigen::Array<S, Eigen::Dynamic, 1>> v(speeds.data(), static_cast<Eigen::Index>(count));
-    v = v.max(S(0)).sqrt();
+    for (std::size_t i = 0; i < count; ++i) speeds[i] = std::sqrt(std::max(speeds[i], S(0)));
     for (std::size_t i = 0; i < count; ++i) {
       const S onward = sense * (values[i] - value);
       const S u = low + 2 * arctangent(onward > S(0) ? onward : S(0), speed + speeds[i] + tiny);

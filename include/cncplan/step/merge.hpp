@@ -1,6 +1,7 @@
 // Edges of several axes in one order of time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -14,14 +15,17 @@
 
 namespace cncplan::step {
 
-/// Joins N edge sources; edges of one time come in the order of the sources.
+/// Joins N edge sources; edges of one time come in the order of the sources. None comes before `earliest`
+/// (s): where one block follows another, rounding may put a first edge a bit before the last one of the block
+/// before.
 template <EdgeSource E, std::size_t N>
   requires(N > 0)
 class Merge {
  public:
   using Scalar = typename E::Scalar;
 
-  explicit Merge(const std::array<E, N>& sources) : sources_(sources) {
+  explicit Merge(const std::array<E, N>& sources, Scalar earliest = -std::numeric_limits<Scalar>::infinity())
+      : sources_(sources), earliest_(earliest) {
     for (std::size_t i = 0; i < N; ++i) pull(i);
   }
 
@@ -33,8 +37,9 @@ class Merge {
       first = earlier ? i : first;
       time = earlier ? pending_[i].time : time;
     }
-    const BasicEdge<Scalar> edge = pending_[first];
+    BasicEdge<Scalar> edge = pending_[first];
     if (edge.direction == 0) return std::nullopt;
+    edge.time = std::max(edge.time, earliest_);
     pull(first);
     return edge;
   }
@@ -51,22 +56,28 @@ class Merge {
 
   std::array<E, N> sources_;
   std::array<BasicEdge<Scalar>, N> pending_{};
+  Scalar earliest_;
 };
 
-/// All edges of a block, axes 0 to N-1 of the path: `counts` as the block before left them.
+/// All edges of a block, axes 0 to N-1 of the path, from the `counts` and the time of the last edge that the
+/// block before left. The path must outlive them.
 ///
-///     auto edges = step::block_edges(arc, step::PhaseClock(phases, start), steps_per_unit, counts);
-///     while (const auto edge = edges.next()) backend.accept(*edge);
+///     auto edges = step::block_edges(arc, step::PhaseClock(phases, start), steps_per_unit, counts, last);
+///     while (const auto edge = edges.next()) {
+///       backend.accept(*edge);
+///       last = edge->time;
+///     }
 ///     counts = step::counts(edges);
 template <SteppablePath P, Clock C, std::size_t N>
   requires std::same_as<typename P::Scalar, typename C::Scalar>
-[[nodiscard]] Merge<StepCursor<P, C>, N> block_edges(const P& path, const C& clock,
-                                                     const std::array<typename P::Scalar, N>& steps_per_unit,
-                                                     const std::array<std::int64_t, N>& counts) {
+[[nodiscard]] Merge<StepCursor<P, C>, N> block_edges(
+    const P& path, const C& clock, const std::array<typename P::Scalar, N>& steps_per_unit,
+    const std::array<std::int64_t, N>& counts,
+    typename P::Scalar earliest = -std::numeric_limits<typename P::Scalar>::infinity()) {
   static_assert(static_cast<int>(N) <= P::Vector::RowsAtCompileTime, "more axes than the path has");
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     return Merge<StepCursor<P, C>, N>(
-        {StepCursor<P, C>(path, clock, static_cast<int>(I), steps_per_unit[I], counts[I])...});
+        {StepCursor<P, C>(path, clock, static_cast<int>(I), steps_per_unit[I], counts[I])...}, earliest);
   }
   (std::make_index_sequence<N>());
 }
