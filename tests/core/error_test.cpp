@@ -18,7 +18,9 @@ TEST_CASE("every error code has a sentence of its own") {
 
 TEST_CASE("limits are refused by name") {
   CHECK(validate(Limits{30.0, 1000.0, 10000.0}));
-  CHECK(validate(Limits{30.0, INFINITY, INFINITY}));
+  CHECK(validate(Limits{30.0, INFINITY, 1.0}));
+  CHECK(validate(Limits{30.0, 1.0, INFINITY}));
+  CHECK_FALSE(validate(Limits{30.0, INFINITY, INFINITY}));
   CHECK(validate(Limits{0.0, 1.0, 1.0}).error() ==
         Error{ErrorCode::not_positive, "velocity limit", 0.0, 0.0});
   CHECK(validate(Limits{1.0, -2.0, 1.0}).error() ==

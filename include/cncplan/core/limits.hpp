@@ -8,7 +8,8 @@
 
 namespace cncplan {
 
-/// Largest magnitudes allowed along the path. Infinity in `acceleration` or `jerk` means "no such limit".
+/// Largest magnitudes allowed along the path. Infinity in `acceleration` or in `jerk` means "no such limit";
+/// in both, the speed would jump.
 template <std::floating_point S>
 struct BasicLimits {
   S velocity{};      ///< mm/s, > 0, finite
@@ -35,6 +36,9 @@ template <std::floating_point S>
   if (!std::isfinite(limits.velocity))
     return tl::unexpected(
         Error{ErrorCode::not_finite, "velocity limit", static_cast<double>(limits.velocity), 0.0});
+  if (!std::isfinite(limits.acceleration) && !std::isfinite(limits.jerk))
+    return tl::unexpected(Error{ErrorCode::not_finite, "acceleration and jerk limit",
+                                static_cast<double>(limits.acceleration), 0.0});
   return limits;
 }
 

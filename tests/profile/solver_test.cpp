@@ -1,0 +1,85 @@
+#include "cncplan/profile/solver.hpp"
+
+#include <cmath>
+
+#include "cncplan/profile/five_phase.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+#include "support/catch.hpp"
+#include "support/profile_oracle.hpp"
+
+using namespace cncplan;
+
+TEST_CASE("random profiles keep every limit and lose no time against an independent optimum") {
+  // the same check as the soak, which goes on for longer
+  test::Random random;
+  test::ProfileErrors worst;
+  test::ProfileCase where{};
+  for (int draw = 0; draw < 100000; ++draw) {
+    const test::ProfileCase c = test::draw(random);
+    for (const bool seven : {false, true}) {
+      const auto p = seven ? profile::seven_phase(c.length, c.speeds, c.limits)
+                           : profile::five_phase(c.length, c.speeds, c.limits);
+      if (!p) continue;
+      const auto errors = test::examine(c, *p);
+      const double loss = static_cast<double>(p->duration() / test::best_duration(c, seven) - 1);
+      if (std::abs(loss) > worst.time_loss) worst.time_loss = std::abs(loss), where = c;
+      worst.end_position = std::max(worst.end_position, errors.end_position);
+      worst.end_speed = std::max(worst.end_speed, errors.end_speed);
+      worst.velocity_excess = std::max(worst.velocity_excess, errors.velocity_excess);
+      worst.acceleration_excess = std::max(worst.acceleration_excess, errors.acceleration_excess);
+      worst.jerk_excess = std::max(worst.jerk_excess, errors.jerk_excess);
+    }
+  }
+  INFO("seed " << test::seed() << ", worst time: " << where.literal());
+  CHECK(worst.time_loss < 1e-12);
+  CHECK(worst.end_position < 8.0);
+  CHECK(worst.end_speed < 8.0);
+  CHECK(worst.velocity_excess < 1e-12);
+  CHECK(worst.acceleration_excess < 1e-12);
+  CHECK(worst.jerk_excess < 1e-12);
+}
+
+TEST_CASE("the reachable speed is the one whose ramp fills the length") {
+  test::Random random;
+  double worst = 0.0;
+  test::ProfileCase where{};
+  for (int draw = 0; draw < 50000; ++draw) {
+    const test::ProfileCase c = test::draw(random);
+    for (const bool seven : {false, true}) {
+      const auto solver =
+          seven ? profile::seven_phase_solver(c.limits) : profile::five_phase_solver(c.limits);
+      const double top = solver.reachable_speed(c.speeds.start, c.length);
+      REQUIRE(top >= c.speeds.start);
+      REQUIRE(top <= c.limits.velocity);
+      REQUIRE(solver(c.length, {c.speeds.start, top}));
+      REQUIRE(solver(c.length, {top, c.speeds.start}));
+      if (top == c.limits.velocity) continue;
+      // by bisection on the change of speed
+      test::Real low = 0, high = c.limits.velocity - c.speeds.start;
+      for (int halving = 0; halving < 200; ++halving) {
+        const test::Real middle = (low + high) / 2;
+        (test::ramp_distance(c.speeds.start, c.speeds.start + middle, c.limits.acceleration, c.limits.jerk,
+                             seven) <= c.length
+             ? low
+             : high) = middle;
+      }
+      const double off = std::abs(static_cast<double>((c.speeds.start + low - top) / (c.speeds.start + low)));
+      if (off > worst) worst = off, where = c;
+    }
+  }
+  INFO("seed " << test::seed() << ", " << where.literal());
+  CHECK(worst < 1e-14);
+}
+
+TEST_CASE("zero length and the speed limit itself are ordinary cases") {
+  const auto solver = profile::seven_phase_solver(Limits{30.0, 1000.0, 10000.0});
+  const auto nothing = solver(0.0, {5.0, 5.0});
+  REQUIRE(nothing);
+  CHECK(nothing->duration() == 0.0);
+  CHECK(nothing->at(0.0).velocity == 5.0);
+  const auto cruise = solver(60.0, {30.0, 30.0});
+  REQUIRE(cruise);
+  CHECK(cruise->duration() == Approx(2.0).epsilon(1e-15));
+  CHECK(solver.reachable_speed(5.0, 0.0) == 5.0);
+  CHECK(solver.reachable_speed(30.0, 1.0) == 30.0);
+}
