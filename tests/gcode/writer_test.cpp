@@ -211,6 +211,8 @@ TEST_CASE("what cannot be written is refused") {
   motion = {};
   motion.feed = INFINITY;
   CHECK(error(motion).field == "F");
+  motion.feed = 2e13;  // more than 1e15 mm/min
+  CHECK(error(motion).code == ErrorCode::above_limit);
   CHECK(text.empty());
 }
 

@@ -118,6 +118,11 @@ class Writer {
 
   [[nodiscard]] std::size_t axis_count() const { return dialect_.axes.size(); }
 
+  /// mm or rad per unit of the text.
+  [[nodiscard]] double unit(std::size_t axis) const {
+    return dialect_.axes[axis].kind == AxisKind::linear ? 1.0 : radians_per_degree;
+  }
+
   [[nodiscard]] Expected<void> check(const Motion& motion) const {
     const auto number = [](double value, std::string_view field) -> Expected<void> {
       if (std::abs(value) <= max_number) return {};
@@ -126,8 +131,8 @@ class Writer {
     };
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const std::string_view axis = name(dialect_.axes[i].letter);
-      if (auto ok = number(motion.end[i], axis); !ok) return ok;
-      if (auto ok = number(motion.offset[i], axis); !ok) return ok;
+      if (auto ok = number(motion.end[i] / unit(i), axis); !ok) return ok;
+      if (auto ok = number(motion.offset[i] / unit(i), axis); !ok) return ok;
       const double start = motion.start[i] + motion.offset[i];
       const double here = machine_[i];
       const double bound = 1e-12 * (1.0 + std::abs(here) + std::abs(offset_[i]) + std::abs(motion.offset[i]));
@@ -137,7 +142,7 @@ class Writer {
     for (const double coordinate : motion.center)
       if (auto ok = number(coordinate, "centre"); !ok) return ok;
     if (auto ok = number(motion.radius, "R"); !ok) return ok;
-    return number(motion.feed.value_or(0.0), "F");
+    return number(motion.feed.value_or(0.0) * 60.0, "F");
   }
 
   template <class Out>
@@ -221,9 +226,8 @@ class Writer {
   void put_axis(std::size_t axis, double value, double base, Pen<Out>& pen) {
     const auto [letter, kind] = dialect_.axes[axis];
     if (kind == AxisKind::linear && base == 0.0) return put(pen, name(letter), value);
-    const double unit = kind == AxisKind::linear ? 1.0 : radians_per_degree;
-    const auto read = [unit, base](double number) { return base + number * unit; };
-    put(pen, name(letter), find_decimal(value, (value - base) / unit, read).number);
+    const auto read = [unit = unit(axis), base](double number) { return base + number * unit; };
+    put(pen, name(letter), find_decimal(value, (value - base) / unit(axis), read).number);
   }
 
   /// The first motion after a change of offset begins where the reader will stand.
