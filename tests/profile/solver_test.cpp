@@ -21,7 +21,7 @@ TEST_CASE("random profiles keep every limit and lose no time against an independ
                            : profile::five_phase(c.length, c.speeds, c.limits);
       if (!p) continue;
       const auto errors = test::examine(c, *p);
-      const double loss = static_cast<double>(p->duration() / test::best_duration(c, seven) - 1);
+      const double loss = test::time_loss(c, *p, seven);
       if (std::abs(loss) > worst.time_loss) worst.time_loss = std::abs(loss), where = c;
       worst.end_position = std::max(worst.end_position, errors.end_position);
       worst.end_speed = std::max(worst.end_speed, errors.end_speed);

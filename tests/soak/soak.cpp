@@ -69,9 +69,7 @@ int main(int argc, char** argv) {
       }
       ++solved;
       auto errors = test::examine(c, *profile);
-      if (feasible)
-        errors.time_loss =
-            std::abs(static_cast<double>(profile->duration() / test::best_duration(c, seven) - 1));
+      if (feasible) errors.time_loss = std::abs(test::time_loss(c, *profile, seven));
       for (Quantity& q : quantities)
         if (!(errors.*q.member <= q.worst)) q = {q.name, q.member, q.bound, errors.*q.member, c, seven};
     }

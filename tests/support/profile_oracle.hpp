@@ -79,6 +79,29 @@ inline Real best_duration(const ProfileCase& c, bool seven) {
   return time(c.speeds.start, top) + time(top, c.speeds.end) + (c.length - ramps(top)) / top;
 }
 
+/// How much longer a profile takes than the best, relative; a bound from above where that is below 1e-12.
+/// With a top speed a little higher the ramps alone must be longer than the length, so the best time lies
+/// between the two.
+inline double time_loss(const ProfileCase& c, const profile::Profile& p, bool seven) {
+  const auto bisected = [&] { return static_cast<double>(p.duration() / best_duration(c, seven) - 1); };
+  const auto& parts = p.parts();
+  const bool rising = c.speeds.start <= c.speeds.end;
+  const auto& ramp = rising ? parts.down : parts.up;  // next to the higher end speed
+  const Real high = std::max(c.speeds.start, c.speeds.end);
+  const Real climb =
+      std::abs(static_cast<Real>(ramp.acceleration) * (static_cast<Real>(ramp.first) + ramp.hold));
+  const Real top = high + climb * (1 + 1e-13L);
+  if (top > c.limits.velocity || parts.cruise * top > 1e-12L * c.length) return bisected();
+  const Real acceleration = c.limits.acceleration, jerk = c.limits.jerk;
+  const Real first = ramp_distance(c.speeds.start, top, acceleration, jerk, seven);
+  const Real second = ramp_distance(top, c.speeds.end, acceleration, jerk, seven);
+  if (!(first + second > c.length)) return bisected();
+  const Real time = 2 * first / (c.speeds.start + top) + 2 * second / (top + c.speeds.end) +
+                    (c.length - first - second) / top;
+  const double loss = static_cast<double>(p.duration() / time - 1);
+  return loss < 1e-12 ? loss : bisected();
+}
+
 /// Integrates the phases and compares with what was asked for. Finite limits.
 inline ProfileErrors examine(const ProfileCase& c, const profile::Profile& p) {
   constexpr Real epsilon = std::numeric_limits<double>::epsilon();

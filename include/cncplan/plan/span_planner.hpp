@@ -26,6 +26,7 @@ struct BasicGate {
   BasicLimits<S> limits;  ///< from here to the next gate; acceleration and jerk the same over a whole region
   bool knot{};            ///< zero acceleration here
   bool fixed{};           ///< a knot by force
+  bool settled{};         ///< its speed would be the same whatever came behind it
 };
 
 using Gate = BasicGate<double>;
@@ -35,10 +36,11 @@ using Gate = BasicGate<double>;
 inline constexpr double shared_limits_ratio = 1.3;
 
 /// Reduces blocks to gates: writes at most one more than there are blocks into `gates`, the last behind the
-/// end, and returns how many. The motion starts at `start_speed` and ends at rest.
+/// end, and returns how many. The motion starts at `start_speed` and ends at rest. The start of block
+/// `divide`, if there is one, becomes a knot.
 template <std::floating_point S>
 std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
-                       std::span<BasicGate<S>> gates) {
+                       std::span<BasicGate<S>> gates, std::size_t divide = 0) {
   if (blocks.empty()) return 0;
   std::size_t count = 0;
   std::size_t region = 0;  // its first gate
@@ -67,12 +69,13 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
       low = lower;
       high = higher;
     }
-    if (new_region || cap < before || cap < limits.velocity)
-      gates[count++] = {i, cap, cap, S(0), limits, true, new_region};
+    const bool fixed = new_region || i == divide;
+    if (fixed || cap < before || cap < limits.velocity)
+      gates[count++] = {i, cap, cap, S(0), limits, true, fixed, false};
     gates[count - 1].gap += blocks[i].length;
   }
   close_region();
-  gates[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true};
+  gates[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true, false};
   return count;
 }
 
@@ -143,6 +146,7 @@ class GatePlanner {
       gate.knot = gate.fixed || gate.cap <= reachable;
       if (!gate.knot) continue;
       gate.speed = std::min(gate.cap, reachable);
+      gate.settled = gate.cap <= reachable;
       right = i;
       distance = S(0);
     }
@@ -158,6 +162,7 @@ class GatePlanner {
       const S reachable = reach(gates_[left], gates_[left].speed, distance);
       gate.knot = gate.fixed || gate.speed <= reachable;
       if (!gate.knot) continue;
+      gate.settled = gate.settled || reachable <= gate.speed;
       gate.speed = std::min(gate.speed, reachable);
       left = i;
       distance = S(0);
