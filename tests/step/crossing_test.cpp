@@ -147,6 +147,18 @@ TEST_CASE("a boundary touched and not crossed gives no edge") {
   CHECK(edges.size() == 80);  // ten turns of 2 up, 4 down, 2 up
   CHECK(cursor.count() == 0);
 
+  // The same at scales where the product of amplitude and steps per unit is rounded either way.
+  test::Random random;
+  int wrong = 0;
+  for (int run = 0; run < 500; ++run) {
+    const double per_unit = random.log_uniform(0.1, 1e4);
+    const int steps = random.integer(1, 30);
+    const SineAxis<double> scaled{(steps + 0.5) / per_unit, 0.0, 20 * std::numbers::pi, 0.0};
+    step::StepCursor touching(scaled, step::PhaseClock(phases), 0, per_unit, 0);
+    wrong += all(touching).size() != static_cast<std::size_t>(40 * steps);
+  }
+  CHECK(wrong == 0);
+
   const SineAxis<double> beyond{2.5 * (1 + 1e-12), 0.0, 20 * std::numbers::pi, 0.0};
   step::StepCursor crossing(beyond, step::PhaseClock(phases), 0, 1.0, 0);
   CHECK(all(crossing).size() == 120);
@@ -175,6 +187,35 @@ TEST_CASE("an axis that ends on a boundary steps only if the next block goes on"
   REQUIRE(started_edges.size() == 2);
   CHECK(started_edges[0] == step::Edge{0.0, 0, -1});
   CHECK(started.count() == 1);
+}
+
+TEST_CASE("steps left over from before come at the block's start") {
+  const Straight<double> line{10.0, 12.0};
+  const auto phases = test::steady(2.0, 1.0);
+  step::StepCursor late(line, step::PhaseClock(phases, 3.0), 0, 1.0, 7);
+  CHECK(all(late) == std::vector<step::Edge>{{3, 0, 1}, {3, 0, 1}, {3, 0, 1}, {3.5, 0, 1}, {4.5, 0, 1}});
+  CHECK(late.count() == 12);
+}
+
+TEST_CASE("a traced curve's velocity may dip through zero within a piece") {
+  // x = w^3 - w/100 with w = u - 1: turns round at w = -+sqrt(1/300), inside the first of two pieces.
+  struct Dip {
+    using Scalar = double;
+    using Vector = VectorN<double, 1>;
+    [[nodiscard]] double length() const { return 2.2; }
+    [[nodiscard]] double parameter_end() const { return 2.2; }
+    [[nodiscard]] double length_at(double u) const { return u; }
+    [[nodiscard]] Vector position(double u) const { return Vector((u - 1) * ((u - 1) * (u - 1) - 0.01)); }
+    [[nodiscard]] Vector derivative(double u) const { return Vector(3 * (u - 1) * (u - 1) - 0.01); }
+    [[nodiscard]] Vector second_derivative(double u) const { return Vector(6 * (u - 1)); }
+  };
+  const Dip curve;
+  const step::TracedPath traced(curve, 2);
+  const double first = traced.next_turning(0, 0.0);
+  CHECK(first == Approx(1 - std::sqrt(1.0 / 300)).epsilon(1e-14));
+  const double second = traced.next_turning(0, first);
+  CHECK(second == Approx(1 + std::sqrt(1.0 / 300)).epsilon(1e-14));
+  CHECK(traced.next_turning(0, second) == 2.2);
 }
 
 TEST_CASE("a block of length zero and an axis at rest have no edges") {

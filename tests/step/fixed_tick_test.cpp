@@ -24,12 +24,14 @@ struct Listed {
 }  // namespace
 
 TEST_CASE("edges of one tick share a word, directions stay") {
-  step::FixedTicks ticks(Listed{{{0.101, 0, 1}, {0.104, 2, -1}, {0.26, 1, 1}, {0.34, 2, 1}}}, 10.0);
+  step::FixedTicks ticks(Listed{{{0.101, 0, 1}, {0.104, 2, -1}, {0.201, 0, 1}, {0.26, 1, 1}, {0.34, 2, 1}}},
+                         10.0);
   CHECK(**ticks.next() == Tick{1, 0b101, 0xfffffffb});
+  CHECK(**ticks.next() == Tick{2, 0b001, 0xfffffffb});
   CHECK(**ticks.next() == Tick{3, 0b110, 0xffffffff});
   CHECK_FALSE(ticks.next()->has_value());
   CHECK(ticks.max_jitter() == Approx(0.04));
-  CHECK(ticks.rms_jitter() == Approx(std::sqrt((1 + 16 + 1600 + 1600) * 1e-6 / 4)));
+  CHECK(ticks.rms_jitter() == Approx(std::sqrt((1 + 16 + 1 + 1600 + 1600) * 1e-6 / 5)));
 }
 
 TEST_CASE("two steps of an axis in a tick are an error") {
