@@ -1,9 +1,13 @@
 // What the rooms ask of each other's types. A wrong type fails on the name of what it lacks.
 #pragma once
 
+#include <array>
 #include <concepts>
 
 #include "cncplan/core/error.hpp"
+#include "cncplan/core/jet.hpp"
+#include "cncplan/core/joint_limits.hpp"
+#include "cncplan/core/pose.hpp"
 #include "cncplan/core/state.hpp"
 #include "cncplan/core/vector.hpp"
 
@@ -36,6 +40,41 @@ concept Profile = requires(const F& profile, typename F::Scalar x) {
   { profile.length() } -> std::same_as<typename F::Scalar>;
   { profile.at(x) } -> std::same_as<BasicState<typename F::Scalar>>;
   { profile.time_at(x) } -> std::same_as<typename F::Scalar>;
+};
+
+/// A machine: from the positions of its joints to the pose of its tool, and back. The Jacobian holds the
+/// derivatives of the tip (rows 0 to 2) and of the tool's direction (rows 3 to 5) by each joint.
+template <class K>
+concept Kinematics = requires(const K& machine, const typename K::Joints& joints,
+                              const BasicPose<typename K::Scalar>& pose) {
+  requires std::floating_point<typename K::Scalar>;
+  { machine.forward(joints) } -> std::same_as<BasicPose<typename K::Scalar>>;
+  { machine.inverse(pose) } -> std::same_as<Expected<typename K::Joints>>;
+  {
+    machine.jacobian(joints)
+    } -> std::same_as<Eigen::Matrix<typename K::Scalar, 6, K::Joints::RowsAtCompileTime>>;
+  {
+    machine.joint_limits()
+    } -> std::same_as<BasicJointLimits<typename K::Scalar, K::Joints::RowsAtCompileTime>>;
+};
+
+/// A smooth map from the points of a program to a machine's joints, on the part of space for which it was
+/// made. Evaluated with jets it yields the joints' derivatives along any path. `measured` is the point whose
+/// travel counts as the length of the motion, the tool's tip as a rule. `keeps_length`: that length is the
+/// one of the programmed path. `reach`: the length of programmed path, mm, over which the map changes its
+/// shape.
+template <class C>
+concept Chart = requires(const C& chart, const std::array<typename C::Scalar, 3>& point,
+                         const std::array<BasicJet<typename C::Scalar>, 3>& moving) {
+  requires std::floating_point<typename C::Scalar>;
+  requires C::joint_count >
+  0;
+  { C::keeps_length } -> std::convertible_to<bool>;
+  { chart.reach(point) } -> std::same_as<typename C::Scalar>;
+  { chart.joints(point) } -> std::same_as<std::array<typename C::Scalar, C::joint_count>>;
+  { chart.joints(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, C::joint_count>>;
+  { chart.measured(point) } -> std::same_as<std::array<typename C::Scalar, 3>>;
+  { chart.measured(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, 3>>;
 };
 
 }  // namespace cncplan

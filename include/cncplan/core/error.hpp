@@ -34,6 +34,10 @@ enum class ErrorCode : std::uint8_t {
   ignored,
   discontinuous,
   malformed,
+  unconnected,
+  branching,
+  duplicate,
+  unreachable,
   count_,  // number of codes
 };
 
@@ -63,6 +67,10 @@ enum class ErrorCode : std::uint8_t {
       "is ignored",
       "does not begin where the last one ended",
       "does not have its documented form",
+      "is not connected to the others",
+      "meets more than one other",
+      "is there twice",
+      "cannot be reached by the machine",
   };
   return table[static_cast<std::size_t>(code)];
 }

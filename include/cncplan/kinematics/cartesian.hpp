@@ -1,0 +1,62 @@
+// The plain mill: its joints are the coordinates.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "cncplan/core/concepts.hpp"
+
+namespace cncplan::kinematics {
+
+/// Three linear axes X, Y, Z and an upright tool.
+template <std::floating_point S>
+struct BasicCartesian {
+  using Scalar = S;
+  using Joints = VectorN<S, 3>;
+
+  BasicJointLimits<S, 3> limits{};
+
+  [[nodiscard]] BasicPose<S> forward(const Joints& joints) const {
+    return {joints, BasicVector3<S>::UnitZ()};
+  }
+
+  /// Errors: `unreachable` for a tilted tool (the value is its sine), and a joint beyond its travel.
+  [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
+    const S tilt = pose.direction.template head<2>().norm();
+    constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
+    if (!(tilt <= rounding && pose.direction.z() > S(0)))
+      return tl::unexpected(Error{ErrorCode::unreachable, "tool direction", static_cast<double>(tilt), 0.0});
+    return within_travel(pose.position, limits, {"X", "Y", "Z"});
+  }
+
+  [[nodiscard]] Eigen::Matrix<S, 6, 3> jacobian(const Joints&) const {
+    return Eigen::Matrix<S, 6, 3>::Identity();
+  }
+
+  [[nodiscard]] BasicJointLimits<S, 3> joint_limits() const { return limits; }
+};
+
+using Cartesian = BasicCartesian<double>;
+
+/// Joints that are the programmed coordinates, for motion that is limited axis by axis.
+template <std::floating_point S>
+struct BasicCartesianChart {
+  using Scalar = S;
+  static constexpr std::size_t joint_count = 3;
+  static constexpr bool keeps_length = true;
+
+  [[nodiscard]] S reach(const std::array<S, 3>&) const { return std::numeric_limits<S>::infinity(); }
+
+  template <NumberOver<S> T>
+  [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
+    return point;
+  }
+  template <NumberOver<S> T>
+  [[nodiscard]] std::array<T, 3> measured(const std::array<T, 3>& point) const {
+    return point;
+  }
+};
+
+using CartesianChart = BasicCartesianChart<double>;
+
+}  // namespace cncplan::kinematics

@@ -1,0 +1,85 @@
+// Cartesian programs on a rotary table: KK22's use of the tire-mold machine, its tilt axis at rest.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/kinematics/azimuth.hpp"
+
+namespace cncplan::kinematics {
+
+/// Joints R (radial slide, mm), Z (mm) and C (rotary table, rad), an upright tool (KK22 section 4, where R is
+/// called Y): R = hypot(x, y), C = atan2(y, x). Singular on the table's axis, where C turns without bound.
+template <std::floating_point S>
+struct BasicPolar {
+  using Scalar = S;
+  using Joints = VectorN<S, 3>;
+
+  BasicJointLimits<S, 3> limits{};
+  S smallest_radius = S(1);  ///< mm, > 0; nothing nearer to the table's axis is reached
+
+  [[nodiscard]] BasicPose<S> forward(const Joints& joints) const {
+    const auto& [r, z, c] = parts(joints);
+    return {{r * std::cos(c), r * std::sin(c), z}, BasicVector3<S>::UnitZ()};
+  }
+
+  /// C comes in (-pi, pi]. Errors: `unreachable` for a tilted tool (the value is its sine), `below_limit` for
+  /// a radius below the smallest, and a joint beyond its travel.
+  [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
+    const S tilt = pose.direction.template head<2>().norm();
+    constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
+    if (!(tilt <= rounding && pose.direction.z() > S(0)))
+      return tl::unexpected(Error{ErrorCode::unreachable, "tool direction", static_cast<double>(tilt), 0.0});
+    const BasicVector3<S>& p = pose.position;
+    const S radius = std::hypot(p.x(), p.y());
+    if (!(radius >= smallest_radius))
+      return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(radius),
+                                  static_cast<double>(smallest_radius)});
+    return within_travel(Joints(radius, p.z(), std::atan2(p.y(), p.x())), limits, {"R", "Z", "C"});
+  }
+
+  [[nodiscard]] Eigen::Matrix<S, 6, 3> jacobian(const Joints& joints) const {
+    const auto& [r, z, c] = parts(joints);
+    Eigen::Matrix<S, 6, 3> result = Eigen::Matrix<S, 6, 3>::Zero();
+    result.template topRows<3>() << std::cos(c), S(0), -r * std::sin(c),  //
+        std::sin(c), S(0), r * std::cos(c),                               //
+        S(0), S(1), S(0);
+    return result;
+  }
+
+  [[nodiscard]] BasicJointLimits<S, 3> joint_limits() const { return limits; }
+
+ private:
+  static std::array<S, 3> parts(const Joints& joints) { return {joints[0], joints[1], joints[2]}; }
+};
+
+using Polar = BasicPolar<double>;
+
+/// Joints R, Z, C of programmed points X, Y, Z, with C smooth round an azimuth.
+template <std::floating_point S>
+struct BasicPolarChart {
+  using Scalar = S;
+  static constexpr std::size_t joint_count = 3;
+  static constexpr bool keeps_length = true;
+
+  BasicAzimuth<S> azimuth;
+
+  [[nodiscard]] S reach(const std::array<S, 3>& point) const { return std::hypot(point[0], point[1]); }
+
+  template <NumberOver<S> T>
+  [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
+    using std::hypot;
+    const auto& [x, y, z] = point;
+    return {hypot(x, y), z, azimuth.of(x, y)};
+  }
+  template <NumberOver<S> T>
+  [[nodiscard]] std::array<T, 3> measured(const std::array<T, 3>& point) const {
+    return point;
+  }
+};
+
+using PolarChart = BasicPolarChart<double>;
+
+}  // namespace cncplan::kinematics

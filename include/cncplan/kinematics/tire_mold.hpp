@@ -1,0 +1,89 @@
+// The 4-axis tire-mold machine: radial slide, vertical slide, tilting spindle, rotary table (spec: tire
+// mold).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "cncplan/core/concepts.hpp"
+
+namespace cncplan::kinematics {
+
+/// Joints R and Z (mm), A and C (rad); seen in the radial plane of the table angle C:
+///
+///        height                 holder (R, Z)
+///          |                     /
+///          |                    /  tool_length, tilted by A
+///          |                   /
+///          |                 tip
+///          +------------------------------- radius
+///
+/// The tip lies at radius R + tool_length sin A and height Z - tool_length cos A, `side_offset` beside the
+/// radial plane; the tool's axis is (-sin A, cos A) in that plane. These are the fourth and the second column
+/// of K17 Eq. 3.6 with theta1 = C, theta4 = A, d2 = R, h2 = side_offset, h3 = tool_length and h1 - d3 = Z,
+/// the height that the machine shows.
+template <std::floating_point S>
+struct BasicTireMold {
+  using Scalar = S;
+  using Joints = VectorN<S, 4>;
+
+  S tool_length{};           ///< mm
+  S side_offset{};           ///< mm
+  S smallest_radius = S(1);  ///< mm, > 0; no tip nearer to the table's axis is reached
+  BasicJointLimits<S, 4> limits{};
+
+  [[nodiscard]] BasicPose<S> forward(const Joints& joints) const {
+    const S sa = std::sin(joints[2]), ca = std::cos(joints[2]);
+    const S sc = std::sin(joints[3]), cc = std::cos(joints[3]);
+    const S radial = joints[0] + tool_length * sa;
+    return {{radial * cc + side_offset * sc, radial * sc - side_offset * cc, joints[1] - tool_length * ca},
+            {-sa * cc, -sa * sc, ca}};
+  }
+
+  /// C comes in (-pi, pi], and the tip on the slide's side of the axis. Errors: `below_limit` for a tip
+  /// nearer to the axis than the smallest radius, `unreachable` for a direction outside the radial plane (the
+  /// value is how far), and a joint beyond its travel.
+  [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
+    const BasicVector3<S>& p = pose.position;
+    const BasicVector3<S>& n = pose.direction;
+    const S distance = std::hypot(p.x(), p.y());
+    const S radial_sq = (distance - side_offset) * (distance + side_offset);
+    const S radial = radial_sq > S(0) ? std::sqrt(radial_sq) : S(0);
+    if (!(radial >= smallest_radius))
+      return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(radial),
+                                  static_cast<double>(smallest_radius)});
+    // (x, y) is (radial, -side_offset) turned by C
+    const S c = std::atan2(p.y() * radial + p.x() * side_offset, p.x() * radial - p.y() * side_offset);
+    const S sc = std::sin(c), cc = std::cos(c);
+    const S across = n.y() * cc - n.x() * sc;
+    const S rounding = std::sqrt(std::numeric_limits<S>::epsilon());
+    if (!(std::abs(across) <= rounding))
+      return tl::unexpected(
+          Error{ErrorCode::unreachable, "tool direction", static_cast<double>(across), 0.0});
+    const S a = std::atan2(-(n.x() * cc + n.y() * sc), n.z());
+    const Joints joints(radial - tool_length * std::sin(a), p.z() + tool_length * std::cos(a), a, c);
+    return within_travel(joints, limits, {"R", "Z", "A", "C"});
+  }
+
+  [[nodiscard]] Eigen::Matrix<S, 6, 4> jacobian(const Joints& joints) const {
+    const S sa = std::sin(joints[2]), ca = std::cos(joints[2]);
+    const S sc = std::sin(joints[3]), cc = std::cos(joints[3]);
+    const S radial = joints[0] + tool_length * sa;
+    const S zero(0), one(1);
+    Eigen::Matrix<S, 6, 4> result;
+    result << cc, zero, tool_length * ca * cc, side_offset * cc - radial * sc,  //
+        sc, zero, tool_length * ca * sc, side_offset * sc + radial * cc,        //
+        zero, one, tool_length * sa, zero,                                      //
+        zero, zero, -ca * cc, sa * sc,                                          //
+        zero, zero, -ca * sc, -sa * cc,                                         //
+        zero, zero, -sa, zero;
+    return result;
+  }
+
+  [[nodiscard]] BasicJointLimits<S, 4> joint_limits() const { return limits; }
+};
+
+using TireMold = BasicTireMold<double>;
+
+}  // namespace cncplan::kinematics

@@ -1,0 +1,48 @@
+#include "cncplan/kinematics/polar.hpp"
+
+#include "laws.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::kinematics;
+
+static_assert(Kinematics<Polar> && Kinematics<BasicPolar<float>>);
+static_assert(Chart<PolarChart> && Chart<BasicPolarChart<float>>);
+
+namespace {
+constexpr double pi = std::numbers::pi;
+}
+
+TEST_CASE("polar joints of known points", "[polar]") {
+  const Polar machine;
+  const auto q = machine.inverse({{3, 4, 5}, Vector3::UnitZ()});
+  REQUIRE(q);
+  CHECK((*q)[0] == 5);
+  CHECK((*q)[1] == 5);
+  CHECK((*q)[2] == Approx(std::atan2(4, 3)));
+  CHECK((*machine.inverse({{-3, 0, 5}, Vector3::UnitZ()}))[2] == Approx(pi));
+}
+
+TEST_CASE("polar: a million poses there and back", "[polar]") {
+  test::Random random;
+  const Polar machine;
+  test::KinematicErrors worst;
+  for (int i = 0; i < 1000000; ++i) {
+    const Vector3 q(random.log_uniform(1, 900), random.uniform(0, 600), random.uniform(-pi, pi));
+    test::examine(machine, q, Vector3(q[0], 600, pi), worst);
+    if (i < 1000) test::examine_jacobian(machine, q, 900, worst);
+  }
+  CHECK(worst.round_trip < 1e-12);
+  CHECK(worst.jacobian < 1e-10);
+  CHECK(worst.refused == 0);
+}
+
+TEST_CASE("polar: the axis and tilted tools are out of reach", "[polar]") {
+  const Polar machine{.smallest_radius = 2};
+  CHECK(machine.inverse({{1, 1, 0}, Vector3::UnitZ()}).error() ==
+        Error{ErrorCode::below_limit, "radius", std::sqrt(2.0), 2});
+  CHECK(machine.inverse({{0, 0, 0}, Vector3::UnitZ()}).error() ==
+        Error{ErrorCode::below_limit, "radius", 0, 2});
+  CHECK(machine.inverse({{9, 9, 0}, Vector3::UnitX()}).error().code == ErrorCode::unreachable);
+  CHECK(machine.inverse({{9, 9, 0}, -Vector3::UnitZ()}).error().code == ErrorCode::unreachable);
+}

@@ -1,0 +1,119 @@
+#include "cncplan/kinematics/sidewall.hpp"
+
+#include "cncplan/kinematics/profile_chain.hpp"
+#include "cncplan/kinematics/tire_mold.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::kinematics;
+
+static_assert(Chart<SidewallChart> && Chart<BasicSidewallChart<float>>);
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// Outwards up a flat shoulder, over a convex arc, down a slope: with a kink before the slope.
+ProfileChain wall() {
+  const std::vector<Drawn> drawn{DrawnLine{{200, 100}, {160, 100}}, DrawnArc{{160, 60}, 40, pi / 2, pi / 4},
+                                 DrawnLine{{160 - 20 * std::sqrt(2), 60 + 20 * std::sqrt(2)}, {120, 60}}};
+  return *chain_profile(std::span<const Drawn>(drawn));
+}
+
+}  // namespace
+
+TEST_CASE("the machine's forward kinematics lead back to the wall", "[sidewall]") {
+  test::Random random;
+  const auto chain = wall();
+  const Sidewall sidewall(chain.pieces, 50, 20.8);
+  const TireMold machine{.tool_length = 20.8};
+  double tip = 0, along = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const double r = random.uniform(50, 50 + chain.length()), c = random.uniform(-pi, pi);
+    const double z = random.uniform(-1, 20);
+    const auto joints = sidewall.joints({r * std::cos(c), r * std::sin(c), z});
+    if (!joints) FAIL("refused");
+    const Pose pose = machine.forward(*joints);
+    const auto& piece = chain.pieces[sidewall.piece_at(r)];
+    const double q = r - 50 - piece.from;
+    const auto p = piece.point(q);
+    const auto n = piece.normal(q);
+    const Vector3 expected((p.r + z * n.r) * std::cos(c), (p.r + z * n.r) * std::sin(c), p.z + z * n.z);
+    tip = std::max(tip, (pose.position - expected).norm());
+    along = std::max(along, (pose.direction - Vector3(n.r * std::cos(c), n.r * std::sin(c), n.z)).norm());
+  }
+  CHECK(tip < 1e-12 * 500);
+  CHECK(along < 1e-13);
+}
+
+TEST_CASE("the wall ends somewhere, and the origin has no angle", "[sidewall]") {
+  const auto chain = wall();
+  const Sidewall sidewall(chain.pieces, 50, 20.8);
+  CHECK(sidewall.joints({49, 0, 0}).error() == Error{ErrorCode::below_limit, "radius", 49, 50});
+  CHECK(sidewall.joints({0, 500, 0}).error() ==
+        Error{ErrorCode::above_limit, "radius", 500, sidewall.end_radius()});
+  CHECK(sidewall.joints({std::nan(""), 0, 0}).error().field == "radius");
+  const Sidewall from_center(chain.pieces, 0, 20.8);
+  CHECK(from_center.joints({0, 0, 0}).error().code == ErrorCode::not_positive);
+}
+
+TEST_CASE("jets of the mapping are its derivatives", "[sidewall]") {
+  const auto chain = wall();
+  const Sidewall sidewall(chain.pieces, 50, 20.8);
+  const auto chart = sidewall.chart(1, Azimuth(0.6, 0.8, 0));
+  // along a line over the arc piece
+  const auto point = [](double t) { return std::array<double, 3>{62 + 3 * t, 75 - 2 * t, 1 + 0.5 * t}; };
+  const auto joints =
+      chart.joints(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
+  const auto tip = chart.tip(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
+  const double h = 0.02;
+  const auto check = [&](auto at, const Jet& jet) {
+    CHECK(jet.value == Approx(at(0.0)));
+    CHECK(jet.first == Approx((8 * (at(h) - at(-h)) - at(2 * h) + at(-2 * h)) / (12 * h)).epsilon(1e-9));
+    CHECK(
+        jet.second ==
+        Approx((16 * (at(h) + at(-h)) - at(2 * h) - at(-2 * h) - 30 * at(0.0)) / (12 * h * h)).epsilon(1e-6));
+    CHECK(jet.third == Approx((at(2 * h) - 2 * at(h) + 2 * at(-h) - at(-2 * h)) / (2 * h * h * h))
+                           .epsilon(1e-3)
+                           .margin(1e-8));
+  };
+  for (std::size_t i = 0; i < 4; ++i) check([&](double t) { return chart.joints(point(t))[i]; }, joints[i]);
+  for (std::size_t i = 0; i < 3; ++i) check([&](double t) { return chart.tip(point(t))[i]; }, tip[i]);
+}
+
+TEST_CASE("over a kink the tip stands still and the tool turns", "[sidewall]") {
+  const auto chain = wall();
+  const Sidewall sidewall(chain.pieces, 50, 20.8);
+  const double angle = kink_angle(chain.pieces[1], chain.pieces[2]);
+  REQUIRE(std::abs(angle) > 0.2);
+  const double c = 2.5, begins = sidewall.begins(2);
+  const auto chart = sidewall.kink_chart(1, Azimuth(std::cos(c), std::sin(c), 0));
+  const TireMold machine{.tool_length = 20.8};
+  const auto at = [&](double turned) {
+    const double r = begins + turned;
+    return std::array<double, 3>{r * std::cos(c), r * std::sin(c), 0};
+  };
+  double worst = 0;
+  for (int k = 0; k <= 10; ++k) {
+    const auto q = chart.joints(at(std::abs(angle) * k / 10));
+    const auto p = chain.pieces[2].start;
+    worst = std::max(worst, (machine.forward({q[0], q[1], q[2], q[3]}).position -
+                             Vector3(p.x() * std::cos(c), p.x() * std::sin(c), p.y()))
+                                .norm());
+  }
+  CHECK(worst < 1e-12 * 500);
+  const auto before = sidewall.chart(1).joints(at(0)), after = sidewall.chart(2).joints(at(0));
+  const auto first = chart.joints(at(0)), last = chart.joints(at(std::abs(angle)));
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(std::abs(first[i] - before[i]) < 1e-12 * 500);
+    CHECK(std::abs(last[i] - after[i]) < 1e-12 * 500);
+  }
+}
+
+TEST_CASE("mapping a point allocates nothing", "[sidewall]") {
+  const auto chain = wall();
+  const Sidewall sidewall(chain.pieces, 50, 20.8);
+  CHECK(test::heap_allocations_of([&] { (void)sidewall.joints({60, 10, 1}); }) == 0);
+}
