@@ -138,6 +138,52 @@ TEST_CASE("an axis that turns round steps when brute force says, with and withou
   CHECK(worst_traced < 1.0);
 }
 
+TEST_CASE("a straight cut on a machine that swings and turns: radius and angle step where they should") {
+  // Kinematics of a rotary table: y = hypot, c = atan2 of a straight tool path passing the centre at 0.3 mm.
+  struct Table {
+    using Scalar = double;
+    using Vector = VectorN<double, 2>;
+    [[nodiscard]] double length() const { return 20.0; }
+    [[nodiscard]] double parameter_end() const { return 20.0; }
+    [[nodiscard]] double parameter_at(double s) const { return s; }
+    [[nodiscard]] double length_at(double u) const { return u; }
+    [[nodiscard]] Vector position(double u) const { return {std::hypot(u - 7, 0.3), std::atan2(0.3, u - 7)}; }
+    [[nodiscard]] Vector derivative(double u) const {
+      const double r_sq = (u - 7) * (u - 7) + 0.09;
+      return {(u - 7) / std::sqrt(r_sq), -0.3 / r_sq};
+    }
+    [[nodiscard]] Vector second_derivative(double u) const {
+      const double r_sq = (u - 7) * (u - 7) + 0.09;
+      return {0.09 / (r_sq * std::sqrt(r_sq)), 0.6 * (u - 7) / (r_sq * r_sq)};
+    }
+  };
+  const Table table;
+  const step::TracedPath traced(table);
+  const auto phases = test::steady(20.0, 1.0);
+  const std::array per_unit{100.0, 1000.0};
+  const VectorN<double, 2> start = table.position(0.0);
+  step::StepCursor radius(traced, step::PhaseClock(phases), 0, per_unit[0],
+                          step::count_at(start(0) * per_unit[0]));
+  step::StepCursor angle(traced, step::PhaseClock(phases), 1, per_unit[1],
+                         step::count_at(start(1) * per_unit[1]));
+  std::int64_t r = radius.count(), c = angle.count();
+  double worst = 0.0;
+  while (const auto edge = radius.next()) {
+    // At constant speed 1 the time is the place: y^2 = (u - 7)^2 + 0.09 solved by hand.
+    const double y = (static_cast<double>(r) + edge->direction * 0.5) / per_unit[0];
+    r += edge->direction;
+    worst = std::max(worst, std::abs(edge->time - (7 + edge->direction * std::sqrt(y * y - 0.09))));
+  }
+  while (const auto edge = angle.next()) {
+    const double at = (static_cast<double>(c) + edge->direction * 0.5) / per_unit[1];
+    c += edge->direction;
+    worst = std::max(worst, std::abs(edge->time - (7 + 0.3 / std::tan(at))));
+  }
+  CHECK(worst < 1e-9);
+  CHECK(r == step::count_at(table.position(20.0)(0) * per_unit[0]));
+  CHECK(c == step::count_at(table.position(20.0)(1) * per_unit[1]));
+}
+
 TEST_CASE("a boundary touched and not crossed gives no edge") {
   // Amplitude 2.5 steps: the extremum is the boundary between 2 and 3, up to rounding of the sine.
   const SineAxis<double> path{2.5, 0.0, 20 * std::numbers::pi, 0.0};
