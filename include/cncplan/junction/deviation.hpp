@@ -2,8 +2,6 @@
 // limit.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "cncplan/junction/geometry.hpp"
@@ -11,9 +9,9 @@
 namespace cncplan::junction {
 
 /// v^2 = A delta sin(theta/2) / (1 - sin(theta/2)), theta the angle between the tangents seen from inside (pi
-/// is straight on, 0 a reversal). With half the turn's sine s = |t1 - t0| / 2 and cosine c = sin(theta/2) it
-/// reads A delta c (1 + c) / s^2, which stays exact for the smallest turns; no limit where s vanishes up to
-/// rounding.
+/// is straight on, 0 a reversal). With sine s = |t1 - t0| / 2 and cosine c = |t1 + t0| / 2 = sin(theta/2) of
+/// half the turn it reads A delta c (1 + c) / s^2, which stays exact for the smallest turns and for the
+/// sharpest; no limit where s vanishes up to rounding.
 template <std::floating_point S>
 struct BasicDeviation {
   S delta{};  ///< mm, >= 0
@@ -22,7 +20,7 @@ struct BasicDeviation {
     const S sine_sq = (joint.after.tangent - joint.before.tangent).squaredNorm() / S(4);
     constexpr S rounding = S(4) * std::numeric_limits<S>::epsilon();
     if (sine_sq < rounding * rounding) return std::numeric_limits<S>::infinity();
-    const S cosine = std::sqrt(std::max(S(1) - sine_sq, S(0)));
+    const S cosine = (joint.after.tangent + joint.before.tangent).norm() / S(2);
     return joint.limits.acceleration * delta * cosine * (S(1) + cosine) / sine_sq;
   }
 };

@@ -1,0 +1,166 @@
+#include "cncplan/junction/published_table.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "cncplan/path/arc_from_radius.hpp"
+#include "cncplan/plan/block.hpp"
+#include "junction/joints.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+using junction::Kind;
+using junction::Norm;
+using junction::PublishedTable;
+
+namespace {
+
+constexpr Turn g02 = Turn::clockwise, g03 = Turn::counterclockwise;
+
+// As a share of Vmax.
+double share(const junction::Geometry& joint, Norm norm = Norm::rotation) {
+  return std::sqrt(PublishedTable{norm}.speed_sq(joint)) / test::kk22.velocity;
+}
+
+// A chord of 7 mm along X, then one of 3 mm turned to the left by `degrees`; beta = 180 - |degrees|.
+junction::Geometry turned(Turn first, Turn second, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180.0;
+  return test::arcs(first, {7.0, 0.0, 0.0}, second, {3.0 * std::cos(angle), 3.0 * std::sin(angle), 0.0});
+}
+
+junction::Geometry mirrored(junction::Geometry joint) {
+  for (junction::Side* side : {&joint.before, &joint.after}) {
+    side->turn = side->turn == g02 ? g03 : g02;
+    side->chord.y() = -side->chord.y();
+  }
+  return joint;
+}
+
+struct Cell {
+  Turn first, second;
+  double sharp_positive, blunt_positive, sharp_negative, blunt_negative;  // columns of Table 3 as printed
+};
+
+constexpr Cell table_3[] = {{g02, g02, 1.0, 0.5, 0.0, 0.5},
+                            {g02, g03, 0.0, 1.0, 0.0, 1.0},
+                            {g03, g02, 0.0, 1.0, 0.0, 1.0},
+                            {g03, g03, 1.0, 0.5, 0.0, 0.5}};
+
+}  // namespace
+
+TEST_CASE("every cell of KK22 Table 3, in both readings of Norm") {
+  for (const Cell& cell : table_3)
+    for (const double turn : {1.0, 30.0, 60.0, 89.0, 91.0, 120.0, 150.0, 179.0}) {
+      const double positive = turn < 90.0 ? cell.blunt_positive : cell.sharp_positive;
+      const double negative = turn < 90.0 ? cell.blunt_negative : cell.sharp_negative;
+      CAPTURE(static_cast<int>(cell.first), static_cast<int>(cell.second), turn);
+      const auto left = turned(cell.first, cell.second, turn);
+      const auto right = turned(cell.first, cell.second, -turn);
+      CHECK(share(left, Norm::absolute) == positive);
+      CHECK(share(right, Norm::absolute) == negative);
+      CHECK(share(cell.first == g03 ? left : right) == positive);
+      CHECK(share(cell.first == g03 ? right : left) == negative);
+    }
+}
+
+TEST_CASE("read by rotation the table is its own mirror image, read absolutely it is not") {
+  for (const Cell& cell : table_3)
+    for (const double turn : {-170.0, -90.0, -45.0, 0.0, 45.0, 90.0, 170.0}) {
+      CAPTURE(static_cast<int>(cell.first), static_cast<int>(cell.second), turn);
+      const auto joint = turned(cell.first, cell.second, turn);
+      CHECK(share(joint) == share(mirrored(joint)));
+    }
+  const auto chain = turned(g02, g02, -120.0);
+  CHECK(share(chain, Norm::absolute) == 0.0);
+  CHECK(share(mirrored(chain), Norm::absolute) == 1.0);
+}
+
+TEST_CASE("exactly 90 degrees counts as blunt") {
+  for (const double y : {5.0, -5.0})
+    for (const Turn turn : {g02, g03}) {
+      CAPTURE(y, static_cast<int>(turn));
+      CHECK(share(test::arcs(turn, {5, 5, 0}, turn, {y, -y, 0})) == 0.5);
+      CHECK(share(test::arcs(turn, {1, 3, 0}, turn, {y * 3, -y, 0})) == 0.5);
+    }
+  CHECK(share(test::arcs(g03, {5, 5, 0}, g03, {-5.000001, 5, 0})) == 1.0);
+}
+
+TEST_CASE("chords in line count as Norm+1 between arcs of one sense") {
+  const Vector3 chord{4, 2, 0};
+  for (const Norm norm : {Norm::rotation, Norm::absolute}) {
+    // reversal: two semicircles of one circle; an S of two semicircles
+    CHECK(share(test::arcs(g02, chord, g02, -chord), norm) == 1.0);
+    CHECK(share(test::arcs(g03, chord, g03, -2 * chord), norm) == 1.0);
+    CHECK(share(test::arcs(g02, chord, g03, -chord), norm) == 0.0);
+    CHECK(share(test::arcs(g02, chord, g02, chord), norm) == 0.5);
+    CHECK(share(test::arcs(g02, chord, g03, chord), norm) == 1.0);
+  }
+}
+
+TEST_CASE("what the paper's table does not cover is an exact stop") {
+  const auto smooth = turned(g03, g03, 60.0);
+  REQUIRE(share(smooth) > 0.0);
+  const auto stops = [&](auto change) {
+    auto joint = smooth;
+    change(joint);
+    return share(joint) == 0.0;
+  };
+  CHECK(stops([](auto& joint) { joint.before.kind = Kind::line; }));
+  CHECK(stops([](auto& joint) { joint.after.kind = Kind::line; }));
+  CHECK(stops([](auto& joint) { joint.before.kind = Kind::rapid; }));
+  CHECK(stops([](auto& joint) { joint.after.kind = Kind::rapid; }));
+  CHECK(stops([](auto& joint) { joint.before.closed = true; }));
+  CHECK(stops([](auto& joint) { joint.after.closed = true; }));
+  CHECK(stops([](auto& joint) { joint.after.plane = Plane::yz; }));
+}
+
+TEST_CASE("chords are judged in the plane of the arcs, whatever the third axis does") {
+  for (const Plane plane : {Plane::xy, Plane::zx, Plane::yz}) {
+    const auto [first, second, third] = axes(plane);
+    const auto joint = [&](double rise) {
+      Vector3 before, after;
+      before(first) = 4.0, before(second) = 0.0, before(third) = rise;
+      after(first) = -1.0, after(second) = 2.0, after(third) = -rise;
+      return test::arcs(g03, before, g03, after, plane);
+    };
+    for (const double rise : {0.0, 10.0, -10.0}) {
+      CAPTURE(static_cast<int>(plane), rise);
+      CHECK(share(joint(rise)) == 1.0);
+    }
+  }
+}
+
+TEST_CASE("Vmax is the lower of both feeds") {
+  auto joint = turned(g03, g03, 120.0);
+  joint.limits.velocity = 12.0;
+  CHECK(PublishedTable{}.speed_sq(joint) == 144.0);
+}
+
+TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
+  const Vector3 points[] = {{0, 0, 0}, {5, 5, 0}, {10, 0, 0}, {10, -10, 0}, {5, -15, 0}, {0, -10, 0}};
+  std::vector<plan::Block> blocks;
+  for (std::size_t i = 0; i + 1 < std::size(points); ++i) {
+    const auto arc = path::arc_from_radius(points[i], points[i + 1], 5.0, g02, Plane::xy);
+    REQUIRE(arc);
+    blocks.push_back({*arc, test::kk22, Kind::arc});
+  }
+  blocks.push_back({path::Line(points[5], points[0]), test::kk22, Kind::line});
+  for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
+    CAPTURE(i);
+    const junction::Geometry joint{plan::side(blocks[i], true), plan::side(blocks[i + 1], false), test::kk22};
+    CHECK(share(joint) == (i < 4 ? 0.5 : 0.0));
+  }
+}
+
+TEST_CASE("the table is the same in float") {
+  junction::BasicGeometry<float> joint;
+  joint.limits = {30.0f, 1000.0f, 10000.0f};
+  joint.before.kind = joint.after.kind = Kind::arc;
+  joint.before.turn = joint.after.turn = g03;
+  joint.before.chord = {1.0f, 0.0f, 0.0f};
+  joint.after.chord = {1.0f, 1.0f, 0.0f};
+  CHECK(PublishedTable{}.speed_sq(joint) == 225.0f);
+  joint.after.chord = {-1.0f, 1.0f, 0.0f};
+  CHECK(PublishedTable{}.speed_sq(joint) == 900.0f);
+}
