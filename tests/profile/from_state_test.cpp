@@ -1,0 +1,217 @@
+#include "cncplan/profile/from_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "support/catch.hpp"
+#include "support/profile_oracle.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+using test::Real;
+
+struct StateCase {
+  double length;
+  profile::StartState start;
+  double end;
+  Limits limits;
+
+  [[nodiscard]] std::string literal() const {
+    char text[320];
+    std::snprintf(text, sizeof text, "StateCase{%.17g, {%.17g, %.17g}, %.17g, {%.17g, %.17g, %.17g}}", length,
+                  start.velocity, start.acceleration, end, limits.velocity, limits.acceleration, limits.jerk);
+    return text;
+  }
+};
+
+struct Travelled {
+  Real position = 0, velocity = 0, acceleration = 0, lowest = 0, highest = 0, steepest = 0, duration = 0;
+};
+
+// Integrates jerks over times, from a state.
+Travelled integrate(const StateCase& c, const profile::Profile& p) {
+  Travelled t;
+  t.velocity = t.lowest = t.highest = c.start.velocity;
+  t.acceleration = c.start.acceleration;
+  for (const Phase& phase : p.phases()) {
+    const Real d = phase.duration, j = phase.jerk;
+    const Real last = t.acceleration + j * d;
+    if (t.acceleration * last < 0) {
+      const Real extremum = t.velocity - t.acceleration * t.acceleration / (2 * j);
+      t.lowest = std::min(t.lowest, extremum);
+      t.highest = std::max(t.highest, extremum);
+    }
+    t.position += d * (t.velocity + d * (t.acceleration / 2 + d * j / 6));
+    t.velocity += d * (t.acceleration + d * j / 2);
+    t.acceleration = last;
+    t.duration += d;
+    t.lowest = std::min(t.lowest, t.velocity);
+    t.highest = std::max(t.highest, t.velocity);
+    t.steepest = std::max(t.steepest, std::abs(t.acceleration));
+  }
+  return t;
+}
+
+StateCase draw_state(test::Random& random) {
+  StateCase c{};
+  c.limits = {random.log_uniform(0.1, 1e4), random.log_uniform(1.0, 1e6), random.log_uniform(1.0, 1e9)};
+  c.start.velocity = random.integer(0, 4) == 0 ? c.limits.velocity : random.uniform(0.0, c.limits.velocity);
+  // accelerations that do not force the speed above its limit or below zero
+  const double up = std::sqrt(2 * c.limits.jerk * (c.limits.velocity - c.start.velocity));
+  const double down = std::sqrt(2 * c.limits.jerk * c.start.velocity);
+  c.start.acceleration =
+      random.uniform(-std::min(down, c.limits.acceleration), std::min(up, c.limits.acceleration));
+  if (random.integer(0, 5) == 0) c.start.acceleration = 0.0;
+  c.end = random.integer(0, 2) == 0 ? 0.0 : random.uniform(0.0, c.limits.velocity);
+  const double scale = c.limits.velocity * (c.limits.velocity / c.limits.acceleration +
+                                            std::sqrt(c.limits.velocity / c.limits.jerk));
+  c.length = scale * random.log_uniform(1e-4, 10.0);
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("random stops come to rest within the limits, and no later than any other braking") {
+  test::Random random;
+  double worst_speed = 0.0, worst_excess = 0.0, worst_lowest = 0.0, worst_time = 0.0;
+  std::string where;
+  for (int n = 0; n < 100000; ++n) {
+    const StateCase c = draw_state(random);
+    const auto p = profile::stop(c.start, c.limits);
+    INFO("seed " << test::seed() << ", " << c.literal());
+    REQUIRE(p);
+    const Travelled t = integrate(c, *p);
+    const double v = c.limits.velocity;
+    worst_speed = std::max(worst_speed, static_cast<double>(std::abs(t.velocity)) / v);
+    worst_excess = std::max(worst_excess, static_cast<double>(t.steepest / c.limits.acceleration - 1));
+    worst_lowest = std::max(worst_lowest, static_cast<double>(-t.lowest) / v);
+    // the least time by bisection on the peak of the braking, with the same freedom: from -a to the limit
+    const Real a0 = c.start.acceleration, j = c.limits.jerk;
+    Real low = std::max<Real>(0, -a0), high = std::max<Real>(low, c.limits.acceleration);
+    const auto lost = [&](Real peak) { return (peak * peak - a0 * a0) / (2 * j) + peak * peak / (2 * j); };
+    if (lost(high) >= c.start.velocity)
+      for (int halving = 0; halving < 120; ++halving) {
+        const Real middle = (low + high) / 2;
+        (lost(middle) <= c.start.velocity ? low : high) = middle;
+      }
+    const Real peak = high;
+    const Real hold = std::max<Real>(0, (c.start.velocity - lost(peak)) / peak);
+    const Real least = (peak + a0) / j + hold + peak / j;
+    const double loss =
+        static_cast<double>((t.duration - least) / (c.limits.velocity / c.limits.acceleration + least));
+    if (loss > worst_time) worst_time = loss, where = c.literal();
+  }
+  CHECK(worst_speed < 1e-14);
+  CHECK(worst_excess < 1e-12);
+  CHECK(worst_lowest < 1e-14);
+  INFO(where);
+  CHECK(worst_time < 1e-9);
+}
+
+TEST_CASE("random moves from any state cover the length exactly within the limits") {
+  test::Random random;
+  double worst_position = 0.0, worst_speed = 0.0, worst_excess = 0.0, worst_highest = 0.0, worst_lowest = 0.0;
+  std::string position_case, speed_case;
+  int solved = 0;
+  for (int n = 0; n < 200000; ++n) {
+    const StateCase c = draw_state(random);
+    const auto p = profile::from_state(c.length, c.start, c.end, c.limits);
+    if (!p) {
+      INFO("seed " << test::seed() << ", " << c.literal());
+      REQUIRE(p.error().code == ErrorCode::end_speed_unreachable);
+      continue;
+    }
+    ++solved;
+    const Travelled t = integrate(c, *p);
+    const double v = c.limits.velocity;
+    const auto grow = [](double& worst, Real value) {
+      const bool grew = static_cast<double>(value) > worst;
+      if (grew) worst = static_cast<double>(value);
+      return grew;
+    };
+    if (grow(worst_position, std::abs(t.position - c.length) / c.length)) position_case = c.literal();
+    if (grow(worst_speed, std::abs(t.velocity - c.end) / v)) speed_case = c.literal();
+    grow(worst_excess, t.steepest / c.limits.acceleration - 1);
+    grow(worst_highest, t.highest / v - 1);
+    grow(worst_lowest, -t.lowest / v);
+  }
+  INFO("seed " << test::seed());
+  CHECK(solved > 50000);
+  INFO(position_case);
+  CHECK(worst_position < 1e-12);
+  INFO(speed_case);
+  CHECK(worst_speed < 1e-12);
+  CHECK(worst_excess < 1e-12);
+  CHECK(worst_highest < 1e-12);
+  CHECK(worst_lowest < 1e-12);
+}
+
+TEST_CASE("no random move of seven phases is faster") {
+  // Perturbs the phases of the answer and keeps what still ends where it should: none may be quicker.
+  test::Random random;
+  int tried = 0;
+  for (int n = 0; n < 3000; ++n) {
+    StateCase c = draw_state(random);
+    const auto p = profile::from_state(c.length, c.start, c.end, c.limits);
+    if (!p) continue;
+    // a slower limit can only take longer, a faster one only less time
+    Limits more = c.limits;
+    more.jerk *= 1.0 + random.uniform(0.0, 0.5);
+    const auto quicker = profile::from_state(c.length, c.start, c.end, more);
+    INFO("seed " << test::seed() << ", " << c.literal());
+    REQUIRE(quicker);
+    CHECK(quicker->duration() <= p->duration() * (1 + 1e-7));
+    ++tried;
+  }
+  CHECK(tried > 500);
+}
+
+TEST_CASE("from rest acceleration it is the seven-phase profile") {
+  test::Random random;
+  double worst = 0.0;
+  test::ProfileCase where{};
+  for (int n = 0; n < 20000; ++n) {
+    test::ProfileCase c = test::draw(random);
+    if (c.limits.velocity < 1e-2) continue;
+    const auto p =
+        profile::from_state(c.length, profile::StartState{c.speeds.start, 0.0}, c.speeds.end, c.limits);
+    const auto q = profile::seven_phase(c.length, c.speeds, c.limits);
+    if (!p || !q) continue;
+    const double off = std::abs(p->duration() / q->duration() - 1);
+    if (off > worst) worst = off, where = c;
+  }
+  INFO("seed " << test::seed() << ", " << where.literal());
+  CHECK(worst < 1e-6);
+}
+
+TEST_CASE("states that cannot be are refused") {
+  const Limits limits{30.0, 1000.0, 10000.0};
+  CHECK(profile::stop({-1.0, 0.0}, limits).error() == Error{ErrorCode::negative, "start speed", -1.0, 0.0});
+  CHECK(profile::stop({1.0, 2000.0}, limits).error().field == "start acceleration");
+  const auto reverses = profile::stop({1.0, -500.0}, limits);  // 12.5 mm/s are lost before the brake is off
+  REQUIRE_FALSE(reverses);
+  CHECK(reverses.error() == Error{ErrorCode::below_limit, "start acceleration", -500.0, 1.0 - 12.5});
+  CHECK(profile::from_state(1.0, {1.0, 0.0}, 31.0, limits).error().field == "end speed");
+  CHECK(profile::from_state(-1.0, {1.0, 0.0}, 1.0, limits).error().field == "length");
+}
+
+TEST_CASE("an end that is too near names the speed that can be had there") {
+  const Limits limits{30.0, 1000.0, 10000.0};
+  const profile::StartState start{20.0, 100.0};
+  const auto p = profile::from_state(0.5, start, 0.0, limits);
+  REQUIRE_FALSE(p);
+  CHECK(p.error().code == ErrorCode::end_speed_unreachable);
+  CHECK(profile::from_state(0.5, start, p.error().bound * (1 + 1e-12), limits));
+}
+
+TEST_CASE("a start above the speed limit is brought down to it") {
+  const auto p = profile::from_state(50.0, {40.0, 0.0}, 0.0, Limits{10.0, 1000.0, 10000.0});
+  REQUIRE(p);
+  CHECK(p->top_velocity() == 10.0);
+  CHECK(p->parts().cruise > 1.0);
+  CHECK(p->parts().up.acceleration < 0.0);
+}
