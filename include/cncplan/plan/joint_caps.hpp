@@ -22,7 +22,7 @@ template <Chart C>
   constexpr int intervals = 4;
   const S reach = path.length() / S(2 * intervals);
   Rates bounds;
-  typename MappedPath<C>::Vector before, change = MappedPath<C>::Vector::Zero();
+  typename MappedPath<C>::Vector before = MappedPath<C>::Vector::Zero(), change = before;
   for (int i = 0; i <= intervals; ++i) {
     const Rates here = path.rates(path.parameter_end() * static_cast<S>(i) / static_cast<S>(intervals));
     bounds.first = bounds.first.cwiseMax(here.first.cwiseAbs());
