@@ -170,10 +170,11 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
 
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
-  top.allow({"name", "rapid_rate", "axis", "tools", "offsets", "home", "pass_through"});
+  top.allow({"name", "rapid_rate", "axis", "tools", "offsets", "home", "pass_through", "smallest_radius"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
   if (top.find("rapid_rate") != nullptr) top.positive("rapid_rate", machine.rapid_rate.emplace());
+  top.positive("smallest_radius", machine.smallest_radius);
   if (const toml::node* node = top.find("axis")) {
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty()) top.refuse(*node, "axis must be a list of tables, [[axis]]");
@@ -195,11 +196,6 @@ Machine interpret(const std::string& file, const toml::table& root) {
   if (const auto valid = gcode::validate(machine.dialect); !valid)
     throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {} {}", file, valid.error().field,
                                                message(valid.error().code)));
-  constexpr std::string_view letters = "XYZ";
-  for (std::size_t i = 0; i < letters.size(); ++i)
-    if (machine.axes.size() != 3 || machine.axes[i].letter != letters[i])
-      throw Failure(Exit::bad_input,
-                    fmt::format("{}:1:1: error: the axes must be X, Y, Z, in this order", file));
   return machine;
 }
 
@@ -223,7 +219,7 @@ Limits Machine::limits_along(const plan::Block& block) const {
   return limits;
 }
 
-Machine read_machine(const std::string& file) {
+Machine read_machine_of_any_axes(const std::string& file) {
   if (std::filesystem::is_directory(file))
     throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
   toml::table root;
@@ -236,6 +232,16 @@ Machine read_machine(const std::string& file) {
                   fmt::format("{}:{}:{}: error: {}", file, at.line, at.column, error.description()));
   }
   return interpret(file, root);
+}
+
+Machine read_machine(const std::string& file) {
+  Machine machine = read_machine_of_any_axes(file);
+  constexpr std::string_view letters = "XYZ";
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    if (machine.axes.size() != 3 || machine.axes[i].letter != letters[i])
+      throw Failure(Exit::bad_input,
+                    fmt::format("{}:1:1: error: the axes must be X, Y, Z, in this order", file));
+  return machine;
 }
 
 }  // namespace simulate

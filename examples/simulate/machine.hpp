@@ -30,6 +30,7 @@ struct Machine {
   cncplan::gcode::Dialect dialect;
   std::vector<MachineAxis> axes{{.letter = 'X'}, {.letter = 'Y'}, {.letter = 'Z'}};
   std::optional<double> rapid_rate;  ///< mm/s
+  double smallest_radius = 1.0;      ///< mm from a rotary table's axis; nothing nearer is driven
 
   [[nodiscard]] Travel travel(int axis) const {
     const MachineAxis& a = axes[static_cast<std::size_t>(axis)];
@@ -40,7 +41,11 @@ struct Machine {
   [[nodiscard]] cncplan::Limits limits_along(const cncplan::plan::Block& block) const;
 };
 
-/// Reads a machine file. Throws `Failure` for one that cannot be read or has an unknown or wrong entry.
+/// Reads the file of a machine with the axes X, Y, Z. Throws `Failure` for one that cannot be read or has an
+/// unknown or wrong entry.
 [[nodiscard]] Machine read_machine(const std::string& file);
+
+/// The same for a machine with any axes.
+[[nodiscard]] Machine read_machine_of_any_axes(const std::string& file);
 
 }  // namespace simulate
