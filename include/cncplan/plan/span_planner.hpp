@@ -15,15 +15,15 @@
 
 namespace cncplan::plan {
 
-/// A joint at which the speed limit changes or is lower than on both sides: the only joints look-ahead has to
-/// look at.
+/// A joint at which limits change or the speed's is lower than on both sides: the only joints look-ahead has
+/// to look at.
 template <std::floating_point S>
 struct BasicGate {
   std::size_t block{};    ///< the block that starts here
   S cap{};                ///< mm/s, highest speed here
   S speed{};              ///< mm/s, the planned one where the gate is a knot
   S gap{};                ///< mm to the next gate
-  BasicLimits<S> limits;  ///< from here to the next gate; acceleration and jerk the same over a whole region
+  BasicLimits<S> limits;  ///< of every block from here to the next gate
   bool knot{};            ///< zero acceleration here
   bool fixed{};           ///< a knot by force
   bool settled{};         ///< its speed would be the same whatever came behind it
@@ -31,8 +31,8 @@ struct BasicGate {
 
 using Gate = BasicGate<double>;
 
-/// Blocks whose acceleration and jerk limits differ by less than this share the lowest of them; where they
-/// differ by more, a knot divides them.
+/// A span keeps the lowest acceleration and jerk limits of its blocks. Where they differ by more than this, a
+/// knot divides them.
 inline constexpr double shared_limits_ratio = 1.3;
 
 /// Reduces blocks to gates: writes at most one more than there are blocks into `gates`, the last behind the
@@ -43,38 +43,21 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
                        std::span<BasicGate<S>> gates, std::size_t divide = 0) {
   if (blocks.empty()) return 0;
   std::size_t count = 0;
-  std::size_t region = 0;  // its first gate
-  BasicLimits<S> low{}, high{};
-  const auto close_region = [&] {
-    for (; region < count; ++region) {
-      gates[region].limits.acceleration = low.acceleration;
-      gates[region].limits.jerk = low.jerk;
-    }
-  };
+  BasicLimits<S> low{}, high{};  // since the last knot by force
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicLimits<S>& limits = blocks[i].limits;
-    const S before = i == 0 ? start_speed : blocks[i - 1].limits.velocity;
-    const BasicLimits<S> lower{S(0), std::min(low.acceleration, limits.acceleration),
-                               std::min(low.jerk, limits.jerk)};
-    const BasicLimits<S> higher{S(0), std::max(high.acceleration, limits.acceleration),
-                                std::max(high.jerk, limits.jerk)};
-    const S ratio = static_cast<S>(shared_limits_ratio);
-    const bool new_region =
-        i == 0 || higher.acceleration > ratio * lower.acceleration || higher.jerk > ratio * lower.jerk;
-    const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before, limits.velocity});
-    if (new_region) {
-      close_region();
-      low = high = limits;
-    } else {
-      low = lower;
-      high = higher;
-    }
-    const bool fixed = new_region || i == divide;
-    if (fixed || cap < before || cap < limits.velocity)
+    const BasicLimits<S>& before = i == 0 ? limits : blocks[i - 1].limits;
+    const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before.velocity, limits.velocity});
+    low = {S(0), std::min(low.acceleration, limits.acceleration), std::min(low.jerk, limits.jerk)};
+    high = {S(0), std::max(high.acceleration, limits.acceleration), std::max(high.jerk, limits.jerk)};
+    constexpr S ratio = static_cast<S>(shared_limits_ratio);
+    const bool fixed =
+        i == 0 || i == divide || high.acceleration > ratio * low.acceleration || high.jerk > ratio * low.jerk;
+    if (fixed) low = high = limits;
+    if (fixed || limits != before || cap < limits.velocity)
       gates[count++] = {i, cap, cap, S(0), limits, true, fixed, false};
     gates[count - 1].gap += blocks[i].length;
   }
-  close_region();
   gates[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true, false};
   return count;
 }
@@ -85,7 +68,8 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
 ///
 /// That nearest knots suffice: with r(v, d) the speed reached from v over d, r(r(v, d1), d2) <= r(v, d1 +
 /// d2), so a knot within reach of its neighbour is a stronger bound on what lies beyond it than the neighbour
-/// is.
+/// is. Where limits differ and that fails, there is no profile between two knots, and the gates between them
+/// become fixed.
 template <std::floating_point S, SolverFactory<S> Factory>
 class GatePlanner {
  public:
@@ -112,10 +96,12 @@ class GatePlanner {
 
   /// The profile from one knot to the next.
   [[nodiscard]] Expected<Profile> profile(std::size_t from, std::size_t to) {
-    BasicLimits<S> limits = gates_[from].limits;
+    BasicLimits<S> limits = unlimited;
+    limits.velocity = S(0);
     S length = S(0);
     for (std::size_t i = from; i < to; ++i) {
       limits.velocity = std::max(limits.velocity, gates_[i].limits.velocity);
+      share(limits, gates_[i].limits);
       length += gates_[i].gap;
     }
     return solver_(limits)(length, {gates_[from].speed, gates_[to].speed});
@@ -127,10 +113,13 @@ class GatePlanner {
   static constexpr int careful_rounds = 6;
   static constexpr int last_round = 12;
 
-  S reach(const Gate& region, S speed, S distance) {
-    BasicLimits<S> limits = region.limits;
-    limits.velocity = fastest_;
-    return solver_(limits).reachable_speed(speed, distance);
+  static constexpr S infinity = std::numeric_limits<S>::infinity();
+  static constexpr BasicLimits<S> unlimited{infinity, infinity, infinity};
+
+  // Acceleration and jerk that hold on another gap as well.
+  static void share(BasicLimits<S>& limits, const BasicLimits<S>& gap) {
+    limits.acceleration = std::min(limits.acceleration, gap.acceleration);
+    limits.jerk = std::min(limits.jerk, gap.jerk);
   }
 
   void pass_backward() {
@@ -138,34 +127,40 @@ class GatePlanner {
     for (const Gate& gate : gates_) fastest_ = std::max({fastest_, gate.limits.velocity, gate.cap});
     std::size_t right = gates_.size() - 1;
     S distance = S(0);
+    BasicLimits<S> limits{fastest_, infinity, infinity};
     gates_[right].speed = gates_[right].cap;
     for (std::size_t i = right; i-- > 0;) {
       Gate& gate = gates_[i];
       distance += gate.gap;
-      const S reachable = reach(gate, gates_[right].speed, distance);
+      share(limits, gate.limits);
+      const S reachable = solver_(limits).reachable_speed(gates_[right].speed, distance);
       gate.knot = gate.fixed || gate.cap <= reachable;
       if (!gate.knot) continue;
       gate.speed = std::min(gate.cap, reachable);
       gate.settled = gate.cap <= reachable;
       right = i;
       distance = S(0);
+      limits = {fastest_, infinity, infinity};
     }
   }
 
   void pass_forward() {
     std::size_t left = 0;
     S distance = S(0);
+    BasicLimits<S> limits{fastest_, infinity, infinity};
     for (std::size_t i = 1; i < gates_.size(); ++i) {
       Gate& gate = gates_[i];
       distance += gates_[i - 1].gap;
+      share(limits, gates_[i - 1].limits);
       if (!gate.knot) continue;
-      const S reachable = reach(gates_[left], gates_[left].speed, distance);
+      const S reachable = solver_(limits).reachable_speed(gates_[left].speed, distance);
       gate.knot = gate.fixed || gate.speed <= reachable;
       if (!gate.knot) continue;
       gate.settled = gate.settled || reachable <= gate.speed;
       gate.speed = std::min(gate.speed, reachable);
       left = i;
       distance = S(0);
+      limits = {fastest_, infinity, infinity};
     }
   }
 

@@ -1,0 +1,50 @@
+// Plans in one call, with containers.
+#pragma once
+
+#include <iterator>
+#include <vector>
+
+#include "cncplan/plan/block_planner.hpp"
+#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/profile/five_phase.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+#include "support/catch.hpp"
+
+namespace cncplan::test {
+
+template <std::floating_point S>
+struct SevenPhase {
+  profile::BasicSolver<S> operator()(const BasicLimits<S>& limits) const {
+    return profile::seven_phase_solver(limits);
+  }
+};
+template <std::floating_point S>
+struct FivePhase {
+  profile::BasicSolver<S> operator()(const BasicLimits<S>& limits) const {
+    return profile::five_phase_solver(limits);
+  }
+};
+
+/// Fails the test where there is no plan.
+template <std::floating_point S, class Factory = SevenPhase<S>>
+std::vector<plan::BasicSpan<S>> spans_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
+                                         const Factory& factory = {}) {
+  std::vector<plan::BasicSpan<S>> spans;
+  std::vector<plan::BasicGate<S>> gates(blocks.size() + 1);
+  REQUIRE(plan::plan_spans(std::span<const plan::BasicBlockCaps<S>>(blocks), factory, std::span(gates),
+                           std::back_inserter(spans)));
+  return spans;
+}
+
+/// The same, block by block.
+template <std::floating_point S, class Factory = SevenPhase<S>>
+std::vector<plan::BasicSpan<S>> single_blocks_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
+                                                 const Factory& factory = {}) {
+  std::vector<plan::BasicSpan<S>> spans;
+  std::vector<S> speeds(blocks.size() + 1);
+  REQUIRE(plan::plan_blocks(std::span<const plan::BasicBlockCaps<S>>(blocks), factory, std::span(speeds),
+                            std::back_inserter(spans)));
+  return spans;
+}
+
+}  // namespace cncplan::test

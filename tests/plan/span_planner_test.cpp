@@ -1,0 +1,188 @@
+#include "cncplan/plan/span_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cncplan/plan/cursor.hpp"
+#include "plan/plan_oracle.hpp"
+#include "plan/planned.hpp"
+#include "plan/random_program.hpp"
+#include "support/no_heap.hpp"
+
+using namespace cncplan;
+using test::LimitSpread;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Limits kk22{30.0, 1000.0, 10000.0};
+
+std::vector<plan::BlockCaps> draw(test::Random& random) {
+  constexpr LimitSpread spreads[] = {LimitSpread::none, LimitSpread::slight, LimitSpread::wide};
+  return test::random_program(random, spreads[random.integer(0, 2)]);
+}
+
+}  // namespace
+
+TEST_CASE("random programs break no cap, no feed and no limit, and join without a jump") {
+  test::Random random;
+  test::PlanErrors worst;
+  double worst_one = 0.0;
+  std::vector<plan::BlockCaps> where;
+  for (int draws = 0; draws < 4000; ++draws) {
+    const auto blocks = draw(random);
+    for (const bool seven : {true, false}) {
+      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, test::FivePhase<double>{});
+      const auto errors = test::examine_plan<double>(blocks, spans);
+      if (errors.worst() > worst_one) worst_one = errors.worst(), where = blocks;
+      worst.worst_of(errors);
+    }
+  }
+  INFO("seed " << test::seed() << ", worst: " << test::literal(where));
+  CHECK(worst.cap < 1e-11);
+  CHECK(worst.velocity < 1e-12);
+  CHECK(worst.acceleration < 1e-12);
+  CHECK(worst.jerk < 1e-12);
+  CHECK(worst.length < 1e-12);
+  CHECK(worst.speed_jump < 1e-10);
+  CHECK(worst.rest == 0.0);
+  CHECK(worst.backward < 1e-12);
+  CHECK(worst.misplaced == 0);
+}
+
+TEST_CASE("spans are never slower than block by block under the same caps") {
+  test::Random random;
+  double worst = 0.0, saved = 0.0;
+  std::vector<plan::BlockCaps> where;
+  for (int draws = 0; draws < 8000; ++draws) {
+    const auto blocks = test::random_program(random, LimitSpread::none);
+    const double across = test::duration(test::spans_of(blocks));
+    const double single = test::duration(test::single_blocks_of(blocks));
+    saved = std::max(saved, 1.0 - across / single);
+    if (across / single - 1.0 > worst) worst = across / single - 1.0, where = blocks;
+  }
+  INFO("seed " << test::seed() << ", " << where.size() << " blocks: " << test::literal(where));
+  CHECK(worst < 1e-12);
+  CHECK(saved > 0.5);
+}
+
+TEST_CASE("samples of a plan differ by what the limits allow") {
+  test::Random random;
+  double speed = 0.0, acceleration = 0.0, jerk = 0.0, backward = 0.0;
+  for (int draws = 0; draws < 100; ++draws) {
+    const auto blocks = draw(random);
+    const auto spans = test::spans_of(blocks);
+    std::vector<double> lengths;
+    for (const auto& block : blocks) lengths.push_back(block.length);
+    const double total = test::duration(spans);
+    constexpr int samples = 5000;
+    const double h = total / samples;
+    plan::Cursor cursor(spans, lengths);
+    plan::Place before = cursor.at(0.0);
+    for (int k = 1; k <= samples; ++k) {
+      const plan::Place here = cursor.at(h * k);
+      Limits most = blocks[before.block].limits;
+      for (std::size_t i = before.block; i <= here.block; ++i) {
+        most.velocity = std::max(most.velocity, blocks[i].limits.velocity);
+        most.acceleration = std::max(most.acceleration, blocks[i].limits.acceleration);
+        most.jerk = std::max(most.jerk, blocks[i].limits.jerk);
+      }
+      const double clock = 1.0 + 1e-15 * total / h * 8.0;
+      const double travel = here.state.position - before.state.position;
+      backward = std::max(backward, -travel);
+      speed = std::max(speed, travel / (h * most.velocity * clock) - 1.0);
+      acceleration = std::max(
+          acceleration,
+          std::abs(here.state.velocity - before.state.velocity) / (h * most.acceleration * clock) - 1.0);
+      jerk = std::max(
+          jerk,
+          std::abs(here.state.acceleration - before.state.acceleration) / (h * most.jerk * clock) - 1.0);
+      before = here;
+    }
+    CHECK(cursor.at(total * 2.0).state.velocity == 0.0);
+  }
+  INFO("seed " << test::seed());
+  CHECK(speed < 1e-9);
+  CHECK(acceleration < 1e-9);
+  CHECK(jerk < 1e-9);
+  CHECK(backward < 1e-10);
+}
+
+TEST_CASE("a straight line in pieces is driven as one") {
+  std::vector<plan::BlockCaps> pieces(64, {100.0 / 64.0, infinity, kk22, 0.0});
+  pieces.front().entry = 0.0;
+  const auto spans = test::spans_of(pieces);
+  REQUIRE(spans.size() == 1);
+  CHECK(spans[0].profile == *profile::seven_phase(100.0, {0.0, 0.0}, kk22));
+}
+
+TEST_CASE("a cap that a ramp does not reach costs nothing") {
+  // half a millimetre from rest the ramp is at 21.05 mm/s
+  const std::vector<plan::BlockCaps> free{{0.5, 0.0, kk22, 0.0}, {10.0, 21.1, kk22, 0.0}};
+  CHECK(test::duration(test::spans_of(free)) ==
+        Approx(profile::seven_phase(10.5, {0.0, 0.0}, kk22)->duration()).epsilon(1e-14));
+  const std::vector<plan::BlockCaps> capped{{5.0, 0.0, kk22, 0.0}, {5.0, 15.0, kk22, 0.0}};
+  const auto spans = test::spans_of(capped);
+  REQUIRE(spans.size() == 2);
+  CHECK(spans[1].profile.start_velocity() == 15.0);
+}
+
+TEST_CASE("pauses stand between the spans they divide, and a dwell may come first") {
+  const std::vector<plan::BlockCaps> blocks{
+      {0.0, 0.0, kk22, 0.5}, {10.0, 0.0, kk22, 0.25}, {10.0, 0.0, kk22, 0.0}, {0.0, infinity, kk22, 0.125}};
+  const auto spans = test::spans_of(blocks);
+  double pauses = 0.0;
+  for (const auto& span : spans)
+    if (span.count == 0) pauses += span.profile.duration();
+  CHECK(pauses == 0.875);
+  CHECK(test::examine_plan<double>(blocks, spans).worst() < 1e-12);
+  CHECK(test::duration(spans) ==
+        Approx(0.875 + 2.0 * profile::seven_phase(10.0, {0.0, 0.0}, kk22)->duration()).epsilon(1e-14));
+}
+
+TEST_CASE("no blocks, no spans") { CHECK(test::spans_of(std::vector<plan::BlockCaps>{}).empty()); }
+
+TEST_CASE("the same blocks give the same bits, without heap") {
+  test::Random random;
+  for (int draws = 0; draws < 20; ++draws) {
+    const auto blocks = draw(random);
+    std::vector<plan::Gate> gates(blocks.size() + 1);
+    std::vector<plan::Span> first(2 * blocks.size()), second(2 * blocks.size());
+    const auto plan = [&](std::vector<plan::Span>& out) {
+      (void)plan::plan_spans(std::span<const plan::BlockCaps>(blocks), test::SevenPhase<double>{},
+                             std::span(gates), out.begin());
+    };
+    plan(first);
+    CHECK(test::heap_allocations_of([&] { plan(second); }) == 0);
+    CHECK(first == second);
+  }
+}
+
+TEST_CASE("random programs in float keep their limits to float's digits") {
+  test::Random random;
+  test::PlanErrors worst;
+  std::vector<plan::BlockCaps> where;
+  double worst_one = 0.0;
+  for (int draws = 0; draws < 1000; ++draws) {
+    const auto blocks = test::random_program(random, LimitSpread::wide, 60);
+    std::vector<plan::BasicBlockCaps<float>> narrow;
+    for (const auto& b : blocks)
+      narrow.push_back({static_cast<float>(b.length),
+                        static_cast<float>(b.entry),
+                        {static_cast<float>(b.limits.velocity), static_cast<float>(b.limits.acceleration),
+                         static_cast<float>(b.limits.jerk)},
+                        static_cast<float>(b.pause)});
+    const auto errors = test::examine_plan<float>(narrow, test::spans_of(narrow));
+    if (errors.worst() > worst_one) worst_one = errors.worst(), where = blocks;
+    worst.worst_of(errors);
+  }
+  INFO("seed " << test::seed() << ", worst: " << test::literal(where));
+  CHECK(worst.cap < 1e-2);
+  CHECK(worst.velocity < 1e-4);
+  CHECK(worst.acceleration < 1e-4);
+  CHECK(worst.jerk < 1e-4);
+  CHECK(worst.rest == 0.0);
+  CHECK(worst.misplaced == 0);
+}
