@@ -44,7 +44,7 @@ void refuse_shared_files(const Options& options) {
   const auto look = [&](std::string_view name, const std::optional<std::string>& file) {
     std::error_code ignored;
     if (!file || std::filesystem::is_other(*file, ignored)) return;
-    const auto path = std::filesystem::weakly_canonical(*file, ignored);
+    const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(*file), ignored);
     for (const auto& [other, used] : seen)
       if (used == path)
         throw Failure(Exit::bad_input, fmt::format("{} and {} are the same file: {}", other, name, *file));

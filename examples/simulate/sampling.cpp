@@ -62,12 +62,10 @@ double distance(const path::Segment& segment, const Vector3& point, double along
 
 void make_samples(const Program& program, const Plan& plan, const Options& options, Measures& measures,
                   const std::function<void(const Sample&)>& take) {
-  const auto place_now = [&](auto& cursor, double time) { return cursor.at(time); };
   plan::Cursor cursor(plan.spans, plan.lengths);
   TaylorFollower follow(program, plan);
   Vector3 position = Vector3::Zero();
-  const auto sample = [&](double time) {
-    const plan::Place place = place_now(cursor, time);
+  const auto sample = [&](double time, const plan::Place& place) {
     const path::Segment& segment = program.blocks[place.block].segment;
     {
       const Stopwatch watch(measures.interpolate_seconds);
@@ -75,14 +73,17 @@ void make_samples(const Program& program, const Plan& plan, const Options& optio
                      ? follow(place, time)
                      : segment.position(segment.parameter_at(place.along));
     }
-    if (!(time < plan.duration)) position = program.blocks.back().segment.end();
+    if (!(time < plan.duration)) position = segment.end();
     measures.contour_error = std::max(measures.contour_error, distance(segment, position, place.along));
     ++measures.samples;
     take({time, place.block, position, place.state});
   };
-  for (std::size_t k = 0; static_cast<double>(k) * options.period < plan.duration; ++k)
-    sample(static_cast<double>(k) * options.period);
-  sample(plan.duration);
+  for (std::size_t k = 0; static_cast<double>(k) * options.period < plan.duration; ++k) {
+    const double time = static_cast<double>(k) * options.period;
+    sample(time, cursor.at(time));
+  }
+  // At rest on the end point, whatever rounding left of the last phase.
+  sample(plan.duration, {program.blocks.size() - 1, plan.lengths.back(), {plan.length, 0.0, 0.0, 0.0}});
   measures.end_error = (position - program.blocks.back().segment.end()).norm();
 }
 
