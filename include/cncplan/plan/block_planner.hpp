@@ -39,8 +39,10 @@ class SolverCache {
   profile::BasicSolver<S> solver_;
 };
 
-/// The highest speed at each joint, such that every pair of speeds can be driven within its block: a backward
-/// and a forward pass. `speeds` has one entry more than `blocks`; the motion starts and ends at rest.
+/// The speed at each joint, such that every pair of speeds can be driven within its block and no joint could
+/// be faster while the others stay: a backward and a forward pass. (A joint alone could be faster still
+/// behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds` has
+/// one entry more than `blocks`; the motion starts and ends at rest.
 template <std::floating_point S, SolverFactory<S> Factory>
 void joint_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory, std::span<S> speeds) {
   SolverCache<S, Factory> solver(factory);

@@ -1,0 +1,113 @@
+#include "cncplan/plan/curve_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Vector sums on a circle, over the limits of the whole motion (spec: junctions).
+struct Sums {
+  long double acceleration, jerk;
+};
+Sums sums(const Limits& whole, long double k, long double v, long double a, long double j) {
+  return {std::hypot(a, v * v * k) / whole.acceleration,
+          std::hypot(j - v * v * v * k * k, 3 * v * a * k) / whole.jerk};
+}
+
+Limits draw(test::Random& random) {
+  return {random.log_uniform(1, 500), random.log_uniform(10, 1e4), random.log_uniform(100, 1e6)};
+}
+
+}  // namespace
+
+TEST_CASE("shared limits keep both vector sums at every speed, acceleration and jerk within them") {
+  test::Random random;
+  long double acceleration = 0, jerk = 0;
+  double curvature = 0;
+  Limits where{};
+  for (int draws = 0; draws < 400; ++draws) {
+    const Limits whole = draw(random);
+    const double k = random.log_uniform(1e-4, 1e3);
+    const Limits along = plan::ShareLimits{}(k, whole);
+    REQUIRE(along.velocity <= whole.velocity);
+    for (int iv = 0; iv <= 16; ++iv)
+      for (int ia = -8; ia <= 8; ++ia)
+        for (int ij = -8; ij <= 8; ++ij) {
+          const auto [a, j] = sums(whole, k, along.velocity * (iv / 16.0L), along.acceleration * (ia / 8.0L),
+                                   along.jerk * (ij / 8.0L));
+          if (std::max(a, j) > std::max(acceleration, jerk)) where = whole, curvature = k;
+          acceleration = std::max(acceleration, a);
+          jerk = std::max(jerk, j);
+        }
+  }
+  INFO("seed " << test::seed() << ", 1/R " << curvature << ", limits " << where.velocity << ' '
+               << where.acceleration << ' ' << where.jerk);
+  CHECK(static_cast<double>(acceleration) <= 1 + 1e-12);
+  CHECK(static_cast<double>(jerk) <= 1 + 1e-12);
+  CHECK(static_cast<double>(jerk) > 1 - 1e-12);  // the rule leaves none of the jerk
+}
+
+TEST_CASE("what sharing leaves on the table") {
+  test::Random random;
+  double slowest = 1.0, least_jerk = 1.0;
+  for (int draws = 0; draws < 100000; ++draws) {
+    const Limits whole = draw(random);
+    const double k = random.log_uniform(1e-4, 1e3);
+    const Limits shared = plan::ShareLimits{}(k, whole);
+    slowest = std::min(slowest, shared.velocity / plan::CapSpeed{}(k, whole).velocity);
+    least_jerk = std::min(least_jerk, shared.jerk / whole.jerk);
+    REQUIRE(shared.acceleration > 0.0);
+  }
+  CHECK(slowest == Approx(std::cbrt(0.5)).margin(1e-12));  // 20.6 % slower where the jerk binds
+  CHECK(least_jerk > 0.13);
+  CHECK(least_jerk < 0.14);
+}
+
+TEST_CASE("speed alone: v^2/R and v^3/R^2 reach the limits and no more") {
+  test::Random random;
+  double worst = 0.0;
+  for (int draws = 0; draws < 20000; ++draws) {
+    const Limits whole = draw(random);
+    const double k = random.log_uniform(1e-4, 1e3);
+    const Limits along = plan::CapSpeed{}(k, whole);
+    const double v = along.velocity;
+    const double used =
+        std::max({v / whole.velocity, v * v * k / whole.acceleration, v * v * v * k * k / whole.jerk});
+    worst = std::max(worst, std::abs(used - 1.0));
+    REQUIRE(along.acceleration == whole.acceleration);
+    REQUIRE(along.jerk == whole.jerk);
+  }
+  CHECK(worst < 1e-14);
+  // spec: R = 0.5 mm at 30 mm/s would take 1800 mm/s^2 and 108000 mm/s^3
+  CHECK(plan::CapSpeed{}(2.0, Limits{30, 1000, 10000}).velocity == Approx(std::cbrt(2500.0)).epsilon(1e-14));
+}
+
+TEST_CASE("a straight path keeps its limits, and limits that are not there stay so") {
+  const Limits kk22{30, 1000, 10000};
+  CHECK(plan::ShareLimits{}(0.0, kk22) == kk22);
+  CHECK(plan::CapSpeed{}(0.0, kk22) == kk22);
+  const Limits no_jerk = plan::ShareLimits{}(0.1, Limits{30, 1000, infinity});
+  CHECK(no_jerk.jerk == infinity);
+  CHECK(std::hypot(no_jerk.acceleration, 90.0) == Approx(1000.0).epsilon(1e-14));
+  const Limits no_acceleration = plan::ShareLimits{}(0.1, Limits{30, infinity, 10000});
+  CHECK(std::isfinite(no_acceleration.acceleration));
+  const Sums worst = sums({30, infinity, 10000}, 0.1L, no_acceleration.velocity, no_acceleration.acceleration,
+                          -static_cast<long double>(no_acceleration.jerk));
+  CHECK(static_cast<double>(worst.jerk) <= 1 + 1e-12);
+}
+
+TEST_CASE("shared limits in float are those of double") {
+  const auto narrow = plan::ShareLimits{}(2.0f, BasicLimits<float>{30.0f, 1000.0f, 10000.0f});
+  const auto wide = plan::ShareLimits{}(2.0, Limits{30, 1000, 10000});
+  CHECK(narrow.velocity == Approx(wide.velocity).epsilon(1e-6));
+  CHECK(narrow.acceleration == Approx(wide.acceleration).epsilon(1e-5));
+  CHECK(narrow.jerk == Approx(wide.jerk).epsilon(1e-5));
+}
