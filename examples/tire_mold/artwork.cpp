@@ -1,0 +1,95 @@
+#include "artwork.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <variant>
+
+#include "cncplan/gcode/diagnostic_text.hpp"
+#include "failure.hpp"
+
+namespace tire_mold {
+
+namespace {
+
+using namespace cncplan;
+using simulate::Exit;
+using simulate::Failure;
+
+[[noreturn]] void refuse(const std::string& file, const gcode::Diagnostic& diagnostic) {
+  throw Failure(Exit::bad_input, gcode::to_text(file, diagnostic));
+}
+
+// The words of a line; none where it holds no block (blank, a comment, a %, a program number).
+std::vector<gcode::Word> words_of(const std::string& text) {
+  std::vector<gcode::Word> words;
+  gcode::Scanner scanner(text, text.starts_with('/') ? 1 : 0);
+  for (auto word = scanner.next(); word && *word; word = scanner.next()) words.push_back(**word);
+  return words;
+}
+
+void check_codes(const std::string& file, int number, const Line& line) {
+  constexpr std::array<double, 13> elsewhere{28, 30, 43.1, 53, 55, 56, 57, 58, 59, 59.1, 59.2, 59.3, 93};
+  for (const gcode::Word& word : line.words) {
+    if (word.letter != 'G') continue;
+    const bool shift = word.number >= 92 && word.number < 93;
+    if (shift || std::find(elsewhere.begin(), elsewhere.end(), word.number) != elsewhere.end())
+      refuse(file, {{ErrorCode::not_supported, "G", word.number, 0.0}, number, word.column});
+  }
+}
+
+// Puts what a line asks for into it.
+class Taker {
+ public:
+  Taker(const std::string& file, Line& line) : file_(file), line_(line) {}
+
+  void operator()(gcode::Motion motion) {
+    motion.offset = {};
+    const auto segment = plan::segment(motion);
+    if (!segment) refuse(file_, {segment.error(), motion.line, motion.column, {}});
+    const bool rapid = motion.kind == gcode::MotionKind::rapid;
+    line_.moves.push_back({*segment, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
+  }
+  void operator()(const gcode::Dwell& dwell) { line_.pause += dwell.seconds; }
+  void operator()(const gcode::Stop&) { line_.stops = true; }
+  void operator()(const gcode::Word&) {}  // keeps its place in the text
+  void operator()(const gcode::Warning& warning) {
+    fmt::print(stderr, "{}\n", gcode::to_text(file_, warning.about, "warning"));
+  }
+
+ private:
+  const std::string& file_;
+  Line& line_;
+};
+
+}  // namespace
+
+Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file))
+    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+  Artwork artwork{file, {}};
+  gcode::Reader reader(dialect);
+  std::vector<gcode::Item> items;
+  for (std::string text; std::getline(stream, text);) {
+    if (text.ends_with('\r')) text.pop_back();
+    items.clear();
+    const bool finished = reader.finished();
+    if (const auto read = reader.read_line(text, std::back_inserter(items)); !read)
+      refuse(file, read.error());
+    Line& line = artwork.lines.emplace_back();
+    line.text = text;
+    if (!finished) line.words = words_of(text);
+    check_codes(file, reader.line(), line);
+    Taker take(file, line);
+    for (const gcode::Item& item : items) std::visit(take, item);
+  }
+  return artwork;
+}
+
+}  // namespace tire_mold

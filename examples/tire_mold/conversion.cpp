@@ -1,0 +1,267 @@
+#include "conversion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "failure.hpp"
+
+namespace tire_mold {
+
+namespace {
+
+using namespace cncplan;
+using Joints = VectorN<double, 4>;
+using Stretch = plan::SidewallStretch<double>;
+
+bool is_arc_code(const gcode::Word& word) {
+  return word.letter == 'G' && (word.number == 2 || word.number == 3);
+}
+
+// Words that say where to go, and not what else to do: these become a row. K, P and R belong to arcs here; a
+// line with a code that passes through keeps its P and R.
+bool says_where(const gcode::Word& word, bool arc) {
+  switch (word.letter) {
+    case 'X':
+    case 'Y':
+    case 'Z':
+    case 'I':
+    case 'J':
+    case 'K':
+      return true;
+    case 'R':
+    case 'P':
+      return arc;
+    default:
+      return false;
+  }
+}
+
+// Takes effect when the motion of its line is over.
+bool comes_last(const gcode::Word& word) {
+  return word.letter == 'M' && (word.number <= 2 || word.number == 30 || word.number == 60);
+}
+
+class Converter {
+ public:
+  Converter(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
+            const Options& options)
+      : artwork_(artwork),
+        sidewall_(sidewall),
+        machine_(machine),
+        options_(options),
+        guide_(sidewall, machine.smallest_radius) {}
+
+  Conversion run() {
+    for (index_ = 0; index_ < artwork_.lines.size(); ++index_) write(artwork_.lines[index_]);
+    return std::move(result_);
+  }
+
+ private:
+  void write(const Line& line) {
+    std::vector<Joints> rows;
+    bool curved = false;
+    for (const Move& move : line.moves) {
+      curved = curved || move.segment.arc() != nullptr;
+      if (here_ || leads_to_mold(move)) map(move, rows);
+    }
+    const bool arc = curved || std::any_of(line.words.begin(), line.words.end(), is_arc_code);
+    const bool places = std::any_of(line.words.begin(), line.words.end(),
+                                    [arc](const gcode::Word& word) { return says_where(word, arc); });
+    if (rows.empty() && places && here_) rows.push_back(*here_);  // the place where it already stands
+    rewrite(line, arc, rows);
+    result_.rows.insert(result_.rows.end(), rows.begin(), rows.end());
+  }
+
+  // The rows of a move; the first move of all has one, its end.
+  void map(const Move& move, std::vector<Joints>& rows) {
+    ++result_.points;
+    const Vector3 end = move.segment.end();
+    if (!here_) {
+      const path::Segment standing{path::Line(end, end)};
+      std::vector<Stretch> none;
+      if (auto ok = guide_.follow(standing, none); !ok) refuse_move(artwork_, index_, move, ok.error());
+      const auto joints = sidewall_.joints(end);
+      if (!joints) refuse_move(artwork_, index_, move, joints.error());
+      add(move, *joints, rows);
+      return;
+    }
+    std::vector<Stretch> stretches;
+    if (auto ok = guide_.follow(move.segment, stretches); !ok)
+      refuse_move(artwork_, index_, move, ok.error());
+    row_start_ = 0.0;
+    next_length_ = options_.subdivide.value_or(0.0);
+    for (std::size_t i = 0; i < stretches.size(); ++i)
+      if (options_.subdivide && !stretches[i].kink)
+        add_by_length(move, stretches[i], i + 1 == stretches.size() || stretches[i + 1].kink, rows);
+      else
+        add_by_tolerance(move, stretches[i], rows);
+  }
+
+  void add_by_tolerance(const Move& move, const Stretch& stretch, std::vector<Joints>& rows) {
+    const auto division = plan::divide(stretch, options_.tolerance);
+    result_.chord_error = std::max(result_.chord_error, division.error);
+    const double width = (stretch.to - stretch.from) / division.rows;
+    for (int k = 1; k <= division.rows; ++k) {
+      const double u = k == division.rows ? stretch.to : stretch.from + width * k;
+      add(move, plan::sidewall_joints(stretch, u, (*here_)[3]), rows);
+    }
+  }
+
+  // Rows at whole multiples of the length along the move, and where it ends or a kink is.
+  void add_by_length(const Move& move, const Stretch& stretch, bool to_end, std::vector<Joints>& rows) {
+    const auto row = [&](double u) {
+      const Joints joints = plan::sidewall_joints(stretch, u, (*here_)[3]);
+      result_.chord_error = std::max(result_.chord_error, wall_error(stretch.segment, joints, u));
+      add(move, joints, rows);
+      row_start_ = u;
+    };
+    constexpr double rounding = 1e-9;
+    const double until = stretch.segment.length_at(stretch.to) - rounding;
+    for (; next_length_ < until; next_length_ += *options_.subdivide)
+      row(stretch.segment.parameter_at(next_length_));
+    if (to_end) row(stretch.to);
+  }
+
+  // As plan::chord_error, for a row that may cross from one piece of the profile to the next.
+  [[nodiscard]] double wall_error(const path::Segment& segment, const Joints& joints, double to) const {
+    const kinematics::TireMold machine{.tool_length = sidewall_.tool_length()};
+    double worst = 0.0;
+    for (int k = 1; k < 8; ++k) {
+      const double part = k / 8.0;
+      const double u = row_start_ + part * (to - row_start_);
+      const auto tip = sidewall_.chart(sidewall_.piece_at(plan::radius_at(segment, u)))
+                           .tip(plan::moving_point(segment, u));
+      const Vector3 truth(tip[0].value, tip[1].value, tip[2].value);
+      const Vector3 tangent = Vector3(tip[0].first, tip[1].first, tip[2].first).normalized();
+      const Vector3 apart = machine.forward(*here_ + part * (joints - *here_)).position - truth;
+      worst = std::max(worst, (apart - tangent * tangent.dot(apart)).norm());
+    }
+    return worst;
+  }
+
+  void add(const Move& move, const Joints& joints, std::vector<Joints>& rows) {
+    static constexpr std::string_view names[4] = {"radial", "vertical", "tilting", "table"};
+    if (const auto ok = within_travel(joints, machine_.limits, names); !ok) refuse_travel(move, joints);
+    rows.push_back(joints);
+    here_ = joints;
+  }
+
+  [[noreturn]] void refuse_travel(const Move& move, const Joints& joints) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (joints[k] >= machine_.limits.low[k] && joints[k] <= machine_.limits.high[k]) continue;
+      throw simulate::Failure(
+          simulate::Exit::bad_input,
+          fmt::format("{}:{}:{}: error: axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}",
+                      artwork_.file, index_ + 1, move.column, machine_.letters[i],
+                      machine_.shown(i, joints[k]), machine_.shown(i, machine_.limits.low[k]),
+                      machine_.shown(i, machine_.limits.high[k])));
+    }
+    throw simulate::Failure(simulate::Exit::bad_input, "a joint is not a number");
+  }
+
+  [[nodiscard]] std::string row_text(const Joints& joints) const {
+    std::string text;
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::string number =
+          fmt::format("{:.{}f}", machine_.shown(i, joints[static_cast<Eigen::Index>(i)]), options_.decimals);
+      if (number.starts_with('-') && number.find_first_of("123456789") == std::string::npos)
+        number.erase(0, 1);
+      text += fmt::format("{}{}{}", i == 0 ? "" : " ", machine_.letters[i], number);
+    }
+    return text;
+  }
+
+  // The line with its axis words replaced by the first row; the other rows follow on lines of their own.
+  void rewrite(const Line& line, bool arc, const std::vector<Joints>& rows) {
+    std::string& out = result_.text;
+    std::string last_words;
+    bool placed = rows.empty();
+    std::size_t copied = 0;
+    for (std::size_t i = 0; i < line.words.size(); ++i) {
+      const gcode::Word& word = line.words[i];
+      const auto begin = static_cast<std::size_t>(word.column) - 1;
+      const std::size_t end = end_of(line, i);
+      std::optional<std::string> instead;
+      if (says_where(word, arc)) {
+        instead = placed ? "" : row_text(rows.front());
+        placed = true;
+      } else if (rows.size() > 1 && comes_last(word)) {
+        last_words += ' ' + line.text.substr(begin, end - begin);
+        instead = "";
+      } else {
+        instead = translated(word);
+      }
+      if (!instead) continue;
+      out.append(line.text, copied, begin - copied);
+      copied = end;
+      if (instead->empty())
+        while (copied < line.text.size() && line.text[copied] == ' ') ++copied;
+      out += *instead;
+    }
+    out.append(line.text, copied);
+    while (out.ends_with(' ') && copied > 0) out.pop_back();
+    out += '\n';
+    for (std::size_t i = 1; i < rows.size(); ++i)
+      out += row_text(rows[i]) + (i + 1 == rows.size() ? last_words : "") + '\n';
+  }
+
+  // Behind the number of a word: blanks and comments that follow it are not its own.
+  static std::size_t end_of(const Line& line, std::size_t word) {
+    const auto from = static_cast<std::size_t>(line.words[word].column);
+    const std::size_t end = line.text.find_first_not_of("0123456789+-. \t", from);
+    const std::size_t last = line.text.find_last_of("0123456789.", end == std::string::npos ? end : end - 1);
+    return last + 1;
+  }
+
+  // The output is absolute, in millimetres, and has no arcs.
+  std::optional<std::string> translated(const gcode::Word& word) {
+    if (word.letter == 'F' && inches_) return fmt::format("F{:.4f}", word.number * 25.4);
+    if (word.letter != 'G') return std::nullopt;
+    if (word.number == 2 || word.number == 3) return "G01";
+    if (word.number == 91) return "G90";
+    if (word.number == 90.1 || word.number == 91.1) return "";
+    if (word.number == 20 || word.number == 21) inches_ = word.number == 20;
+    return word.number == 20 ? std::optional<std::string>("G21") : std::nullopt;
+  }
+
+  const Artwork& artwork_;
+  const kinematics::Sidewall& sidewall_;
+  const Machine& machine_;
+  const Options& options_;
+  plan::SidewallGuide guide_;
+  std::size_t index_ = 0;
+  std::optional<Joints> here_;
+  bool inches_ = false;
+  double row_start_ = 0.0;    // parameter of the move where the row under way began
+  double next_length_ = 0.0;  // mm along the move where the next row ends
+  Conversion result_;
+};
+
+}  // namespace
+
+bool leads_to_mold(const Move& move) {
+  const Vector3 way = move.segment.chord();
+  return way.x() != 0.0 || way.y() != 0.0;
+}
+
+void refuse_move(const Artwork& artwork, std::size_t line, const Move& move, const Error& error) {
+  const std::string why =
+      error.code == ErrorCode::above_limit
+          ? fmt::format("a radius of {:.6g} mm lies beyond the profile, which ends at {:.6g}", error.value,
+                        error.bound)
+          : fmt::format("a radius of {:.6g} mm is below {:.6g}, the least that is mapped", error.value,
+                        error.bound);
+  throw simulate::Failure(simulate::Exit::bad_input,
+                          fmt::format("{}:{}:{}: error: {}", artwork.file, line + 1, move.column, why));
+}
+
+Conversion convert(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
+                   const Options& options) {
+  return Converter(artwork, sidewall, machine, options).run();
+}
+
+}  // namespace tire_mold

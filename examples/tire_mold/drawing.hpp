@@ -1,0 +1,26 @@
+// A mold's profile from a DXF file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cncplan/kinematics/profile_chain.hpp"
+
+namespace tire_mold {
+
+struct Drawing {
+  std::vector<cncplan::kinematics::Drawn> drawn;
+  std::vector<std::string> names;  ///< what to call each: "entity 3 (LINE)"
+};
+
+/// Reads the lines, arcs, circles and polylines of a drawing; X is the radius and Y the height. Text and the
+/// like is left out with a warning. Throws `Failure` for what cannot be read or is no flat curve.
+[[nodiscard]] Drawing read_drawing(const std::string& file);
+
+/// The profile of a drawing. Throws `Failure` that names the entities which do not make one chain. Kinks are
+/// reported on standard error, unless `quiet`.
+[[nodiscard]] cncplan::kinematics::ProfileChain profile_of(const std::string& file,
+                                                           const cncplan::kinematics::ChainOptions& options,
+                                                           bool quiet);
+
+}  // namespace tire_mold

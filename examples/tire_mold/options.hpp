@@ -1,0 +1,34 @@
+// The command line of cncplan_tire_mold.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace tire_mold {
+
+struct Options {
+  std::string profile;
+  std::string artwork;
+  double tool_length = 0.0;   ///< mm
+  double start_radius = 0.0;  ///< mm, the artwork radius on the profile's first point
+  bool reverse = false;
+  double tolerance = 0.01;          ///< mm
+  std::optional<double> subdivide;  ///< mm
+  double chain_tolerance = 0.001;   ///< mm
+  int decimals = 3;
+  double corner_time = 0.001;  ///< s
+  double period = 0.001;       ///< s
+  std::optional<std::string> machine;
+  std::optional<std::string> out;
+  std::optional<std::string> samples;
+  std::optional<std::string> steps;
+  std::optional<std::string> plot;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The options of a command line; nothing after `--help` or `--version`, which print what they promise.
+/// Throws `Failure` for bad arguments.
+[[nodiscard]] std::optional<Options> parse_options(int argc, char** argv);
+
+}  // namespace tire_mold

@@ -1,0 +1,86 @@
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace tire_mold {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Range {
+  double low{};
+  double high{};
+};
+
+Range range(const Conversion& conversion, const Machine& machine, std::size_t axis) {
+  if (conversion.rows.empty()) return {};
+  const auto k = static_cast<Eigen::Index>(axis);
+  Range range{conversion.rows.front()[k], conversion.rows.front()[k]};
+  for (const auto& row : conversion.rows) {
+    range.low = std::min(range.low, row[k]);
+    range.high = std::max(range.high, row[k]);
+  }
+  return {machine.shown(axis, range.low), machine.shown(axis, range.high)};
+}
+
+template <class F>
+Json per_axis(const Machine& machine, F&& value) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < 4; ++i) object[std::string(1, machine.letters[i])] = value(i);
+  return object;
+}
+
+}  // namespace
+
+std::string json_summary(const Conversion& conversion, const Motion& motion, const Machine& machine,
+                         const Measures& measures) {
+  Json json;
+  json["points_in"] = conversion.points;
+  json["rows_out"] = conversion.rows.size();
+  json["profile_length_mm"] = measures.profile_length;
+  json["chain_entities"] = measures.entities;
+  json["range"] = per_axis(machine, [&](std::size_t i) {
+    const auto [low, high] = range(conversion, machine, i);
+    return Json::array({low, high});
+  });
+  json["max_chord_error_mm"] = conversion.chord_error;
+  json["time_s"] = motion.duration;
+  const auto peak = [&](const Joints& of) {
+    return per_axis(machine,
+                    [&](std::size_t i) { return machine.shown(i, of[static_cast<Eigen::Index>(i)]); });
+  };
+  json["axis_peak"] = {{"velocity", peak(measures.peaks.velocity)},
+                       {"acceleration", peak(measures.peaks.acceleration)}};
+  json["samples"] = measures.samples;
+  json["steps"] = per_axis(machine, [&](std::size_t i) { return measures.steps[i]; });
+  return json.dump(2) + "\n";
+}
+
+std::string table_summary(const Conversion& conversion, const Motion& motion, const Machine& machine,
+                          const Measures& measures) {
+  std::string text;
+  const auto row = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<24}{}\n", name, value);
+  };
+  row("points, rows", fmt::format("{}, {}", conversion.points, conversion.rows.size()));
+  row("profile", fmt::format("{} entities, {:.4f} mm", measures.entities, measures.profile_length));
+  row("largest chord error", fmt::format("{:.4g} mm", conversion.chord_error));
+  row("time", fmt::format("{:.3f} s", motion.duration));
+  text += fmt::format("\n{:<6}{:>12}{:>12}{:>12}{:>12}{:>16}{:>12}\n", "axis", "from", "to", "peak /s",
+                      "limit /s", "peak /s^2", "limit /s^2");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto [low, high] = range(conversion, machine, i);
+    text += fmt::format("{:<6}{:>12.3f}{:>12.3f}{:>12.4g}{:>12.4g}{:>16.4g}{:>12.4g}  {}\n",
+                        machine.letters[i], low, high, machine.shown(i, measures.peaks.velocity[k]),
+                        machine.shown(i, machine.limits.velocity[k]),
+                        machine.shown(i, measures.peaks.acceleration[k]),
+                        machine.shown(i, machine.limits.acceleration[k]), machine.rotary[i] ? "deg" : "mm");
+  }
+  return text;
+}
+
+}  // namespace tire_mold
