@@ -40,7 +40,11 @@ class Builder {
         says_feed ? plan::feed(motion, block->segment.length(), unlimited, rapid_rate) : limits_.velocity;
     program_.origins.push_back({motion.line, motion.plane, plan::xyz(motion.offset), feed});
   }
-  void operator()(const gcode::Dwell& dwell) { last_block(dwell.line).pause += dwell.seconds; }
+  void operator()(const gcode::Dwell& dwell) {
+    plan::Block& block = last_block(dwell.line);
+    block.stop_at_end = true;  // a dwell of no time too
+    block.pause += dwell.seconds;
+  }
   void operator()(const gcode::Stop& stop) { last_block(stop.line).stop_at_end = true; }
   void operator()(const gcode::Word& word) {
     if (word.letter == 'T') last_block(word.line).stop_at_end = true;
