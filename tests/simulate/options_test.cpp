@@ -1,0 +1,134 @@
+// Every option has an effect.
+#include <cmath>
+
+#include "simulate/table.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+nlohmann::json summary(const std::string& options, const std::string& program = "pocket") {
+  const test::Folder folder;
+  const auto run = folder.run(test::example(program) + " --json " + options);
+  INFO(options << ": " << run.err);
+  REQUIRE(run.exit == 0);
+  return run.json();
+}
+
+double time_of(const std::string& options) { return summary(options)["time_s"]; }
+
+}  // namespace
+
+TEST_CASE("limits: the lower, the slower") {
+  const double standard = time_of("");
+  CHECK(time_of("--vmax 30 --amax 1000 --jmax 10000 --period 0.001") == standard);
+  for (const char* lower : {"--vmax 15", "--amax 100", "--jmax 1000"}) {
+    INFO(lower);
+    CHECK(time_of(lower) > standard * 1.01);
+  }
+  CHECK(time_of("--jmax 100000") < standard);
+}
+
+TEST_CASE("--period sets the number of samples and nothing of the plan") {
+  const auto fine = summary("--period 0.0005"), coarse = summary("--period 0.002");
+  CHECK(fine["time_s"] == coarse["time_s"]);
+  CHECK(fine["steps"] == coarse["steps"]);
+  CHECK(fine["samples"] == std::ceil(fine["time_s"].get<double>() / 0.0005) + 1);
+  CHECK(coarse["samples"] == std::ceil(fine["time_s"].get<double>() / 0.002) + 1);
+  const auto longer = summary("--period 1000");
+  CHECK(longer["samples"] == 2);
+  CHECK(longer["end_error_mm"] < 1e-9);
+}
+
+TEST_CASE("every policy plans its own way, and several their minimum") {
+  std::set<double> times;
+  const auto policies = {"table", "stop", "tangent=1", "deviation=0.01", "acceleration-step=200"};
+  for (const std::string policy : policies) {
+    const double arcs = summary("--junction " + policy, "kk22_figure7")["time_s"];
+    times.insert(arcs + time_of("--junction " + policy));
+  }
+  CHECK(times.size() == policies.size());
+  CHECK(time_of("--junction deviation=0.01") == time_of(""));
+  const double both = time_of("--junction tangent=1+deviation=0.01");
+  CHECK(both >= time_of("--junction tangent=1"));
+  CHECK(both >= time_of("--junction deviation=0.01"));
+  CHECK(time_of("--junction stop+table+deviation=5") == time_of("--junction stop"));
+}
+
+TEST_CASE("the seven-phase law is faster where the acceleration binds, the same where not") {
+  for (const std::string plan : {"block", "span"}) {
+    INFO(plan);
+    CHECK(time_of("--amax 200 --profile seven --plan " + plan) <
+          time_of("--amax 200 --profile five --plan " + plan));
+  }
+  CHECK(time_of("--profile seven --plan block") ==
+        Approx(time_of("--profile five --plan block")).epsilon(1e-12));
+  CHECK(time_of("--profile seven") == time_of(""));
+}
+
+TEST_CASE("ramps across blocks are faster than published planning") {
+  const test::Folder folder;
+  std::string program = "F1800\n";
+  for (int i = 1; i <= 200; ++i) program += "G1 X" + std::to_string(i * 0.2) + "\n";
+  const auto time = [&](const std::string& options) {
+    return folder.run_text(program, "--json " + options).json()["time_s"].get<double>();
+  };
+  CHECK(time("--plan span") < 0.8 * time("--plan block"));
+  CHECK(time("--plan span") == time(""));
+  // 40 mm from rest to rest: two ramps of 0.10954 s, which take 3.2863 mm together, and a cruise
+  CHECK(time("--plan span") == Approx(2 * 0.109544512 + (40.0 - 3.286335345) / 30.0).epsilon(1e-6));
+}
+
+TEST_CASE("interpolators differ in their error and keep the end") {
+  const auto exact = summary("--interpolator exact"), taylor = summary("--interpolator taylor");
+  CHECK(exact["time_s"] == time_of(""));
+  CHECK(exact["contour_error_mm"] < 1e-12);
+  CHECK(taylor["time_s"] == exact["time_s"]);
+  CHECK(taylor["contour_error_mm"] < 1e-6);
+  CHECK(taylor["end_error_mm"] < 1e-9);
+  const test::Folder folder;
+  const auto positions = [&](const std::string& name) {
+    REQUIRE(folder.run(test::example("pocket") + " --quiet --samples s.csv --interpolator " + name).exit ==
+            0);
+    return test::Table(folder / "s.csv")["x"];
+  };
+  CHECK(positions("exact") != positions("taylor"));
+}
+
+TEST_CASE("constant increments: length over feed, for every block") {
+  const test::Folder folder;
+  const auto run =
+      folder.run_text("G1 X9 F900\nG0 Y12\nG1 X0 F600\n", "--json --interpolator constant --blocks b.csv");
+  REQUIRE(run.exit == 0);
+  CHECK(run.json()["time_s"].get<double>() == Approx(9.0 / 15.0 + 12.0 / 30.0 + 9.0 / 10.0));
+  CHECK(test::Table(folder / "b.csv")["v_in"] == std::vector<double>{15.0, 30.0, 10.0});
+  CHECK(run.json()["end_error_mm"] < 1e-9);
+}
+
+TEST_CASE("--plot draws, or says why not") {
+  const test::Folder folder;
+  const auto run = folder.run(test::example("kk22_figure7") + " --quiet --plot \"it's/deep\"");
+  REQUIRE(run.exit == 0);
+  if (run.err.empty()) {
+    for (const char* picture : {"it's/deep/path.svg", "it's/deep/profile.svg"})
+      CHECK(test::text_of(folder / picture).find("<svg") != std::string::npos);
+  } else {
+    CHECK(run.err == "no pictures: gnuplot is not installed\n");
+  }
+}
+
+TEST_CASE("--help and --version say what they promise and succeed") {
+  const test::Folder folder;
+  const auto help = folder.run("--help");
+  CHECK(help.exit == 0);
+  for (const char* option :
+       {"--vmax", "--amax", "--jmax", "--period", "--junction", "--profile", "--plan", "--interpolator",
+        "--machine", "--motions", "--blocks", "--samples", "--steps", "--plot", "--json", "--quiet"}) {
+    INFO(option);
+    CHECK(help.out.find(option) != std::string::npos);
+  }
+  const auto version = folder.run("--version");
+  CHECK(version.exit == 0);
+  CHECK(version.out.starts_with("cncplan "));
+}

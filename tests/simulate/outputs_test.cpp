@@ -1,0 +1,144 @@
+// Form of the outputs: headers, digits, keys of the summary, and what belongs on which stream.
+#include <cmath>
+
+#include "simulate/table.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+std::string first_line(const std::filesystem::path& file) {
+  const std::string text = test::text_of(file);
+  return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+TEST_CASE("headers are the contract's") {
+  const test::Folder folder;
+  REQUIRE(
+      folder.run(test::example("pocket") + " --quiet --motions m --blocks b --samples s --steps x").exit ==
+      0);
+  CHECK(first_line(folder / "m") == "line,kind,plane,x0,y0,z0,x1,y1,z1,cx,cy,cz,radius,sweep,length,feed");
+  CHECK(first_line(folder / "b") == "line,length,v_in,v_peak,v_out,duration");
+  CHECK(first_line(folder / "s") == "t,x,y,z,s,v,a,j");
+  CHECK(first_line(folder / "x") == "$timescale 1 ns $end");
+  CHECK(folder.files() == std::set<std::string>{"b", "m", "s", "x"});
+}
+
+TEST_CASE("the summary has all keys, each of its kind") {
+  const test::Folder folder;
+  const auto run =
+      folder.run(test::example("pocket") + " --json --period 0.002 --vmax 25 --amax 900 --jmax 9000");
+  REQUIRE(run.exit == 0);
+  CHECK(run.err.empty());
+  const auto json = run.json();
+  for (const char* key : {"lines", "motions", "arcs", "samples", "junctions_limited", "warnings"}) {
+    INFO(key);
+    REQUIRE(json.contains(key));
+    CHECK(json[key].is_number_unsigned());
+  }
+  for (const char* key : {"length_mm", "time_s", "corner_velocity_step", "end_error_mm", "contour_error_mm",
+                          "plan_s", "interpolate_s", "steps_s"}) {
+    INFO(key);
+    REQUIRE(json.contains(key));
+    CHECK(json[key].is_number_float());
+  }
+  for (const char* key : {"velocity", "acceleration", "jerk"}) {
+    INFO(key);
+    CHECK(json["peak"][key].is_number_float());
+    CHECK(json["limits"][key].is_number_float());
+  }
+  for (const char* axis : {"X", "Y", "Z"}) {
+    INFO(axis);
+    CHECK(json["axis_peak"]["velocity"][axis].is_number_float());
+    CHECK(json["axis_peak"]["acceleration"][axis].is_number_float());
+    CHECK(json["steps"][axis].is_number_integer());
+    CHECK(json["net_steps"][axis].is_number_integer());
+    CHECK(json["step_error_max"][axis].is_number_float());
+    CHECK(json["rmse"][axis].is_number_float());
+  }
+  CHECK(json["limits"]["velocity"] == 25.0);
+  CHECK(json["limits"]["acceleration"] == 900.0);
+  CHECK(json["limits"]["jerk"] == 9000.0);
+  CHECK(json["lines"] == 26);
+  CHECK(json["motions"] == 19);
+  CHECK(json["arcs"] == 7);
+}
+
+TEST_CASE("numbers keep all bits of a double") {
+  const test::Folder folder;
+  const auto run =
+      folder.run_text("G1 X0.1 Y0.7 Z0.30000000000000004\n", "--json --motions m.csv --samples s.csv");
+  REQUIRE(run.exit == 0);
+  const test::Table motions(folder / "m.csv");
+  CHECK(motions["x1"][0] == 0.1);
+  CHECK(motions["y1"][0] == 0.7);
+  CHECK(motions["z1"][0] == 0.30000000000000004);
+  const test::Table samples(folder / "s.csv");
+  CHECK(samples["t"].back() == run.json()["time_s"].get<double>());
+  CHECK(samples["t"][3] == 3 * 0.001);
+}
+
+TEST_CASE("a table for people, JSON for programs, nothing when quiet") {
+  const test::Folder folder;
+  const auto table = folder.run(test::example("pocket"));
+  CHECK(table.exit == 0);
+  CHECK(table.out.find("path length") != std::string::npos);
+  CHECK(table.out.find("error steps") != std::string::npos);
+  CHECK(table.err.empty());  // no bar where there is no terminal
+  const auto quiet = folder.run(test::example("pocket") + " --quiet");
+  CHECK(quiet.exit == 0);
+  CHECK(quiet.out.empty());
+  CHECK(quiet.err.empty());
+  const auto both = folder.run(test::example("pocket") + " --quiet --json");
+  CHECK(both.json()["motions"] == 19);
+  CHECK(folder.files().empty());
+}
+
+TEST_CASE("--motions has the programmed feed, whatever the limits") {
+  const test::Folder folder;
+  REQUIRE(
+      folder.run_text("G1 X1\nX2 F6000\nX3 F60\nG93 X5 F6\nG0 X6\n", "--quiet --motions m.csv --blocks b.csv")
+          .exit == 0);
+  const auto feed = test::Table(folder / "m.csv")["feed"];
+  CHECK(feed[0] == 30.0);  // none so far: the speed limit
+  CHECK(feed[1] == 100.0);
+  CHECK(feed[2] == 1.0);
+  CHECK(feed[3] == Approx(0.2));  // 2 mm in a sixth of a minute
+  CHECK(feed[4] == 30.0);
+  CHECK(test::Table(folder / "b.csv")["v_peak"][1] <= 30.0 * (1.0 + 1e-9));
+}
+
+TEST_CASE("axis peaks are those of samples so dense that they miss little") {
+  const test::Folder folder;
+  // an arc whose X speed is highest half way, a spiral, and a turn so fast that its curvature binds
+  const auto run =
+      folder.run_text("G2 X8 Y0 R6\nG3 X7 Y3.3 Z-1 I-1 J1.5 P2\nG2 X7.5 Y3.3 R0.25\nG1 X0 Y-3 Z1\n",
+                      "--json --plan block --junction stop --period 1e-5 --samples s.csv");
+  REQUIRE(run.exit == 0);
+  const auto json = run.json();
+  const test::Table samples(folder / "s.csv");
+  for (const auto& [name, column] : {std::pair{"X", "x"}, {"Y", "y"}, {"Z", "z"}}) {
+    INFO(name);
+    const auto& x = samples[column];
+    double speed = 0.0, acceleration = 0.0;
+    for (std::size_t i = 1; i + 2 < x.size(); ++i) {
+      speed = std::max(speed, std::abs(x[i + 1] - x[i - 1]) / 2e-5);
+      acceleration = std::max(acceleration, std::abs(x[i + 1] - 2.0 * x[i] + x[i - 1]) / 1e-10);
+    }
+    CHECK(json["axis_peak"]["velocity"][name].get<double>() == Approx(speed).epsilon(1e-5));
+    CHECK(json["axis_peak"]["acceleration"][name].get<double>() == Approx(acceleration).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("corner steps and limited joints are counted") {
+  const test::Folder folder;
+  const std::string corner = "G1 X10\nY10\nY20\n";
+  const auto json = folder.run_text(corner, "--json --plan block --junction tangent=3").json();
+  CHECK(json["corner_velocity_step"].get<double>() == Approx(3.0));
+  CHECK(json["junctions_limited"] == 1);
+  CHECK(folder.run_text(corner, "--json --junction stop").json()["junctions_limited"] == 2);
+  CHECK(folder.run_text(corner, "--json --junction stop").json()["corner_velocity_step"] == 0.0);
+}

@@ -1,0 +1,147 @@
+// What is refused: the code, one line that says why and where, and no file left behind.
+#include <algorithm>
+#include <fstream>
+
+#include "simulate/run.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+// Runs with every output asked for; returns the line on standard error.
+std::string refused(const test::Folder& folder, const std::string& arguments, int exit) {
+  const auto before = folder.files();
+  const auto run = folder.run(arguments);
+  INFO(arguments);
+  CHECK(run.exit == exit);
+  CHECK(run.out.empty());
+  CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+  CHECK(folder.files() == before);
+  return run.err.substr(0, run.err.find('\n'));
+}
+
+constexpr const char* outputs = " --json --motions m.csv --blocks b.csv --samples s.csv --steps x.vcd";
+
+}  // namespace
+
+TEST_CASE("bad programs: file, line, column and what is wrong") {
+  struct Case {
+    const char* program;
+    const char* error;
+  };
+  const test::Folder folder;
+  for (const auto& [program, error] : {
+           Case{"G1 X1\n!\n", "part.ngc:2:1: error: !: unknown character"},
+           {"G1 X1\nG2 X5 R1\n", "part.ngc:2:7: error: "},
+           {"G2 X10 R4.99\n", "part.ngc:1:8: error: "},
+           {"G2 X0 Y0 R5\n", "part.ngc:1:10: error: "},
+           {"G2 X10.03 I5\n", "part.ngc:1:11: error: "},
+           {"F0\nG1 X1\n", "part.ngc:2:1: error: "},
+           {"G41 X1\n", "part.ngc:1:1: error: G41 is not supported"},
+       }) {
+    INFO(program);
+    folder.write("part.ngc", program);
+    const std::string line = refused(folder, std::string("part.ngc") + outputs, 2);
+    INFO(line);
+    CHECK(line.starts_with(error));
+  }
+}
+
+TEST_CASE("every rejected program fails with the sentence on its first line") {
+  const test::Folder folder;
+  int programs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CNCPLAN_REJECTED)) {
+    if (entry.path().extension() != ".ngc") continue;
+    const std::string text = test::text_of(entry.path());
+    const std::string expected = text.substr(2, text.find('\n') - 2);
+    INFO(entry.path().filename());
+    folder.write("part.ngc", text);
+    CHECK(refused(folder, "part.ngc --json", 2) == "part.ngc:" + expected);
+    ++programs;
+  }
+  CHECK(programs > 50);
+}
+
+TEST_CASE("bad arguments: exit code 2 and the option's name") {
+  struct Case {
+    const char* options;
+    const char* named;
+  };
+  const test::Folder folder;
+  folder.write("part.ngc", "G1 X1\n");
+  for (const auto& [options, named] : {Case{"--vmax 0", "--vmax"},
+                                       {"--vmax -1", "--vmax"},
+                                       {"--vmax nan", "--vmax"},
+                                       {"--amax inf", "--amax"},
+                                       {"--jmax fast", "--jmax"},
+                                       {"--jmax", "--jmax"},
+                                       {"--period 0", "--period"},
+                                       {"--period 1e-13", "period"},
+                                       {"--vmax 1e-300", "samples"},
+                                       {"--vmax 10 --vmax 20", "--vmax"},
+                                       {"--profile six", "--profile"},
+                                       {"--profile 1", "--profile"},
+                                       {"--plan sometimes", "--plan"},
+                                       {"--interpolator spline", "--interpolator"},
+                                       {"--junction ''", "--junction"},
+                                       {"--junction table=1", "--junction"},
+                                       {"--junction deviation", "--junction"},
+                                       {"--junction deviation=-1", "--junction"},
+                                       {"--junction deviation=nan", "--junction"},
+                                       {"--junction stop+", "--junction"},
+                                       {"--fast", "--fast"},
+                                       {"other.ngc", "other.ngc"},
+                                       {"--samples part.ngc", "--samples"},
+                                       {"--samples a.csv --steps ./a.csv", "--steps"},
+                                       {"--machine none.toml", "none.toml"},
+                                       {"--machine .", "error"}}) {
+    const std::string line = refused(folder, std::string("part.ngc ") + options, 2);
+    INFO(line);
+    CHECK(line.starts_with("error: "));
+    CHECK(line.find(named) != std::string::npos);
+  }
+  CHECK(test::text_of(folder / "part.ngc") == "G1 X1\n");
+  CHECK(refused(folder, "", 2) == "error: PROGRAM is required");
+  CHECK(refused(folder, "none.ngc", 2) == "error: none.ngc: cannot be read");
+  CHECK(refused(folder, ".", 2) == "error: .: cannot be read");
+}
+
+TEST_CASE("outputs that cannot be written: exit code 1, and the others are not written either") {
+  const test::Folder folder;
+  folder.write("part.ngc", "G1 X1\n");
+  for (const char* option : {"--motions", "--blocks", "--samples", "--steps"})
+    for (const char* place : {"no/such/folder/file", ".", "part.ngc/file"}) {
+      const std::string alone = refused(folder, std::string("part.ngc --quiet ") + option + " " + place, 1);
+      INFO(alone);
+      CHECK(alone.starts_with("error: " + std::string(place)));
+    }
+  CHECK(refused(folder, "part.ngc --quiet --motions m.csv --samples .", 1) == "error: .: is a directory");
+  CHECK(refused(folder, "part.ngc --quiet --motions m.csv --plot part.ngc", 1) ==
+        "error: part.ngc: cannot be written");
+}
+
+TEST_CASE("a full disk is noticed, whichever output meets it") {
+  if (!std::filesystem::is_character_file("/dev/full")) {
+    WARN("SKIPPED: there is no /dev/full");
+    return;
+  }
+  const test::Folder folder;
+  for (const char* option : {"--motions", "--blocks", "--samples", "--steps"}) {
+    const std::string arguments = test::example("pocket") + " --quiet " + option + " /dev/full";
+    CHECK(refused(folder, arguments, 1) == "error: /dev/full: cannot be written");
+  }
+  CHECK(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_CASE("links and devices are written as they stand") {
+  const test::Folder folder;
+  folder.write("target.csv", "old");
+  std::filesystem::create_symlink("target.csv", folder / "link.csv");
+  REQUIRE(folder.run(test::example("pocket") + " --quiet --motions link.csv --samples /dev/null").exit == 0);
+  CHECK(std::filesystem::is_symlink(folder / "link.csv"));
+  CHECK(test::text_of(folder / "target.csv").starts_with("line,kind,"));
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+  CHECK(folder.run(test::example("pocket") + " --quiet --blocks /dev/stdout | head -1").out ==
+        "line,length,v_in,v_peak,v_out,duration\n");
+}

@@ -1,0 +1,94 @@
+// What brings the machine to rest: dwells, stops of the program, tools, G61.
+#include <cmath>
+
+#include "simulate/table.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+// Speed at the joint of two straight moves in line, with `between` between them.
+double speed_behind(const std::string& between, const std::string& plan = "block") {
+  const test::Folder folder;
+  const auto run =
+      folder.run_text("G1 X10\n" + between + "\nG1 X20\n", "--quiet --blocks b.csv --plan " + plan);
+  INFO(between << ": " << run.err);
+  REQUIRE(run.exit == 0);
+  const test::Table blocks(folder / "b.csv");
+  REQUIRE(blocks.rows() == 2);
+  CHECK(blocks["v_in"][1] == blocks["v_out"][0]);
+  return blocks["v_out"][0];
+}
+
+double time_of(const std::string& program) {
+  const test::Folder folder;
+  const auto run = folder.run_text(program, "--json");
+  REQUIRE(run.exit == 0);
+  return run.json()["time_s"];
+}
+
+}  // namespace
+
+TEST_CASE("straight on runs through, stops of the program do not") {
+  for (const std::string plan : {"block", "span"}) {
+    for (const char* passing : {"", "M3 S1000", "M5", "M8", "M9", "F1800", "G64", "(a comment)", "N20"}) {
+      INFO(passing);
+      CHECK(speed_behind(passing, plan) == Approx(30.0));
+    }
+    for (const char* stop : {"M0", "M1", "M6", "T3", "T1 M6", "G4 P0", "G4 P0.25"}) {
+      INFO(stop);
+      CHECK(speed_behind(stop, plan) == 0.0);
+    }
+  }
+}
+
+TEST_CASE("G61 and G61.1 stop at the end of each move, G64 returns to the policy") {
+  for (const std::string mode : {"G61", "G61.1"}) {
+    const test::Folder folder;
+    const auto run = folder.run_text(mode + "\nG1 X10\nX20\nG64\nX30\nX40\nX50\n",
+                                     "--quiet --blocks b.csv --junction deviation=0.1");
+    REQUIRE(run.exit == 0);
+    const auto out = test::Table(folder / "b.csv")["v_out"];
+    CHECK(out[0] == 0.0);
+    CHECK(out[1] == 0.0);
+    CHECK(out[2] == Approx(30.0));
+    CHECK(out[3] == Approx(30.0));
+    CHECK(out[4] == 0.0);
+  }
+}
+
+TEST_CASE("G64's tolerance is read, and said once to be ignored") {
+  const test::Folder folder;
+  const auto run = folder.run_text("G64 P0.01 Q0.02\nG1 X1\nG64 P0.1\nX2\n", "--json");
+  REQUIRE(run.exit == 0);
+  CHECK(run.err == "program.ngc:1:5: warning: tolerance of G64 is ignored\n");
+  CHECK(run.json()["warnings"] == 1);
+}
+
+TEST_CASE("dwells count in the time, wherever they stand") {
+  const double moving = time_of("G1 X10\nG4 P0\nX20\n");
+  CHECK(time_of("G1 X10\nG4 P0.25\nX20\n") == Approx(moving + 0.25).epsilon(1e-12));
+  CHECK(time_of("G4 P1.5\nG1 X10\nG4 P0\nX20\n") == Approx(moving + 1.5).epsilon(1e-12));
+  CHECK(time_of("G1 X10\nG4 P0.5\nG4 P0.5\nX20\nG4 P2\nM30\n") == Approx(moving + 3.0).epsilon(1e-12));
+  CHECK(time_of("G4 P2.5\n") == 2.5);
+}
+
+TEST_CASE("a program without motion has its one sample") {
+  const test::Folder folder;
+  for (const char* program : {"", "M30\n", "%\n%\n", "(nothing)\n", "G1 X0\n"})
+    for (const std::string interpolator : {"exact", "taylor", "constant"}) {
+      INFO(program << ' ' << interpolator);
+      const auto run = folder.run_text(
+          program, "--json --samples s.csv --motions m.csv --blocks b.csv --steps x.vcd --interpolator " +
+                       interpolator);
+      REQUIRE(run.exit == 0);
+      const auto json = run.json();
+      CHECK(json["time_s"] == 0.0);
+      CHECK(json["motions"] == 0);
+      CHECK(json["samples"] == 1);
+      CHECK(test::Table(folder / "s.csv").rows() == 1);
+      CHECK(test::Table(folder / "m.csv").rows() == 0);
+      CHECK(test::Table(folder / "b.csv").rows() == 0);
+    }
+}
