@@ -1,0 +1,143 @@
+// How far plans are from the fastest motion: random short programs, planned and optimised numerically.
+//   cncplan_optimum [--seed N] [--count N] [--acceleration MM/S^2] [--nodes N]
+// Each lies between two long runs at full speed, which both motions begin and end in, so that only the blocks
+// between them differ. Exit 1 if a plan is faster than the optimum found, by more than 0.1 %.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "cncplan/plan/block_planner.hpp"
+#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+#include "optimum/optimum.hpp"
+#include "support/random.hpp"
+
+namespace {
+
+using namespace cncplan;
+
+constexpr auto seven_phase = [](const Limits& limits) { return profile::seven_phase_solver(limits); };
+
+struct Program {
+  std::vector<plan::BlockCaps> blocks;
+  double from{};  // mm, between the middles of the two runs
+  double to{};
+};
+
+Program draw(test::Random& random, const Limits& limits) {
+  const double ramp = profile::seven_phase_solver(limits).law().distance(0.0, limits.velocity);
+  Program program;
+  program.blocks.push_back({4.0 * ramp, 0.0, limits, 0.0});
+  program.from = program.to = 2.0 * ramp;
+  const int count = random.integer(3, 8);
+  for (int i = 0; i <= count; ++i) {
+    const double length = i < count ? ramp * random.log_uniform(0.1, 3.0) : 4.0 * ramp;
+    program.blocks.push_back({length, limits.velocity * random.log_uniform(0.1, 1.0), limits, 0.0});
+    program.to += program.blocks[program.blocks.size() - 2].length;
+  }
+  return program;
+}
+
+// Time from `from` to `to`, and the squares of the speeds there.
+struct Stretch {
+  double time{};
+  std::vector<double> speeds_sq;
+};
+
+Stretch stretch(const std::vector<plan::Span>& spans, const Program& program, double step,
+                std::size_t nodes) {
+  Stretch result;
+  double origin = 0.0, start = 0.0;
+  double first = 0.0, last = 0.0;
+  std::size_t next = 0;
+  for (const plan::Span& span : spans) {
+    const double end = origin + span.profile.length();
+    for (; next < nodes; ++next) {
+      const double x = program.from + step * static_cast<double>(next);
+      if (x > end) break;
+      const double time = span.profile.time_at(x - origin);
+      const double v = span.profile.at(time).velocity;
+      result.speeds_sq.push_back(v * v);
+      (next == 0 ? first : last) = start + time;
+    }
+    origin = end;
+    start += span.profile.duration();
+  }
+  result.time = last - first;
+  return result;
+}
+
+struct Loss {
+  double sum = 0.0;
+  double worst = 0.0;
+  double least = 0.0;
+  void add(double loss) {
+    sum += loss;
+    least = std::min(least, loss);
+    worst = std::max(worst, loss);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::uint64_t seed = test::seed();
+  int count = 200;
+  std::size_t nodes = 2000;
+  Limits limits{30.0, 1000.0, 10000.0};
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view option = argv[i];
+    if (option == "--seed")
+      seed = std::strtoull(argv[i + 1], nullptr, 10);
+    else if (option == "--count")
+      count = std::atoi(argv[i + 1]);
+    else if (option == "--acceleration")
+      limits.acceleration = std::strtod(argv[i + 1], nullptr);
+    else if (option == "--nodes")
+      nodes = std::strtoull(argv[i + 1], nullptr, 10);
+    else
+      return std::fprintf(stderr,
+                          "usage: cncplan_optimum [--seed N] [--count N] [--acceleration A] [--nodes N]\n"),
+             2;
+  }
+  test::Random random(seed);
+  Loss across, single;
+  double grid = 0.0;
+  for (int k = 0; k < count; ++k) {
+    const Program program = draw(random, limits);
+    const double step = (program.to - program.from) / static_cast<double>(nodes - 1);
+    const std::span<const plan::BlockCaps> blocks(program.blocks);
+    std::vector<plan::Gate> gates(blocks.size() + 1);
+    std::vector<double> speeds(blocks.size() + 1);
+    std::vector<plan::Span> spans, singles;
+    if (!plan::plan_spans(blocks, seven_phase, std::span(gates), std::back_inserter(spans)) ||
+        !plan::plan_blocks(blocks, seven_phase, std::span(speeds), std::back_inserter(singles)))
+      return std::fprintf(stderr, "no plan\n"), 1;
+
+    std::vector<double> highest(nodes, limits.velocity * limits.velocity);
+    double joint = blocks[0].length;
+    for (std::size_t i = 1; i < blocks.size(); joint += blocks[i].length, ++i) {
+      const auto node = static_cast<std::size_t>(std::lround((joint - program.from) / step));
+      highest[node] = std::min(highest[node], blocks[i].entry * blocks[i].entry);
+    }
+    const Stretch planned = stretch(spans, program, step, nodes);
+    // a joint lies up to half a step from its node, where the plan may be a little faster
+    for (std::size_t i = 0; i < nodes; ++i) highest[i] = std::max(highest[i], planned.speeds_sq[i]);
+    test::Optimum optimum(limits, step, highest, planned.speeds_sq);
+    const double best = optimum.time(optimum.solve());
+    grid = std::max(grid, std::abs(optimum.time(planned.speeds_sq) / planned.time - 1.0));
+    across.add(planned.time / best - 1.0);
+    single.add(stretch(singles, program, step, nodes).time / best - 1.0);
+  }
+  std::printf("seed %llu, %d programs, A = %g mm/s^2, %zu nodes (grid error of the time %.2g %%)\n",
+              static_cast<unsigned long long>(seed), count, limits.acceleration, nodes, 100.0 * grid);
+  std::printf("over the optimum   mean      worst\n");
+  std::printf("span            %6.2f %%  %6.2f %%\n", 100.0 * across.sum / count, 100.0 * across.worst);
+  std::printf("block           %6.2f %%  %6.2f %%\n", 100.0 * single.sum / count, 100.0 * single.worst);
+  return across.least < -1e-3 ? 1 : 0;
+}
