@@ -53,6 +53,13 @@ class Section {
       into = value * unit;
     }
   }
+  void not_negative(std::string_view key, double& into, double unit = 1.0) const {
+    if (const toml::node* node = find(key)) {
+      const double value = number(*node, key);
+      if (value < 0.0) refuse(*node, fmt::format("{} must not be negative", key));
+      into = value * unit;
+    }
+  }
   [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what,
                                             std::size_t count) const {
     const toml::array* array = node.as_array();
@@ -82,9 +89,24 @@ class Section {
 
 constexpr double radians(double degrees) { return degrees * (3.14159265358979323846 / 180.0); }
 
+void read_drive(const Section& section, double unit, step::Drive& drive) {
+  section.positive("steps_per_unit", drive.steps_per_unit, 1.0 / unit);
+  section.positive("max_step_rate", drive.max_rate);
+  section.positive("pulse_width", drive.high_time);
+  section.not_negative("pulse_gap", drive.low_time);
+  section.not_negative("direction_setup", drive.direction_setup);
+  section.not_negative("direction_hold", drive.direction_hold);
+  section.not_negative("backlash", drive.backlash, unit);
+  if (const toml::node* inverted = section.find("inverted")) {
+    if (!inverted->is_boolean()) section.refuse(*inverted, "inverted must be true or false");
+    drive.inverted = *inverted->value<bool>();
+  }
+}
+
 void read_axis(const Section& section, Machine& machine) {
-  section.allow(
-      {"letter", "kind", "steps_per_unit", "travel", "velocity", "acceleration", "jerk", "pulse_width"});
+  section.allow({"letter", "kind", "travel", "velocity", "acceleration", "jerk", "steps_per_unit",
+                 "max_step_rate", "pulse_width", "pulse_gap", "direction_setup", "direction_hold", "inverted",
+                 "backlash"});
   MachineAxis axis;
   gcode::Axis word{};
   const toml::node* letter = section.find("letter");
@@ -98,17 +120,18 @@ void read_axis(const Section& section, Machine& machine) {
       section.refuse(*kind, "kind must be \"linear\" or \"rotary\"");
     word.kind = value == "rotary" ? gcode::AxisKind::rotary : gcode::AxisKind::linear;
   }
-  section.positive("steps_per_unit", axis.steps_per_unit);
-  section.positive("velocity", axis.limits.velocity);
-  section.positive("acceleration", axis.limits.acceleration);
-  section.positive("jerk", axis.limits.jerk);
-  section.positive("pulse_width", axis.pulse_width);
+  const double unit = word.kind == gcode::AxisKind::rotary ? 1.0 : machine.unit;
+  section.positive("velocity", axis.limits.velocity, unit);
+  section.positive("acceleration", axis.limits.acceleration, unit);
+  section.positive("jerk", axis.limits.jerk, unit);
   if (const toml::node* travel = section.find("travel")) {
     const auto range = section.numbers(*travel, "travel", 2);
     if (!(range[0] < range[1])) section.refuse(*travel, "travel must go from the lower to the higher end");
-    axis.low = range[0];
-    axis.high = range[1];
+    axis.low = range[0] * unit;
+    axis.high = range[1] * unit;
   }
+  read_drive(section, unit, axis.drive);
+  axis.limits.velocity = std::min(axis.limits.velocity, step::max_speed(axis.drive));
   machine.axes.push_back(axis);
   machine.dialect.axes.push_back(word);
 }
@@ -118,7 +141,8 @@ gcode::Position position(const Section& section, const toml::node& node, std::st
   const auto values = section.numbers(node, what, machine.dialect.axes.size());
   gcode::Position result{};
   for (std::size_t i = 0; i < values.size(); ++i)
-    result[i] = machine.dialect.axes[i].kind == gcode::AxisKind::rotary ? radians(values[i]) : values[i];
+    result[i] = machine.dialect.axes[i].kind == gcode::AxisKind::rotary ? radians(values[i])
+                                                                        : values[i] * machine.unit;
   return result;
 }
 
@@ -131,7 +155,7 @@ void read_tools(const Section& section, Machine& machine) {
       section.refuse(node, fmt::format("'{}' is not a tool number", digits));
     for (const gcode::Tool& tool : machine.dialect.tools)
       if (tool.number == number) section.refuse(node, fmt::format("tool {} is there twice", number));
-    machine.dialect.tools.push_back({number, section.number(node, "tool length")});
+    machine.dialect.tools.push_back({number, section.number(node, "tool length") * machine.unit});
   }
 }
 
@@ -170,11 +194,19 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
 
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
-  top.allow({"name", "rapid_rate", "axis", "tools", "offsets", "home", "pass_through", "smallest_radius"});
+  top.allow({"name", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home", "pass_through",
+             "smallest_radius"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
-  if (top.find("rapid_rate") != nullptr) top.positive("rapid_rate", machine.rapid_rate.emplace());
-  top.positive("smallest_radius", machine.smallest_radius);
+  if (const toml::node* unit = top.find("unit")) {
+    const std::string value = top.text(*unit, "unit");
+    if (value != "mm" && value != "inch") top.refuse(*unit, "unit must be \"mm\" or \"inch\"");
+    machine.unit = value == "inch" ? 25.4 : 1.0;
+  }
+  if (top.find("rapid_rate") != nullptr)
+    top.positive("rapid_rate", machine.rapid_rate.emplace(), machine.unit);
+  top.positive("feed_limit", machine.feed_limit, machine.unit);
+  top.positive("smallest_radius", machine.smallest_radius, machine.unit);
   if (const toml::node* node = top.find("axis")) {
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty()) top.refuse(*node, "axis must be a list of tables, [[axis]]");
@@ -208,7 +240,7 @@ Limits Machine::limits_along(const plan::Block& block) const {
   // each other, they add up to the axis' limit at most.
   const double shared = curved ? std::sqrt(2.0) : 1.0;
   const auto box = block.segment.bounds();
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < static_cast<int>(axes.size()); ++i) {
     const double share = curved ? 1.0 : std::abs(block.segment.start_tangent()[i]);
     if (box.low[i] == box.high[i] || share == 0.0) continue;
     const Limits& axis = axes[static_cast<std::size_t>(i)].limits;
@@ -236,11 +268,19 @@ Machine read_machine_of_any_axes(const std::string& file) {
 
 Machine read_machine(const std::string& file) {
   Machine machine = read_machine_of_any_axes(file);
-  constexpr std::string_view letters = "XYZ";
-  for (std::size_t i = 0; i < letters.size(); ++i)
-    if (machine.axes.size() != 3 || machine.axes[i].letter != letters[i])
-      throw Failure(Exit::bad_input,
-                    fmt::format("{}:1:1: error: the axes must be X, Y, Z, in this order", file));
+  std::string letters;
+  bool linear = true;
+  for (const gcode::Axis& axis : machine.dialect.axes) {
+    letters += axis.letter;
+    linear = linear && axis.kind == gcode::AxisKind::linear;
+  }
+  if (letters != "XY" && letters != "XYZ")
+    throw Failure(Exit::bad_input,
+                  fmt::format("{}:1:1: error: the axes must be X, Y, Z, in this order, or X, Y", file));
+  if (!linear)
+    throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: the axes X, Y, Z must be linear", file));
+  // The language has a Z whatever the machine; where it lacks one, the travel of Z is none.
+  if (letters == "XY") machine.dialect.axes.push_back({'Z', gcode::AxisKind::linear});
   return machine;
 }
 

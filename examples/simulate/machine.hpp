@@ -10,14 +10,14 @@
 
 namespace simulate {
 
+/// Lengths in mm, angles in degrees; so `drive` counts per mm or per degree.
 struct MachineAxis {
   char letter{};
-  double steps_per_unit = 400.0;  ///< per mm or, for a rotary axis, per degree
+  cncplan::step::Drive drive{.steps_per_unit = 400.0, .high_time = 2e-6};
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   cncplan::Limits limits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                          std::numeric_limits<double>::infinity()};
-  double pulse_width = 2e-6;  ///< s
 };
 
 struct Travel {
@@ -27,22 +27,26 @@ struct Travel {
 };
 
 struct Machine {
+  double unit = 1.0;  ///< mm, the unit of the file's lengths
   cncplan::gcode::Dialect dialect;
   std::vector<MachineAxis> axes{{.letter = 'X'}, {.letter = 'Y'}, {.letter = 'Z'}};
-  std::optional<double> rapid_rate;  ///< mm/s
-  double smallest_radius = 1.0;      ///< mm from a rotary table's axis; nothing nearer is driven
+  std::optional<double> rapid_rate;                             ///< mm/s
+  double feed_limit = std::numeric_limits<double>::infinity();  ///< mm/s
+  double smallest_radius = 1.0;  ///< mm from a rotary table's axis; nothing nearer is driven
 
+  /// Of X, Y or Z; none where there is no such axis.
   [[nodiscard]] Travel travel(int axis) const {
-    const MachineAxis& a = axes[static_cast<std::size_t>(axis)];
-    return {a.letter, a.low, a.high};
+    const auto i = static_cast<std::size_t>(axis);
+    if (i >= axes.size()) return {"XYZ"[axis], 0.0, 0.0};
+    return {axes[i].letter, axes[i].low, axes[i].high};
   }
 
   /// The block's limits, lowered so that no axis breaks its own.
   [[nodiscard]] cncplan::Limits limits_along(const cncplan::plan::Block& block) const;
 };
 
-/// Reads the file of a machine with the axes X, Y, Z. Throws `Failure` for one that cannot be read or has an
-/// unknown or wrong entry.
+/// Reads the file of a machine with the axes X, Y and maybe Z. Throws `Failure` for one that cannot be read
+/// or has an unknown or wrong entry.
 [[nodiscard]] Machine read_machine(const std::string& file);
 
 /// The same for a machine with any axes.

@@ -63,11 +63,11 @@ void check_size(const Plan& plan, const Options& options, const Machine& machine
                                                "period of {:.6g} s: more than {:.0e}",
                                                plan.duration, samples, options.period, most));
   for (const MachineAxis& axis : machine.axes) {
-    const double steps = plan.length * axis.steps_per_unit;
+    const double steps = plan.length * axis.drive.steps_per_unit;
     if (!(steps <= most))
       throw Failure(Exit::bad_input, fmt::format("a path of {:.6g} mm at {:.6g} steps of {} per mm: more "
                                                  "than {:.0e} steps",
-                                                 plan.length, axis.steps_per_unit, axis.letter, most));
+                                                 plan.length, axis.drive.steps_per_unit, axis.letter, most));
   }
 }
 
@@ -103,7 +103,7 @@ int run(const Options& options) {
   if (steps) {
     std::vector<cncplan::step::Trace> traces;
     for (const MachineAxis& axis : machine.axes)
-      traces.push_back({std::string(1, axis.letter), axis.pulse_width, 0.0});
+      traces.push_back({std::string(1, axis.letter), axis.drive.high_time, axis.drive.direction_setup});
     auto vcd = cncplan::step::vcd_writer(steps->stream(), traces);
     make_steps(program, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
       if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");

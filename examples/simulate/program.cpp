@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -30,14 +31,17 @@ class Builder {
 
   void operator()(const gcode::Motion& motion) {
     const double rapid_rate = machine_.rapid_rate.value_or(limits_.velocity);
-    auto block = plan::block(motion, limits_, rapid_rate);
+    Limits limits = limits_;
+    if (motion.kind != gcode::MotionKind::rapid)
+      limits.velocity = std::min(limits.velocity, machine_.feed_limit);
+    auto block = plan::block(motion, limits, rapid_rate);
     if (!block) refuse(file_, {block.error(), motion.line, motion.column, {}});
     check_travel(*block, motion);
     block->limits = machine_.limits_along(*block);
     program_.blocks.push_back(*block);
     const bool says_feed = motion.feed || motion.kind == gcode::MotionKind::rapid;
     const double feed =
-        says_feed ? plan::feed(motion, block->segment.length(), unlimited, rapid_rate) : limits_.velocity;
+        says_feed ? plan::feed(motion, block->segment.length(), unlimited, rapid_rate) : limits.velocity;
     program_.origins.push_back({motion.line, motion.plane, plan::xyz(motion.offset), feed});
   }
   void operator()(const gcode::Dwell& dwell) {

@@ -58,8 +58,8 @@ std::string json_summary(const Program& program, const Plan& plan, const Options
   json["junctions_limited"] = m.junctions_limited;
   json["steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).total_steps; });
   json["net_steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).net_steps; });
-  json["step_error_max"] =
-      per_axis(machine, [&](std::size_t i) { return steps(i).max_error * machine.axes[i].steps_per_unit; });
+  json["step_error_max"] = per_axis(
+      machine, [&](std::size_t i) { return steps(i).max_error * machine.axes[i].drive.steps_per_unit; });
   json["rmse"] = per_axis(machine, [&](std::size_t i) { return steps(i).rms_error; });
   json["plan_s"] = m.plan_seconds;
   json["interpolate_s"] = m.interpolate_seconds;
@@ -96,7 +96,7 @@ std::string table_summary(const Program& program, const Plan& plan, const Machin
     const auto axis = static_cast<int>(i);
     text += fmt::format("{:<6}{:>12.4f}{:>14.3f}{:>12}{:>12}{:>14.4f}{:>14.3g}\n", machine.axes[i].letter,
                         m.axis_velocity[axis], m.axis_acceleration[axis], steps.total_steps, steps.net_steps,
-                        steps.max_error * machine.axes[i].steps_per_unit, steps.rms_error);
+                        steps.max_error * machine.axes[i].drive.steps_per_unit, steps.rms_error);
   }
   return text;
 }

@@ -38,6 +38,23 @@ TEST_CASE("a simulated backend counts, and measures rate and jitter") {
   CHECK(backend.report(1).rms_error == Approx(0.1 / std::sqrt(2.0)));
 }
 
+TEST_CASE("a simulated axis with backlash turns in vain after each reversal") {
+  step::SimulatedBackend<double, 2> backend({1.0, 1.0}, {10, 20}, {2, 3});
+  double time = 0.0;
+  const auto after = [&](int axis, int direction) {
+    REQUIRE(backend.accept({time += 1.0, axis, direction}));
+    return backend.position()(axis);
+  };
+  // by hand: two steps in vain each way, and none at the start
+  for (const auto& [direction, position] :
+       {std::pair{1, 11}, {1, 12}, {-1, 12}, {-1, 12}, {-1, 11}, {1, 11}, {-1, 11}, {-1, 10}})
+    CHECK(after(0, direction) == position);
+  for (const auto& [direction, position] : {std::pair{-1, 19}, {1, 19}, {1, 19}, {1, 19}, {1, 20}})
+    CHECK(after(1, direction) == position);
+  CHECK(backend.report(0).net_steps == -2);
+  CHECK(backend.report(1).total_steps == 5);
+}
+
 TEST_CASE("a simulated backend refuses edges out of order and axes it does not have") {
   step::SimulatedBackend<double, 1> backend(VectorN<double, 1>(1.0), {7});
   CHECK(backend.position()(0) == 7.0);

@@ -48,11 +48,16 @@ class SimulatedBackend {
  public:
   using Scalar = S;
 
-  /// The axes' steps per unit (> 0), and the counts they start with.
+  /// The axes' steps per unit (> 0), the counts they start with, and the steps of their backlash (>= 0): what
+  /// an axis turns in vain after a reversal. Which side of it the axis starts from shows with its first step.
   explicit SimulatedBackend(const VectorN<S, N>& steps_per_unit,
-                            const std::array<std::int64_t, N>& counts = {})
+                            const std::array<std::int64_t, N>& counts = {},
+                            const std::array<std::int64_t, N>& backlash = {})
       : steps_per_unit_(steps_per_unit) {
-    for (std::size_t i = 0; i < counts.size(); ++i) axes_[i].count = counts[i];
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      axes_[i].count = counts[i];
+      axes_[i].backlash = backlash[i];
+    }
   }
 
   /// An edge, no earlier than any before it; else the error names the time. An axis outside [0, N) or a
@@ -74,7 +79,10 @@ class SimulatedBackend {
     const S jitter = std::abs(edge.time - exact_time);
     axis.max_jitter = std::max(axis.max_jitter, jitter);
     axis.square_jitter += jitter * jitter;
-    axis.count += edge.direction;
+    if (axis.total == 0 && edge.direction > 0) axis.taken_up = axis.backlash;
+    const std::int64_t taken_up = axis.taken_up + edge.direction;
+    const bool in_vain = taken_up >= 0 && taken_up <= axis.backlash;
+    (in_vain ? axis.taken_up : axis.count) += edge.direction;
     axis.net += edge.direction;
     ++axis.total;
     axis.direction = edge.direction;
@@ -116,6 +124,8 @@ class SimulatedBackend {
  private:
   struct Axis {
     std::int64_t count = 0;
+    std::int64_t backlash = 0;
+    std::int64_t taken_up = 0;  // of the backlash, 0 where the axis is driven backwards
     std::int64_t net = 0;
     std::int64_t total = 0;
     int direction = 0;
