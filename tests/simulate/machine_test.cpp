@@ -33,6 +33,12 @@ TEST_CASE("the mills that ship are read, and run a program") {
   CHECK(machines >= 1);
 }
 
+TEST_CASE("the manual shows the mill's file as it is") {
+  const std::string manual = test::text_of(CNCPLAN_EXAMPLES "/../docs/simulate.md");
+  CHECK(manual.find("```toml\n" + test::text_of(CNCPLAN_EXAMPLES "/machines/mill3.toml") + "```\n") !=
+        std::string::npos);
+}
+
 TEST_CASE("samples and motions are in work coordinates, steps in machine coordinates") {
   const test::Folder folder;
   folder.write("m.toml", "[tools]\n1 = 50\n[offsets]\nG54 = [10, 20, -60]\nG55 = [0, 0, 5]\n");
@@ -169,7 +175,7 @@ TEST_CASE("bad machine files: file, line, column and what is wrong") {
            {axes("kind = \"round\""), "3:8: error: kind must be \"linear\" or \"rotary\""},
            {axes("travel = [1]"), "3:10: error: travel must be a list of 2 numbers"},
            {axes("travel = [5, 1]"), "3:10: error: travel must go from the lower to the higher end"},
-           {"[[axis]]\nletter = \"X\"\n", "1:1: error: the axes must be X, Y, Z, in this order"},
+           {"[[axis]]\nletter = \"X\"\n", "1:1: error: the axes must be X, Y, Z"},
            {"[tools]\nbig = 1\n", "2:7: error: 'big' is not a tool number"},
            {"[tools]\n1 = 5\n01 = 6\n", "2:5: error: tool 1 is there twice"},
            {"[offsets]\nG53 = [0, 0, 0]\n", "2:7: error: 'G53' is not a work coordinate system"},
