@@ -7,11 +7,17 @@
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/curve_point.hpp"
+#include "cncplan/core/frame.hpp"
+#include "cncplan/core/points.hpp"
 #include "cncplan/path/arc_axis.hpp"
 #include "cncplan/path/box.hpp"
 #include "cncplan/path/circle_crossings.hpp"
+#include "cncplan/path/helix_batch.hpp"
 #include "cncplan/path/plane.hpp"
+#include "cncplan/path/rotation.hpp"
 #include "cncplan/path/spiral.hpp"
+#include "cncplan/path/spiral_crossings.hpp"
 
 namespace cncplan::path {
 
@@ -99,25 +105,51 @@ class BasicArc {
   [[nodiscard]] S parameter_end() const { return angle_; }
 
   /// Both ends bit for bit as programmed; outside [0, parameter_end()] the nearer end.
-  [[nodiscard]] Vector position(S u) const {
-    if (u <= S(0)) return start_;
-    if (u >= angle_) return end_;
-    const S s = std::sin(u / 2);
-    const S c = std::cos(u / 2);
-    const Vector turned = 2 * s * (c * tangential_ - s * radial_);
-    return start_ + turned + u * (growth_ * (radial_ + turned) + axial_);
-  }
-  [[nodiscard]] Vector derivative(S u) const {
-    const S s = std::sin(u);
-    const S c = std::cos(u);
+  [[nodiscard]] Vector position(S u) const { return at(u).position; }
+  [[nodiscard]] Vector derivative(S u) const { return at(u).first; }
+  [[nodiscard]] Vector second_derivative(S u) const { return at(u).second; }
+
+  /// Position and both derivatives for one sine and cosine.
+  [[nodiscard]] CurvePoint<Vector> at(S u) const {
+    const auto [sine, versine] = rotation(std::clamp(u, S(0), angle_));
+    const S cosine = S(1) - versine;
+    const Vector turned = sine * tangential_ - versine * radial_;
+    const Vector outward = radial_ + turned;
+    const Vector onward = cosine * tangential_ - sine * radial_;
     const S rho = S(1) + growth_ * u;
-    return (growth_ * c - rho * s) * radial_ + (growth_ * s + rho * c) * tangential_ + axial_;
+    CurvePoint<Vector> point{start_ + turned + u * (growth_ * outward + axial_),
+                             growth_ * outward + rho * onward + axial_, 2 * growth_ * onward - rho * outward};
+    if (u <= S(0)) point.position = start_;
+    if (u >= angle_) point.position = end_;
+    return point;
   }
-  [[nodiscard]] Vector second_derivative(S u) const {
-    const S s = std::sin(u);
-    const S c = std::cos(u);
-    const S rho = S(1) + growth_ * u;
-    return (-2 * growth_ * s - rho * c) * radial_ + (2 * growth_ * c - rho * s) * tangential_;
+
+  /// By arc length: see `Frame`.
+  [[nodiscard]] Frame<Vector> frame_at(S s) const {
+    const CurvePoint<Vector> point = at(parameter_at(s));
+    if (!is_circular()) return frame(point);
+    const S rate = angle_ / length_;
+    return {point.position, rate * point.first, rate * rate * point.second};
+  }
+
+  /// The points at many lengths travelled, which ascend: position(parameter_at(s)) to rounding, the ends bit
+  /// for bit. Vector code for circles and helices.
+  void positions_at(std::span<const S> lengths, BasicPoints<S> out) const {
+    for_each_portion(
+        lengths,
+        [&](std::size_t i) { out.col(static_cast<Eigen::Index>(i)) = position(parameter_at(lengths[i])); },
+        [&](const HelixAnchor<S>& anchor, std::size_t first, std::size_t count) {
+          anchor.positions(lengths.data() + first, count, out.data() + 3 * first);
+        });
+  }
+
+  /// The frames at up to Frames::capacity lengths, which ascend; likewise.
+  void frames_at(std::span<const S> lengths, Frames<S, 3>& out) const {
+    for_each_portion(
+        lengths, [&](std::size_t i) { out.set(i, frame_at(lengths[i])); },
+        [&](const HelixAnchor<S>& anchor, std::size_t first, std::size_t count) {
+          anchor.frames(lengths.data() + first, first, count, out);
+        });
   }
 
   /// The parameter at which length s has been travelled; linear for a circular arc or helix, else see
@@ -125,6 +157,8 @@ class BasicArc {
   [[nodiscard]] S parameter_at(S s) const { return angle_at(spiral_, s, angle_, length_); }
   /// Inverse of `parameter_at`.
   [[nodiscard]] S length_at(S u) const { return path::length_at(spiral_, u); }
+  /// `length_at` for each of `parameters`, in place.
+  void lengths_at(std::span<S> parameters) const { path::lengths_at(spiral_, parameters, angle_); }
 
   [[nodiscard]] Vector start_tangent() const { return derivative(S(0)).normalized(); }
   [[nodiscard]] Vector end_tangent() const { return derivative(angle_).normalized(); }
@@ -151,8 +185,9 @@ class BasicArc {
 
   /// `crossing` for each of `values`, in place.
   void crossings(int axis, std::span<S> values, S low, S high) const {
-    if (axis != axes(plane_).third && is_circular())
-      return circle_crossings(in_plane(axis), values, low, high);
+    if (axis != axes(plane_).third)
+      return is_circular() ? circle_crossings(in_plane(axis), values, low, high)
+                           : spiral_crossings(in_plane(axis), values, low, high);
     for (S& value : values) value = crossing(axis, value, low, high);
   }
 
@@ -181,6 +216,22 @@ class BasicArc {
 
  private:
   [[nodiscard]] S turn_sign() const { return static_cast<S>(sign(turn_)); }
+
+  // Points by themselves, `single`, for the spiral and at the ends, by anchors, `portion`, for what lies
+  // between.
+  template <class Single, class Portion>
+  void for_each_portion(std::span<const S> lengths, Single&& single, Portion&& portion) const {
+    std::size_t first = 0;
+    std::size_t end = lengths.size();
+    while (first < end && (!is_circular() || lengths[first] <= S(0))) single(first++);
+    while (end > first && lengths[end - 1] >= length_) single(--end);
+    for_each_anchor(
+        lengths.subspan(first, end - first), angle_ / length_, axial_,
+        [this](S s) { return at(parameter_at(s)); },
+        [&](const HelixAnchor<S>& anchor, std::size_t from, std::size_t count) {
+          portion(anchor, first + from, count);
+        });
+  }
 
   [[nodiscard]] ArcAxis<S> in_plane(int axis) const {
     const S from = axis == axes(plane_).second ? std::numbers::pi_v<S> / 2 : S(0);

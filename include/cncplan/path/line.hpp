@@ -5,6 +5,9 @@
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/curve_point.hpp"
+#include "cncplan/core/frame.hpp"
+#include "cncplan/core/points.hpp"
 #include "cncplan/path/box.hpp"
 
 namespace cncplan::path {
@@ -40,8 +43,39 @@ class BasicLine {
   }
   [[nodiscard]] Vector derivative(S) const { return direction_; }
   [[nodiscard]] Vector second_derivative(S) const { return Vector::Zero(); }
+  [[nodiscard]] CurvePoint<Vector> at(S u) const { return {position(u), direction_, Vector::Zero()}; }
+
+  /// By arc length: see `Frame`.
+  [[nodiscard]] Frame<Vector> frame_at(S s) const { return {position(s), direction_, Vector::Zero()}; }
+
+  /// The points at many lengths travelled: what position(s) gives.
+  void positions_at(std::span<const S> lengths, BasicPoints<S> out) const {
+    const S length = length_;
+    const S x = start_[0], y = start_[1], z = start_[2];
+    const S dx = direction_[0], dy = direction_[1], dz = direction_[2];
+    const S end_x = end_[0], end_y = end_[1], end_z = end_[2];
+    S* const to = out.data();
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      const S u = std::max(lengths[i], S(0));
+      const bool inside = u < length;
+      to[3 * i] = inside ? x + u * dx : end_x;
+      to[3 * i + 1] = inside ? y + u * dy : end_y;
+      to[3 * i + 2] = inside ? z + u * dz : end_z;
+    }
+  }
+
+  /// The frames at up to Frames::capacity lengths.
+  void frames_at(std::span<const S> lengths, Frames<S, 3>& out) const {
+    const auto count = static_cast<Eigen::Index>(lengths.size());
+    positions_at(lengths, {out.position.data(), 3, count});
+    out.tangent.leftCols(count).colwise() = direction_;
+    out.curvature.leftCols(count).setZero();
+  }
+
   [[nodiscard]] S parameter_at(S s) const { return s; }
   [[nodiscard]] S length_at(S u) const { return u; }
+  /// `length_at` for each of the parameters, in place.
+  void lengths_at(std::span<S>) const {}
 
   [[nodiscard]] const Vector& start_tangent() const { return direction_; }
   [[nodiscard]] const Vector& end_tangent() const { return direction_; }

@@ -54,11 +54,26 @@ class BasicSegment {
   [[nodiscard]] Vector second_derivative(S u) const {
     return visit([u](const auto& p) { return p.second_derivative(u); });
   }
+  [[nodiscard]] CurvePoint<Vector> at(S u) const {
+    return visit([u](const auto& p) { return p.at(u); });
+  }
+  void positions_at(std::span<const S> lengths, BasicPoints<S> out) const {
+    visit([&](const auto& p) { p.positions_at(lengths, out); });
+  }
+  [[nodiscard]] Frame<Vector> frame_at(S s) const {
+    return visit([s](const auto& p) { return p.frame_at(s); });
+  }
+  void frames_at(std::span<const S> lengths, Frames<S, 3>& out) const {
+    visit([&](const auto& p) { p.frames_at(lengths, out); });
+  }
   [[nodiscard]] S parameter_at(S s) const {
     return visit([s](const auto& p) { return p.parameter_at(s); });
   }
   [[nodiscard]] S length_at(S u) const {
     return visit([u](const auto& p) { return p.length_at(u); });
+  }
+  void lengths_at(std::span<S> parameters) const {
+    visit([=](const auto& p) { p.lengths_at(parameters); });
   }
   [[nodiscard]] Vector start_tangent() const {
     return visit([](const auto& p) -> Vector { return p.start_tangent(); });
