@@ -1,42 +1,33 @@
-// Exact evaluation: the point of the path at the length that the profile has travelled (spec: interpolation).
+// Exact evaluation: the samples of a profile along a path, one by one, by number, or many at once (spec:
+// interpolation).
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <span>
 
 #include "cncplan/core/concepts.hpp"
-#include "cncplan/interpolate/sample.hpp"
+#include "cncplan/interpolate/evaluate.hpp"
+#include "cncplan/interpolate/grid.hpp"
+#include "cncplan/interpolate/travel.hpp"
 
 namespace cncplan::interpolate {
 
-/// Position, velocity and acceleration in space for a state along the path, by the chain rule with u' = v /
-/// |r'|: velocity = r' u', acceleration = r'' u'^2 + r' u'' with u'' = a / |r'| - (r'.r'') u'^2 / |r'|^2.
-template <Path P>
-[[nodiscard]] BasicSample<typename P::Scalar, typename P::Vector> evaluate(
-    const P& path, const BasicState<typename P::Scalar>& along, typename P::Scalar time = {}) {
-  using S = typename P::Scalar;
-  using Vector = typename P::Vector;
-  const S u = path.parameter_at(along.position);
-  const Vector first = path.derivative(u);
-  const Vector second = path.second_derivative(u);
-  const S norm_sq = first.squaredNorm();
-  if (!(norm_sq > S(0))) return {time, along, path.position(u), Vector::Zero(), Vector::Zero()};
-  const S norm = std::sqrt(norm_sq);
-  const S rate = along.velocity / norm;
-  const S rate_change = along.acceleration / norm - first.dot(second) * rate * rate / norm_sq;
-  return {time, along, path.position(u), first * rate, second * (rate * rate) + first * rate_change};
-}
-
 /// The samples of a profile along a path at t = k period while t < duration, and a last one at the duration
-/// itself, on the end point. A range; path and profile must outlive it.
+/// itself, on the end point. Each is evaluated afresh from its number: no error grows with time. A range,
+/// whose iterator works out `Frames::capacity` samples at a time, as vector code. The path must outlive it,
+/// and the profile too unless it consists of phases.
 template <Path P, Profile F>
   requires std::same_as<typename P::Scalar, typename F::Scalar>
 class Samples {
  public:
   using Scalar = typename P::Scalar;
   using Sample = BasicSample<Scalar, typename P::Vector>;
+  using Points = PointsN<Scalar, P::Vector::RowsAtCompileTime>;
 
   class Iterator {
    public:
@@ -45,43 +36,78 @@ class Samples {
     using difference_type = std::ptrdiff_t;
 
     Iterator() = default;
-    explicit Iterator(const Samples& samples) : samples_(&samples) {}
+    explicit Iterator(const Samples& samples) : samples_(&samples), size_(samples.size()) { refill(); }
 
-    [[nodiscard]] Sample operator*() const { return samples_->at(index_); }
+    [[nodiscard]] Sample operator*() const {
+      return motion(frames_[in_portion_], states_[in_portion_], samples_->grid_.time(index_));
+    }
     Iterator& operator++() {
-      done_ = samples_->is_last(index_);
       ++index_;
+      if (++in_portion_ == portion && index_ < size_) refill();
       return *this;
     }
     void operator++(int) { ++*this; }
-    friend bool operator==(const Iterator& it, std::default_sentinel_t) { return it.done_; }
+    friend bool operator==(const Iterator& it, std::default_sentinel_t) { return it.index_ >= it.size_; }
 
    private:
+    using AllFrames = Frames<Scalar, P::Vector::RowsAtCompileTime>;
+    static constexpr std::size_t portion = AllFrames::capacity;
+
+    void refill() {
+      const auto count = static_cast<std::size_t>(std::min<std::int64_t>(portion, size_ - index_));
+      samples_->travel_.states(samples_->grid_, index_, place_, std::span(states_).first(count));
+      std::array<Scalar, portion> lengths;
+      for (std::size_t i = 0; i < count; ++i) lengths[i] = states_[i].position;
+      frames_at(*samples_->path_, std::span<const Scalar>(lengths).first(count), frames_);
+      in_portion_ = 0;
+    }
+
     const Samples* samples_ = nullptr;
     std::int64_t index_ = 0;
-    bool done_ = false;
+    std::int64_t size_ = 0;
+    std::size_t in_portion_ = 0;
+    std::size_t place_ = 0;
+    std::array<BasicState<Scalar>, portion> states_;
+    AllFrames frames_;
   };
 
   /// `period` > 0, s.
   Samples(const P& path, const F& profile, Scalar period)
-      : path_(&path), profile_(&profile), period_(period), duration_(profile.duration()) {}
+      : path_(&path), travel_(profile), grid_{period, profile.duration()} {}
 
   [[nodiscard]] Iterator begin() const { return Iterator(*this); }
   [[nodiscard]] std::default_sentinel_t end() const { return {}; }
 
- private:
-  [[nodiscard]] bool is_last(std::int64_t index) const {
-    return !(static_cast<Scalar>(index) * period_ < duration_);
-  }
-  [[nodiscard]] Sample at(std::int64_t index) const {
-    const Scalar time = is_last(index) ? duration_ : static_cast<Scalar>(index) * period_;
-    return evaluate(*path_, profile_->at(time), time);
+  [[nodiscard]] const BasicGrid<Scalar>& grid() const { return grid_; }
+  [[nodiscard]] std::int64_t size() const { return grid_.size(); }
+
+  /// Sample k >= 0; behind the last one, the last.
+  [[nodiscard]] Sample operator[](std::int64_t k) const {
+    std::size_t place = 0;
+    const Scalar time = grid_.time(k);
+    return evaluate(*path_, travel_.at(time, place), time);
   }
 
+  /// Writes the positions of samples `first`, first + 1, ... into the columns of `out`, as many as there are
+  /// of both; returns how many. Equal to those of single samples to rounding.
+  Eigen::Index positions(std::int64_t first, Points out) const {
+    const auto count = static_cast<Eigen::Index>(
+        std::clamp<std::int64_t>(size() - first, 0, static_cast<std::int64_t>(out.cols())));
+    constexpr Eigen::Index portion = 256;
+    std::array<Scalar, portion> lengths;
+    for (Eigen::Index done = 0; done < count; done += portion) {
+      const Eigen::Index now = std::min(portion, count - done);
+      const std::span<Scalar> part(lengths.data(), static_cast<std::size_t>(now));
+      travel_.positions(grid_, first + done, part);
+      positions_at(*path_, std::span<const Scalar>(part), Points(out.col(done).data(), out.rows(), now));
+    }
+    return count;
+  }
+
+ private:
   const P* path_;
-  const F* profile_;
-  Scalar period_;
-  Scalar duration_;
+  Travel<F> travel_;
+  BasicGrid<Scalar> grid_;
 };
 
 /// The samples of a profile along a path; see `Samples`.

@@ -5,9 +5,12 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <span>
 
 #include "cncplan/core/state.hpp"
+#include "cncplan/interpolate/travel.hpp"
 #include "cncplan/plan/span.hpp"
 
 namespace cncplan::plan {
@@ -49,20 +52,50 @@ class BasicCursor {
     }
     const profile::BasicProfile<S>& profile = spans_[span_].profile;
     const S tau = t - start_;
-    BasicState<S> state{profile.length(), profile.end_velocity(), S(0), S(0)};
-    if (tau < duration_) {
-      while (phase_ + 1 < phases_.size() &&
-             (tau >= phases_[phase_ + 1].time || phases_[phase_].duration == S(0)))
-        ++phase_;
-      state = phases_[phase_].at(std::max(tau - phases_[phase_].time, S(0)));
-    }
     const std::size_t end = spans_[span_].first + spans_[span_].count;
+    BasicState<S> state{profile.length(), profile.end_velocity(), S(0), S(0)};
+    if (!(tau < duration_)) {  // at the very end of it all, whatever the sum of the lengths rounds to
+      while (block_ + 1 < end) block_start_ += lengths_[block_++];
+      state.position += origin_;
+      return {block_, lengths_[block_], state};
+    }
+    while (phase_ + 1 < phases_.size() &&
+           (tau >= phases_[phase_ + 1].time || phases_[phase_].duration == S(0)))
+      ++phase_;
+    state = phases_[phase_].at(std::max(tau - phases_[phase_].time, S(0)));
     while (block_ + 1 < end && state.position >= block_start_ + lengths_[block_])
       block_start_ += lengths_[block_++];
     const S along = spans_[span_].count == 0 ? lengths_[block_]
                                              : std::min(state.position - block_start_, lengths_[block_]);
     state.position += origin_;
     return {block_, along, state};
+  }
+
+  /// Distances from the block's start at the instants first, first + 1, ... times the period, for as long as
+  /// phase and block stay the same: at least one, at most as many as `out` has room for. Returns the block
+  /// and how many. Instants do not decrease from call to call.
+  struct Run {
+    std::size_t block{};
+    std::size_t count{};
+  };
+  Run run(S period, std::int64_t first, std::span<S> out) {
+    const BasicPlace<S> here = at(static_cast<S>(first) * period);
+    out.front() = here.along;
+    const S tau = static_cast<S>(first) * period - start_;
+    if (spans_[span_].count == 0 || !(tau < duration_)) return {here.block, 1};
+    const S until = phase_ + 1 < phases_.size() ? std::min(phases_[phase_ + 1].time, duration_) : duration_;
+    const S by_time = (until - tau) / period;
+    const S by_length = (lengths_[block_] - here.along) /
+                        (std::max(here.state.velocity, std::numeric_limits<S>::min()) * period);
+    const S most = std::min({by_time, by_length, static_cast<S>(out.size() - 1)});
+    auto count = static_cast<std::size_t>(most) + 1;
+    const auto in_phase = [&](std::size_t i) {
+      return static_cast<S>(first + static_cast<std::int64_t>(i)) * period - start_ < until;
+    };
+    while (count > 1 && !in_phase(count - 1)) --count;
+    interpolate::positions_in_phase(phases_[phase_], start_, block_start_, period, first, out.first(count));
+    while (count > 1 && out[count - 1] >= lengths_[block_]) --count;
+    return {here.block, count};
   }
 
  private:

@@ -1,0 +1,79 @@
+// The point of a path in space and its motion there, from the state along the path.
+#pragma once
+
+#include <concepts>
+#include <span>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/core/curve_point.hpp"
+#include "cncplan/core/frame.hpp"
+#include "cncplan/core/points.hpp"
+#include "cncplan/interpolate/sample.hpp"
+
+namespace cncplan::interpolate {
+
+/// Position and derivatives at u: in one evaluation where the path offers it.
+template <ParametricPath P>
+[[nodiscard]] CurvePoint<typename P::Vector> curve_point(const P& path, typename P::Scalar u) {
+  if constexpr (requires { path.at(u); }) {
+    return path.at(u);
+  } else {
+    return {path.position(u), path.derivative(u), path.second_derivative(u)};
+  }
+}
+
+/// The points at many travelled lengths: by the path's own loop where it has one.
+template <Path P>
+void positions_at(const P& path, std::span<const typename P::Scalar> lengths,
+                  PointsN<typename P::Scalar, P::Vector::RowsAtCompileTime> out) {
+  if constexpr (requires { path.positions_at(lengths, out); }) {
+    path.positions_at(lengths, out);
+  } else {
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      out.col(static_cast<Eigen::Index>(i)) = path.position(path.parameter_at(lengths[i]));
+  }
+}
+
+/// The frame at a travelled length, and those at up to Frames::capacity of them that ascend.
+template <Path P>
+[[nodiscard]] Frame<typename P::Vector> frame_at(const P& path, typename P::Scalar s) {
+  if constexpr (requires { path.frame_at(s); }) {
+    return path.frame_at(s);
+  } else {
+    return frame(curve_point(path, path.parameter_at(s)));
+  }
+}
+template <Path P>
+void frames_at(const P& path, std::span<const typename P::Scalar> lengths,
+               Frames<typename P::Scalar, P::Vector::RowsAtCompileTime>& out) {
+  if constexpr (requires { path.frames_at(lengths, out); }) {
+    path.frames_at(lengths, out);
+  } else {
+    for (std::size_t i = 0; i < lengths.size(); ++i) out.set(i, frame_at(path, lengths[i]));
+  }
+}
+
+/// Position, velocity and acceleration in space at a point of a curve, for a state of motion along it.
+template <class Vector>
+[[nodiscard]] BasicSample<typename Vector::Scalar, Vector> motion(
+    const Frame<Vector>& at, const BasicState<typename Vector::Scalar>& along, typename Vector::Scalar time) {
+  return {time, along, at.position, along.velocity * at.tangent,
+          along.acceleration * at.tangent + along.velocity * along.velocity * at.curvature};
+}
+
+/// The same at parameter u of a path.
+template <ParametricPath P>
+[[nodiscard]] BasicSample<typename P::Scalar, typename P::Vector> evaluate_at(
+    const P& path, typename P::Scalar u, const BasicState<typename P::Scalar>& along,
+    typename P::Scalar time = {}) {
+  return motion(frame(curve_point(path, u)), along, time);
+}
+
+/// The same where the state's length has been travelled.
+template <Path P>
+[[nodiscard]] BasicSample<typename P::Scalar, typename P::Vector> evaluate(
+    const P& path, const BasicState<typename P::Scalar>& along, typename P::Scalar time = {}) {
+  return motion(frame_at(path, along.position), along, time);
+}
+
+}  // namespace cncplan::interpolate

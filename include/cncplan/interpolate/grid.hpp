@@ -1,0 +1,34 @@
+// The instants of sampling: whole multiples of a period, and the end.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+
+namespace cncplan::interpolate {
+
+/// t = k period for k = 0, 1, ... while t < end, and one last instant at the end itself. Every instant is one
+/// multiplication away from its number, so no rounding adds up. `period` > 0, `end` >= 0, s.
+template <std::floating_point S>
+struct BasicGrid {
+  S period{};
+  S end{};
+
+  /// How many instants there are, at least the last one.
+  [[nodiscard]] std::int64_t size() const { return first_at(end) + 1; }
+  [[nodiscard]] bool is_last(std::int64_t k) const { return !(static_cast<S>(k) * period < end); }
+  [[nodiscard]] S time(std::int64_t k) const { return is_last(k) ? end : static_cast<S>(k) * period; }
+
+  /// The smallest k >= 0 with k period >= t. The quotient is right but for rounding, hence a step or two.
+  [[nodiscard]] std::int64_t first_at(S t) const {
+    auto k = static_cast<std::int64_t>(t / period);
+    if (k > 0) --k;
+    while (static_cast<S>(k) * period < t) ++k;
+    return k;
+  }
+
+  friend bool operator==(const BasicGrid&, const BasicGrid&) = default;
+};
+
+using Grid = BasicGrid<double>;
+
+}  // namespace cncplan::interpolate

@@ -1,0 +1,42 @@
+#include "cncplan/interpolate/grid.hpp"
+
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using interpolate::BasicGrid;
+
+TEMPLATE_TEST_CASE("Instants are multiples of the period before the end, and the end", "", float, double) {
+  const BasicGrid<TestType> grid{TestType(0.25), TestType(1.1)};
+  REQUIRE(grid.size() == 6);
+  for (int k = 0; k < 5; ++k) {
+    CHECK(grid.time(k) == TestType(0.25) * TestType(k));
+    CHECK_FALSE(grid.is_last(k));
+  }
+  CHECK(grid.time(5) == TestType(1.1));
+  CHECK(grid.is_last(5));
+}
+
+TEST_CASE("An end on the grid is one instant, and a motion of no time has one") {
+  CHECK(BasicGrid<double>{0.25, 1.0}.size() == 5);
+  CHECK(BasicGrid<double>{0.25, 0.0}.size() == 1);
+  CHECK(BasicGrid<double>{0.001, 0.0}.time(0) == 0.0);
+}
+
+TEMPLATE_TEST_CASE("The first instant at or after a time is found whatever rounding does", "", float,
+                   double) {
+  test::Random random;
+  const double most = sizeof(TestType) == 4 ? 1e5 : 1e9;
+  bool right = true;
+  for (int i = 0; i < 100000 && right; ++i) {
+    const auto period = static_cast<TestType>(random.log_uniform(1e-5, 1e-1));
+    const auto k = static_cast<std::int64_t>(random.log_uniform(1, most));
+    auto t = static_cast<TestType>(k) * period;
+    if (random.coin()) t = std::nextafter(t, random.coin() ? TestType(0) : TestType(1e30));
+    const std::int64_t found = BasicGrid<TestType>{period, t}.first_at(t);
+    CAPTURE(test::seed(), period, k, t, found);
+    right = static_cast<TestType>(found) * period >= t && static_cast<TestType>(found - 1) * period < t;
+    if (!right) CHECK(right);
+  }
+  CHECK(right);
+}
