@@ -1,0 +1,117 @@
+// Planning whole programs, and all of the way from a program's text to its samples.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "../examples/generate/programs.hpp"
+#include "buffer.hpp"
+#include "cncplan/gcode/program.hpp"
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/plan/program.hpp"
+#include "cncplan/plan/sampler.hpp"
+#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+
+namespace {
+
+using namespace cncplan;
+
+constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+
+// The program that CNCPLAN_BALL names; else a sphere finished in 35000 short moves.
+const std::string& ball() {
+  static const std::string text = [] {
+    std::ostringstream stream;
+    if (const char* name = std::getenv("CNCPLAN_BALL"); name != nullptr && *name != '\0')
+      stream << std::ifstream(name).rdbuf();
+    else
+      generate::write(stream, generate::Kind::finishing);
+    return stream.str();
+  }();
+  return text;
+}
+
+// Everything between text and samples; cleared and filled again, so that only the first round asks for
+// memory.
+struct Job {
+  std::vector<plan::Block> blocks;
+  std::vector<plan::BlockCaps> caps;
+  std::vector<double> lengths;
+  std::vector<plan::Gate> gates;
+  std::vector<plan::Span> spans;
+
+  bool read(const std::string& text) {
+    blocks.clear();
+    gcode::Reader reader;
+    bool made = true;
+    const auto done = gcode::read_program(gcode::TextLines(text), reader, [&](const gcode::Item& item) {
+      if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
+        const auto block = plan::block(*motion, limits, limits.velocity);
+        if (block) blocks.push_back(*block);
+        made = block.has_value();
+      }
+      return made;
+    });
+    return done && made && !blocks.empty();
+  }
+
+  bool plan() {
+    caps.clear();
+    lengths.clear();
+    spans.clear();
+    const junction::Deviation deviation{0.01};
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      caps.push_back(i == 0 ? plan::caps_from_rest(blocks[i], plan::ShareLimits{})
+                            : plan::caps(blocks[i - 1], blocks[i], deviation, plan::ShareLimits{}));
+      lengths.push_back(caps.back().length);
+    }
+    gates.resize(blocks.size() + 1);
+    const auto solver = [](const Limits& within) { return profile::seven_phase_solver(within); };
+    return plan::plan_spans(std::span<const plan::BlockCaps>(caps), solver, std::span(gates),
+                            std::back_inserter(spans))
+        .has_value();
+  }
+
+  std::int64_t sample() {
+    plan::Sampler sampler(blocks, spans, lengths, 1e-3);
+    std::int64_t count = 0;
+    while (const Eigen::Index written = sampler.positions(points(bench::buffer()))) {
+      count += written;
+      benchmark::ClobberMemory();
+    }
+    return count;
+  }
+};
+
+// Caps and spans over blocks in memory. An item is a block.
+void plan_ball(benchmark::State& state) {
+  Job job;
+  if (!job.read(ball())) state.SkipWithError("the program does not read");
+  for (auto _ : state)
+    if (!job.plan()) state.SkipWithError("the program has no plan");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(job.blocks.size()));
+}
+BENCHMARK(plan_ball)->Name("plan/ball")->Unit(benchmark::kMillisecond);
+
+// Text to positions at every millisecond, on one core. An item is a sample; `times_real_time` is how often
+// faster than the machine would move it is.
+void pipeline_ball(benchmark::State& state) {
+  Job job;
+  std::int64_t samples = 0;
+  for (auto _ : state) {
+    if (!job.read(ball()) || !job.plan()) state.SkipWithError("the program has no plan");
+    samples += job.sample();
+  }
+  state.SetItemsProcessed(samples);
+  state.counters["times_real_time"] =
+      benchmark::Counter(static_cast<double>(samples) * 1e-3, benchmark::Counter::kIsRate);
+}
+BENCHMARK(pipeline_ball)->Name("pipeline/ball")->Unit(benchmark::kMillisecond);
+
+}  // namespace
