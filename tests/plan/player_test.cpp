@@ -1,0 +1,206 @@
+#include "cncplan/plan/player.hpp"
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "cncplan/profile/from_state.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+#include "support/player_check.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+constexpr Limits limits{30.0, 1000.0, 10000.0};
+
+struct Rig {
+  explicit Rig(std::size_t window, std::int64_t keep = 8)
+      : blocks(window + 16),
+        course(window),
+        gates(window + 1),
+        spare(window + 1),
+        player({blocks, course, gates, spare}, keep) {}
+
+  std::vector<plan::PlayedBlock> blocks;
+  std::vector<plan::BlockCaps> course;
+  std::vector<plan::Gate> gates, spare;
+  plan::Player player;
+};
+
+plan::PlayedBlock straight(double length, int line = 0) {
+  return {{length, 1e3, limits, 0.0}, 30.0, false, false, line};
+}
+
+// Ticks until it rests; the time that took.
+double until_rest(plan::Player& player, double period = 1e-4) {
+  double time = 0.0;
+  do time += period;
+  while (!player.tick(period).at_rest && time < 100.0);
+  return time;
+}
+
+}  // namespace
+
+TEST_CASE("undisturbed it takes the planned time") {
+  Rig rig(8);
+  rig.player.push(straight(10.0));
+  rig.player.push(straight(5.0));
+  const double planned = profile::seven_phase(15.0, {0.0, 0.0}, limits)->duration();
+  CHECK(until_rest(rig.player) == Approx(planned).margin(1e-4));
+  CHECK(rig.player.finished());
+  const auto end = rig.player.tick(1e-3);
+  CHECK(end.block == 1);
+  CHECK(end.along == 5.0);
+}
+
+TEST_CASE("a hold comes to rest in the least time, from any instant") {
+  for (const double at : {0.01, 0.05, 0.08, 0.1, 0.2, 0.4}) {
+    CAPTURE(at);
+    Rig rig(8);
+    for (int i = 0; i < 8; ++i) rig.player.push(straight(2.0));
+    plan::Played now;
+    for (double t = 0.0; t < at - 5e-5; t += 1e-4) now = rig.player.tick(1e-4);
+    rig.player.hold();
+    const auto best = profile::stop({now.velocity, now.acceleration}, limits);
+    REQUIRE(best);
+    CHECK(until_rest(rig.player) == Approx(best->duration()).margin(1.1e-4));
+    // and goes on to the exact end
+    rig.player.resume();
+    until_rest(rig.player);
+    CHECK(rig.player.finished());
+    CHECK(rig.player.tick(1e-3).along == 2.0);
+  }
+}
+
+TEST_CASE("random requests break no limit, and the end stays exact") {
+  test::Random random;
+  for (int sequence = 0; sequence < 200; ++sequence) {
+    const auto program = test::random_program(random, random.integer(1, 60));
+    const int gap = random.integer(0, 3) == 0 ? 1 : random.integer(2, 200);
+    const auto window = static_cast<std::size_t>(random.integer(4, 64));
+    const auto faults = test::play(program, random, gap, window, 40000);
+    CAPTURE(test::seed(), sequence, gap, window, program.size(), faults.ticks);
+    CHECK(faults.jerk < 1e-6);
+    CHECK(faults.acceleration < 1e-9);
+    CHECK(faults.speed < 1e-9);
+    CHECK(faults.joint < 1e-9);
+    CHECK(faults.travel < 1e-9);
+    CHECK(faults.finished);
+    CHECK(faults.end < 1e-9);
+  }
+}
+
+TEST_CASE("the same requests at the same ticks give the same samples bit for bit") {
+  const auto run = [] {
+    test::Random random(7);
+    const auto program = test::random_program(random, 40);
+    Rig rig(64);
+    for (const auto& block : program) rig.player.push(block);
+    std::vector<plan::Played> samples;
+    for (int tick = 0; tick < 3000; ++tick) {
+      if (tick % 97 == 0) rig.player.feed_override(random.uniform(0.1, 2.0));
+      if (tick % 500 == 250) rig.player.hold();
+      if (tick % 500 == 400) rig.player.resume();
+      samples.push_back(rig.player.tick(1e-3));
+    }
+    return samples;
+  };
+  CHECK(run() == run());
+}
+
+TEST_CASE("half the feed is half the speed, none is a hold") {
+  Rig rig(8);
+  rig.player.push(straight(100.0));
+  for (int i = 0; i < 1000; ++i) rig.player.tick(1e-3);
+  rig.player.feed_override(0.5);
+  for (int i = 0; i < 500; ++i) rig.player.tick(1e-3);
+  CHECK(rig.player.tick(1e-3).velocity == Approx(15.0));
+  rig.player.feed_override(0.0);
+  for (int i = 0; i < 500; ++i) rig.player.tick(1e-3);
+  CHECK(rig.player.tick(1e-3).at_rest);
+  rig.player.feed_override(2.0);  // what the block bears is 30
+  for (int i = 0; i < 500; ++i) rig.player.tick(1e-3);
+  CHECK(rig.player.tick(1e-3).velocity == Approx(30.0));
+}
+
+TEST_CASE("backwards as far as blocks are kept, and forwards again") {
+  Rig rig(8, 4);
+  for (int i = 0; i < 4; ++i) rig.player.push(straight(5.0));
+  for (int i = 0; i < 500; ++i) rig.player.tick(1e-3);
+  rig.player.backwards(true);
+  double lowest = 0.0;
+  plan::Played now;
+  for (int i = 0; i < 2000; ++i) lowest = std::min(lowest, (now = rig.player.tick(1e-3)).velocity);
+  CHECK(lowest == Approx(-30.0));
+  CHECK(now == plan::Played{0, 0.0, 0.0, 0.0, true});
+  rig.player.backwards(false);
+  until_rest(rig.player);
+  CHECK(rig.player.finished());
+}
+
+TEST_CASE("single step, optional stops and pauses at a line") {
+  Rig rig(8);
+  for (int i = 0; i < 4; ++i) {
+    auto block = straight(5.0, i + 1);
+    block.optional_stop = i == 2;
+    rig.player.push(block);
+  }
+  rig.player.single_step(true);
+  until_rest(rig.player);
+  CHECK(rig.player.tick(1e-3) == plan::Played{1, 0.0, 0.0, 0.0, true});
+  rig.player.single_step(false);
+  rig.player.pause_at(3);
+  rig.player.resume();
+  until_rest(rig.player);
+  CHECK(rig.player.tick(1e-3).block == 2);
+  rig.player.optional_stop(true);
+  rig.player.resume();
+  until_rest(rig.player);
+  CHECK(rig.player.tick(1e-3).block == 3);
+  CHECK_FALSE(rig.player.finished());
+  rig.player.resume();
+  until_rest(rig.player);
+  CHECK(rig.player.finished());
+}
+
+TEST_CASE("a quick stop has limits of its own") {
+  Rig rig(8);
+  rig.player.push(straight(100.0));
+  for (int i = 0; i < 500; ++i) rig.player.tick(1e-3);
+  rig.player.quick_stop(5000.0, 1e6);
+  const auto best = profile::stop({30.0, 0.0}, Limits{30.0, 5000.0, 1e6});
+  CHECK(until_rest(rig.player) == Approx(best->duration()).margin(1.1e-4));
+  rig.player.resume();
+  until_rest(rig.player);
+  CHECK(rig.player.finished());
+}
+
+TEST_CASE("a dwell is waited for") {
+  Rig rig(8);
+  auto block = straight(1.0);
+  block.caps.pause = 0.5;
+  rig.player.push(block);
+  auto next = straight(1.0);
+  next.caps.entry = 0.0;
+  rig.player.push(next);
+  int ticks = 0;
+  while (!rig.player.finished() && ticks < 10000) rig.player.tick(1e-3), ++ticks;
+  const double move = profile::seven_phase(1.0, {0.0, 0.0}, limits)->duration();
+  CHECK(ticks * 1e-3 == Approx(2 * move + 0.5).margin(2e-3));
+}
+
+TEST_CASE("ticks allocate nothing") {
+  test::Random random;
+  const auto program = test::random_program(random, 50);
+  Rig rig(64);
+  const auto allocations = test::heap_allocations_of([&] {
+    for (const auto& block : program) rig.player.push(block);
+    for (int tick = 0; tick < 5000; ++tick) {
+      if (tick % 10 == 0) rig.player.feed_override(0.5 + (tick % 7) * 0.1);
+      rig.player.tick(1e-3);
+    }
+  });
+  CHECK(allocations == 0);
+}

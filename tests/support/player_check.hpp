@@ -1,0 +1,129 @@
+// A player driven by random requests, and every tick held against the limits of the blocks it ran on: by
+// differencing what it reports, with nothing of the planner's.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cncplan/plan/player.hpp"
+#include "support/random.hpp"
+
+namespace cncplan::test {
+
+struct PlayerFaults {
+  double jerk{};          ///< change of acceleration over a tick, over what the jerk limit allows, relative
+  double acceleration{};  ///< above the limit, relative
+  double speed{};         ///< above what the block bears, relative
+  double joint{};         ///< mm/s above a joint's cap, beyond what a tick hides
+  double travel{};  ///< mm between travelled distance and the integral of the speed, beyond a tick's rounding
+  double end{};     ///< mm from the end of the last block
+  bool finished{};
+  long ticks{};
+};
+
+/// Short and long blocks, slow and free joints, curved (lower limits) and straight ones.
+inline std::vector<plan::PlayedBlock> random_program(Random& random, int count) {
+  std::vector<plan::PlayedBlock> program;
+  const double longest = random.log_uniform(0.05, 10.0);
+  for (int i = 0; i < count; ++i) {
+    plan::PlayedBlock block;
+    block.caps = {random.log_uniform(0.01, longest), 1e3, {30.0, 1000.0, 10000.0}, 0.0};
+    if (random.integer(0, 3) == 0) block.caps.entry = random.uniform(0.0, 30.0);
+    if (random.integer(0, 5) == 0) {
+      block.caps.limits.velocity = random.uniform(3.0, 30.0);
+      block.caps.limits.acceleration *= random.uniform(0.4, 1.0);
+      block.caps.limits.jerk *= random.uniform(0.3, 1.0);
+    }
+    if (random.integer(0, 30) == 0) block.caps.pause = 0.01;
+    if (i == 0 || program.back().caps.pause > 0.0) block.caps.entry = 0.0;
+    block.feed = random.uniform(5.0, 30.0);
+    block.rapid = random.integer(0, 6) == 0;
+    block.line = i + 1;
+    program.push_back(block);
+  }
+  return program;
+}
+
+/// Plays a program with a request about every `mean_gap` ticks (0: none) until it is finished. Backwards runs
+/// are among the requests if there is memory for them.
+inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& random, int mean_gap,
+                         std::size_t window, long most_ticks = 2'000'000) {
+  constexpr double period = 1e-3;
+  std::vector<plan::PlayedBlock> blocks(window + 24);
+  std::vector<plan::BlockCaps> course(window);
+  std::vector<plan::Gate> gates(window + 1), spare(window + 1);
+  plan::Player player({blocks, course, gates, spare}, 16);
+  std::vector<double> start(program.size() + 1);
+  for (std::size_t i = 0; i < program.size(); ++i) start[i + 1] = start[i] + program[i].caps.length;
+
+  PlayerFaults faults;
+  const auto grow = [](double& worst, double value) { worst = std::max(worst, value); };
+  plan::Played before{0, 0.0, 0.0, 0.0, true};
+  double position = 0.0;
+  std::size_t fed = 0;
+  for (; faults.ticks < most_ticks; ++faults.ticks) {
+    const bool starving = mean_gap > 0 && random.integer(0, 9) == 0;
+    while (!starving && fed < program.size() && player.push(program[fed])) ++fed;
+    const bool calm = faults.ticks > most_ticks / 2;  // in the end let it finish
+    if (mean_gap > 0 && (calm ? faults.ticks % 1000 == 0 : random.integer(0, mean_gap - 1) == 0)) {
+      switch (calm ? 100 : random.integer(0, 9)) {
+        case 0:
+          player.hold();
+          break;
+        case 1:
+          player.backwards(true);
+          break;
+        case 2:
+          player.feed_override(0.0);
+          break;
+        case 3:
+        case 4:
+          player.feed_override(random.uniform(0.0, 2.0));
+          break;
+        case 5:
+          player.rapid_override(random.uniform(0.1, 1.0));
+          break;
+        case 6:
+          player.backwards(false);
+          break;
+        default:
+          player.resume();
+          player.backwards(false);
+          player.feed_override(random.uniform(0.5, 2.0));
+      }
+    }
+    const plan::Played now = player.tick(period);
+    if (fed == 0) continue;
+    const auto low = static_cast<std::size_t>(std::min(before.block, now.block));
+    const auto high = static_cast<std::size_t>(std::max(before.block, now.block));
+    Limits limits{0.0, 0.0, 0.0};
+    for (std::size_t i = low; i <= high; ++i) {
+      limits.velocity = std::max(limits.velocity, program[i].caps.limits.velocity);
+      limits.acceleration = std::max(limits.acceleration, program[i].caps.limits.acceleration);
+      limits.jerk = std::max(limits.jerk, program[i].caps.limits.jerk);
+    }
+    const double change = limits.jerk * period;
+    const double slack = change * period;  // speed that may hide within a tick
+    grow(faults.jerk, std::abs(now.acceleration - before.acceleration) / change - 1);
+    grow(faults.acceleration, std::abs(now.acceleration) / limits.acceleration - 1);
+    grow(faults.speed, std::abs(now.velocity) / limits.velocity - 1);
+    for (std::size_t i = low + 1; i <= high; ++i)
+      grow(faults.joint,
+           std::min(std::abs(now.velocity), std::abs(before.velocity)) - slack - program[i].caps.entry);
+    const double moved = start[static_cast<std::size_t>(now.block)] + now.along - position;
+    grow(faults.travel, std::abs(moved - period * (now.velocity + before.velocity) / 2) - slack * period / 4);
+    position += moved;
+    before = now;
+    if (fed == program.size() && player.finished()) {
+      faults.finished = true;
+      break;
+    }
+  }
+  faults.end = std::abs(position - start.back());
+  return faults;
+}
+
+}  // namespace cncplan::test
