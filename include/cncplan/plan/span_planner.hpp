@@ -109,9 +109,11 @@ class GatePlanner {
 
  private:
   // In the first rounds only the worst gate of a span becomes a knot, as that often mends the others; then
-  // all that are passed too fast do, and in the end all gates, so that the number of rounds is bounded.
+  // all that are passed too fast do, then all gates of such a span, and in the end all there are, so that the
+  // number of rounds is bounded.
   static constexpr int careful_rounds = 6;
-  static constexpr int last_round = 12;
+  static constexpr int span_rounds = 12;
+  static constexpr int last_round = 24;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
   static constexpr BasicLimits<S> unlimited{infinity, infinity, infinity};
@@ -172,15 +174,18 @@ class GatePlanner {
       if (to - from > 1) any = fix_violations(from, to, round) || any;
       from = to;
     }
+    if (any && round >= last_round)
+      for (Gate& gate : gates_) gate.fixed = true;
     return any;
   }
 
   bool fix_violations(std::size_t from, std::size_t to, int round) {
-    const auto planned = profile(from, to);
-    if (!planned || round >= last_round) {
+    const auto fix_all = [&] {
       for (std::size_t i = from + 1; i < to; ++i) gates_[i].fixed = true;
       return true;
-    }
+    };
+    const auto planned = profile(from, to);
+    if (!planned) return fix_all();
     constexpr S tolerance = S(1) + S(64) * std::numeric_limits<S>::epsilon();
     const auto phases = planned->phases();
     const S top = planned->top_velocity();
@@ -213,6 +218,7 @@ class GatePlanner {
       speed_here = speed_there;
     }
     if (worst_gate == 0) return false;
+    if (round >= span_rounds) return fix_all();
     gates_[worst_gate].fixed = true;
     return true;
   }
