@@ -117,11 +117,11 @@ TEST_CASE("what the paper's table does not cover is an exact stop") {
 
 TEST_CASE("chords are judged in the plane of the arcs, whatever the third axis does") {
   for (const Plane plane : {Plane::xy, Plane::zx, Plane::yz}) {
-    const auto [first, second, third] = axes(plane);
+    const PlaneAxes a = axes(plane);
     const auto joint = [&](double rise) {
       Vector3 before, after;
-      before(first) = 4.0, before(second) = 0.0, before(third) = rise;
-      after(first) = -1.0, after(second) = 2.0, after(third) = -rise;
+      before(a.first) = 4.0, before(a.second) = 0.0, before(a.third) = rise;
+      after(a.first) = -1.0, after(a.second) = 2.0, after(a.third) = -rise;
       return test::arcs(g03, before, g03, after, plane);
     };
     for (const double rise : {0.0, 10.0, -10.0}) {
