@@ -25,7 +25,8 @@ template <std::floating_point S>
     return detail::refusal(ErrorCode::below_limit, "duration", duration, fastest->duration());
   if (duration <= fastest->duration() * (S(1) + rounding)) return fastest;
   const BasicRampLaw<S> law = seven_phase_law(limits);
-  const auto [start, end] = speeds;
+  const S start = speeds.start;  // clang++ 14 captures no structured bindings
+  const S end = speeds.end;
   const auto at_middle_speed = [&](S speed) {
     const BasicRamp<S> first = law.ramp(std::sqrt(std::abs(speed - start)), speed < start ? S(-1) : S(1));
     const BasicRamp<S> last = law.ramp(std::sqrt(std::abs(end - speed)), end < speed ? S(-1) : S(1));
