@@ -92,7 +92,7 @@ class Converter {
     if (auto ok = guide_.follow(move.segment, stretches); !ok)
       refuse_move(artwork_, index_, move, ok.error());
     row_start_ = 0.0;
-    next_length_ = options_.subdivide.value_or(0.0);
+    row_length_ = next_length_ = length_of_rows(move.segment);
     for (std::size_t i = 0; i < stretches.size(); ++i)
       if (options_.subdivide && !stretches[i].kink)
         add_by_length(move, stretches[i], i + 1 == stretches.size() || stretches[i + 1].kink, rows);
@@ -110,6 +110,15 @@ class Converter {
     }
   }
 
+  // The length of fixed rows along a move: K17 measures on the surface, so moves up and down are not cut.
+  // Arcs that stand upright count in full.
+  [[nodiscard]] double length_of_rows(const path::Segment& segment) const {
+    const Vector3 way = segment.derivative(0.0);
+    const bool upright = segment.arc() != nullptr && segment.arc()->plane() != Plane::xy;
+    const double share = upright ? 1.0 : std::hypot(way.x(), way.y()) / way.norm();
+    return options_.subdivide.value_or(0.0) / share;
+  }
+
   // Rows at whole multiples of the length along the move, and where it ends or a kink is.
   void add_by_length(const Move& move, const Stretch& stretch, bool to_end, std::vector<Joints>& rows) {
     const auto row = [&](double u) {
@@ -120,8 +129,7 @@ class Converter {
     };
     constexpr double rounding = 1e-9;
     const double until = stretch.segment.length_at(stretch.to) - rounding;
-    for (; next_length_ < until; next_length_ += *options_.subdivide)
-      row(stretch.segment.parameter_at(next_length_));
+    for (; next_length_ < until; next_length_ += row_length_) row(stretch.segment.parameter_at(next_length_));
     if (to_end) row(stretch.to);
   }
 
@@ -237,6 +245,7 @@ class Converter {
   std::optional<Joints> here_;
   bool inches_ = false;
   double row_start_ = 0.0;    // parameter of the move where the row under way began
+  double row_length_ = 0.0;   // mm along the move from row to row
   double next_length_ = 0.0;  // mm along the move where the next row ends
   Conversion result_;
 };

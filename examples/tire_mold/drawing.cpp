@@ -1,24 +1,17 @@
 #include "drawing.hpp"
 
-#include <dime/Input.h>
-#include <dime/Model.h>
-#include <dime/entities/Arc.h>
-#include <dime/entities/Circle.h>
-#include <dime/entities/LWPolyline.h>
-#include <dime/entities/Line.h>
-#include <dime/entities/Polyline.h>
-#include <dime/entities/Vertex.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "cncplan/plan/sidewall_guide.hpp"
+#include "dxf.hpp"
 #include "failure.hpp"
 
 namespace tire_mold {
@@ -51,91 +44,102 @@ struct Corner {
   double bulge{};
 };
 
+// Group codes (DXF reference, ENTITIES section).
+enum Code {
+  x = 10,
+  y = 20,
+  z = 30,
+  end_x = 11,
+  end_y = 21,
+  end_z = 31,
+  elevation = 38,
+  radius = 40,
+  bulge = 42,
+  start_angle = 50,
+  end_angle = 51,
+  flags = 70,
+  up_x = 210,
+  up_y = 220,
+  up_z = 230
+};
+
 class Collector {
  public:
   Collector(const std::string& file, Drawing& drawing) : file_(file), drawing_(drawing) {}
 
-  void take(dimeEntity& entity) {
-    ++count_;
-    name_ = fmt::format("entity {} ({})", count_, entity.getEntityName());
-    if (entity.isOfType(dimeBase::dimeExtrusionEntityType)) {
-      const auto& up = static_cast<dimeExtrusionEntity&>(entity).getExtrusionDir();
-      if (up.x != 0.0 || up.y != 0.0 || up.z <= 0.0) refuse("is not drawn in the plane of X and Y");
-    }
-    switch (entity.typeId()) {
-      case dimeBase::dimeLineType: {
-        const auto& line = static_cast<dimeLine&>(entity);
-        add(DrawnLine{flat(line.getCoords(0)), flat(line.getCoords(1))});
-        break;
+  void take(const DxfEntity& entity) {
+    entity_ = &entity;
+    name_ = fmt::format("entity {} ({})", ++count_, entity.type);
+    if (number(up_x) != 0.0 || number(up_y) != 0.0 || number(up_z, 1.0) <= 0.0 || number(z) != 0.0 ||
+        number(end_z) != 0.0 || number(elevation) != 0.0)
+      refuse("is not drawn in the plane of X and Y");
+    if (entity.type == "LINE") {
+      add(DrawnLine{{needed(x), needed(y)}, {needed(end_x), needed(end_y)}});
+    } else if (entity.type == "ARC") {
+      double sweep = std::fmod(needed(end_angle) - needed(start_angle), 360.0);
+      if (sweep <= 0.0) sweep += 360.0;
+      add(DrawnArc{{needed(x), needed(y)}, needed(radius), needed(start_angle) * radians, sweep * radians});
+    } else if (entity.type == "CIRCLE") {
+      add(DrawnArc{{needed(x), needed(y)}, needed(radius), 0.0, 360.0 * radians});
+    } else if (entity.type == "LWPOLYLINE") {
+      add(corners_of(entity.pairs), closed());
+    } else if (entity.type == "POLYLINE") {
+      constexpr int other_than_flat = 0x02 | 0x04 | 0x08 | 0x10 | 0x40;
+      if ((static_cast<int>(number(flags)) & other_than_flat) != 0)
+        refuse("is a mesh or a fitted curve, not a chain of lines and arcs");
+      std::vector<Corner> corners;
+      for (const auto& vertex : entity.vertices) {
+        const auto corner = corners_of(vertex);
+        corners.insert(corners.end(), corner.begin(), corner.end());
       }
-      case dimeBase::dimeArcType: {
-        const auto& arc = static_cast<dimeArc&>(entity);
-        dimeVec3f center;
-        arc.getCenter(center);
-        double sweep = std::fmod(arc.getEndAngle() - arc.getStartAngle(), 360.0);
-        if (sweep <= 0.0) sweep += 360.0;
-        add(DrawnArc{flat(center), arc.getRadius(), arc.getStartAngle() * radians, sweep * radians});
-        break;
-      }
-      case dimeBase::dimeCircleType: {
-        const auto& circle = static_cast<dimeCircle&>(entity);
-        add(DrawnArc{flat(circle.getCenter()), circle.getRadius(), 0.0, 360.0 * radians});
-        break;
-      }
-      case dimeBase::dimeLWPolylineType:
-        add(static_cast<dimeLWPolyline&>(entity));
-        break;
-      case dimeBase::dimePolylineType:
-        add(static_cast<dimePolyline&>(entity));
-        break;
-      default:
-        leave_out(entity.getEntityName());
+      add(corners, closed());
+    } else {
+      leave_out(entity.type);
     }
   }
 
  private:
   [[noreturn]] void refuse(std::string_view why) const {
-    throw Failure(Exit::bad_input, fmt::format("{}: {} {}", file_, name_, why));
+    throw Failure(Exit::bad_input, fmt::format("{}:{}:1: error: {} {}", file_, entity_->line, name_, why));
   }
 
-  [[nodiscard]] Vector2 flat(const dimeVec3f& point) const {
-    if (!std::isfinite(point.x) || !std::isfinite(point.y)) refuse("has a coordinate that is not finite");
-    if (point.z != 0.0) refuse("is not drawn in the plane of X and Y");
-    return {point.x, point.y};
+  [[nodiscard]] double number(int code, double otherwise = 0.0) const {
+    const auto pair = std::find_if(entity_->pairs.begin(), entity_->pairs.end(),
+                                   [code](const DxfPair& p) { return p.code == code; });
+    return pair == entity_->pairs.end() ? otherwise : dxf_number(file_, *pair);
+  }
+  [[nodiscard]] double needed(int code) const {
+    const double value = number(code, std::numeric_limits<double>::quiet_NaN());
+    if (std::isnan(value)) refuse(fmt::format("has no group code {}", code));
+    return value;
+  }
+  [[nodiscard]] bool closed() const { return (static_cast<int>(number(flags)) & 1) != 0; }
+
+  // A corner begins with its X; what follows belongs to it.
+  [[nodiscard]] std::vector<Corner> corners_of(const std::vector<DxfPair>& pairs) const {
+    std::vector<Corner> corners;
+    for (const DxfPair& pair : pairs) {
+      if (pair.code == x) corners.emplace_back();
+      if (corners.empty()) continue;
+      if (pair.code == x) corners.back().point.x() = dxf_number(file_, pair);
+      if (pair.code == y) corners.back().point.y() = dxf_number(file_, pair);
+      if (pair.code == bulge) corners.back().bulge = dxf_number(file_, pair);
+      if (pair.code == z && dxf_number(file_, pair) != 0.0) refuse("is not drawn in the plane of X and Y");
+    }
+    return corners;
   }
 
   void add(const Drawn& drawn) { add(drawn, name_); }
   void add(const Drawn& drawn, const std::string& name) {
+    const auto* arc = std::get_if<DrawnArc>(&drawn);
+    if (arc != nullptr && !(arc->radius > 0.0)) refuse("has no radius greater than zero");
     drawing_.drawn.push_back(drawn);
     drawing_.names.push_back(name);
   }
 
-  void add(const dimeLWPolyline& polyline) {
-    if (polyline.getElevation() != 0.0) refuse("is not drawn in the plane of X and Y");
-    std::vector<Corner> corners;
-    for (int i = 0; i < polyline.getNumVertices(); ++i)
-      corners.push_back({{polyline.getXCoords()[i], polyline.getYCoords()[i]}, polyline.getBulges()[i]});
-    add(corners, (polyline.getFlags() & 1) != 0);
-  }
-
-  void add(dimePolyline& polyline) {
-    constexpr int other_than_plane = 0x02 | 0x04 | 0x10 | 0x40;
-    if ((polyline.getFlags() & other_than_plane) != 0)
-      refuse("is a mesh or a fitted curve, not a chain of lines and arcs");
-    std::vector<Corner> corners;
-    for (int i = 0; i < polyline.getNumCoordVertices(); ++i) {
-      const dimeVertex* vertex = polyline.getCoordVertex(i);
-      constexpr int bulge = 42;
-      dimeParam value;
-      corners.push_back(
-          {flat(vertex->getCoords()), vertex->getRecord(bulge, value) ? value.double_data : 0.0});
-    }
-    add(corners, (polyline.getFlags() & dimePolyline::CLOSED) != 0);
-  }
-
   void add(const std::vector<Corner>& corners, bool closed) {
-    const std::size_t sides = corners.size() - (closed || corners.empty() ? 0 : 1);
     if (corners.size() < 2) refuse("has fewer than two corners");
+    const std::size_t sides = corners.size() - (closed ? 0 : 1);
     for (std::size_t i = 0; i < sides; ++i) {
       const Corner& from = corners[i];
       const Corner& to = corners[(i + 1) % corners.size()];
@@ -149,19 +153,15 @@ class Collector {
                                                           "LEADER", "HATCH", "VIEWPORT"};
     if (std::find(annotations.begin(), annotations.end(), type) == annotations.end())
       refuse("is not supported: a profile is made of LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE");
-    fmt::print(stderr, "{}: warning: {} is left out\n", file_, name_);
+    fmt::print(stderr, "{}:{}:1: warning: {} is left out\n", file_, entity_->line, name_);
   }
 
   const std::string& file_;
   Drawing& drawing_;
+  const DxfEntity* entity_ = nullptr;
   int count_ = 0;
   std::string name_;
 };
-
-bool hand_over(const dimeState*, dimeEntity* entity, void* collector) {
-  static_cast<Collector*>(collector)->take(*entity);
-  return true;
-}
 
 std::string sentence(const std::string& file, const kinematics::ChainError& error, const Drawing& drawing) {
   if (drawing.names.empty()) return fmt::format("{}: there is no line and no arc in it", file);
@@ -185,28 +185,17 @@ std::string sentence(const std::string& file, const kinematics::ChainError& erro
 }  // namespace
 
 Drawing read_drawing(const std::string& file) {
-  std::FILE* const probe = std::fopen(file.c_str(), "rb");
-  const bool readable = probe != nullptr && std::fgetc(probe) != EOF;
-  if (probe != nullptr) std::fclose(probe);
-  dimeInput input;
-  if (!readable || !input.setFile(file.c_str()))
-    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
-  dimeModel model;
-  if (!model.read(&input))
-    throw Failure(Exit::bad_input, fmt::format("{}:{}:1: error: is not a DXF drawing", file,
-                                               std::max(input.getFilePosition(), 1)));
   Drawing drawing;
   Collector collector(file, drawing);
-  model.traverseEntities(hand_over, &collector, false, false, false);
+  for (const DxfEntity& entity : read_dxf_entities(file)) collector.take(entity);
   return drawing;
 }
 
-kinematics::ProfileChain profile_of(const std::string& file, const kinematics::ChainOptions& options,
-                                    bool quiet) {
+kinematics::ProfileChain profile_of(const std::string& file, const kinematics::ChainOptions& options) {
   const Drawing drawing = read_drawing(file);
   auto chain = kinematics::chain_profile(std::span<const Drawn>(drawing.drawn), options);
   if (!chain) throw Failure(Exit::bad_input, sentence(file, chain.error(), drawing));
-  for (std::size_t i = 0; i + 1 < chain->pieces.size() && !quiet; ++i) {
+  for (std::size_t i = 0; i + 1 < chain->pieces.size(); ++i) {
     const double angle = kinematics::kink_angle(chain->pieces[i], chain->pieces[i + 1]);
     if (std::abs(angle) < plan::SidewallGuide::smooth_angle) continue;
     fmt::print(

@@ -17,10 +17,9 @@ struct Drawing {
 /// like is left out with a warning. Throws `Failure` for what cannot be read or is no flat curve.
 [[nodiscard]] Drawing read_drawing(const std::string& file);
 
-/// The profile of a drawing. Throws `Failure` that names the entities which do not make one chain. Kinks are
-/// reported on standard error, unless `quiet`.
+/// The profile of a drawing; its kinks are reported on standard error. Throws `Failure` that names the
+/// entities which do not make one chain.
 [[nodiscard]] cncplan::kinematics::ProfileChain profile_of(const std::string& file,
-                                                           const cncplan::kinematics::ChainOptions& options,
-                                                           bool quiet);
+                                                           const cncplan::kinematics::ChainOptions& options);
 
 }  // namespace tire_mold

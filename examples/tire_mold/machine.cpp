@@ -14,11 +14,10 @@ using namespace cncplan;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-// K17's travels and table speed; the rest is a machine of that size.
+// K17's travels, table speed and words of its control; the rest is a machine of that size.
 simulate::Machine of_the_thesis() {
   const auto axis = [](char letter, double steps, double low, double high, const Limits& limits) {
-    return simulate::MachineAxis{
-        letter, {.steps_per_unit = steps, .high_time = 2e-6}, low, high, limits};
+    return simulate::MachineAxis{letter, {.steps_per_unit = steps, .high_time = 2e-6}, low, high, limits};
   };
   constexpr double infinite = std::numeric_limits<double>::infinity();
   simulate::Machine machine;
@@ -30,6 +29,7 @@ simulate::Machine of_the_thesis() {
                           {'Z', gcode::AxisKind::linear},
                           {'A', gcode::AxisKind::rotary},
                           {'C', gcode::AxisKind::rotary}};
+  machine.dialect.pass_through = {{'G', 251.0}, {'G', 8.0}, {'G', 5.0}};
   return machine;
 }
 

@@ -38,7 +38,7 @@ constexpr std::size_t drawn_points = 20000;
 
 int run(const Options& options) {
   const Machine machine = machine_of(options.machine);
-  const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse}, options.quiet);
+  const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse});
   const cncplan::kinematics::Sidewall sidewall(chain.pieces, options.start_radius, options.tool_length);
   const Artwork artwork = read_artwork(options.artwork, machine.artwork);
   const Conversion conversion = convert(artwork, sidewall, machine, options);

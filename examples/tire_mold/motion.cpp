@@ -46,9 +46,14 @@ Sample evaluate(const Motion& motion, const plan::Place& place, double time) {
   const double u = path.parameter_at(place.along);
   const auto rates = path.rates(u);
   const double v = place.state.velocity;
+  auto flat = path.point(u);
+  if (path.chart().piece.is_kink()) {  // whose radii are the angle turned
+    const double radius = std::hypot(flat[0], flat[1]);
+    for (const std::size_t i : {0U, 1U}) flat[i] *= path.chart().begins / radius;
+  }
   return {time,
           place.state,
-          path.point(u),
+          flat,
           path.position(u),
           rates.first * v,
           rates.second * (v * v) + rates.first * place.state.acceleration};

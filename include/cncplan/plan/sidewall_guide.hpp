@@ -21,8 +21,8 @@ class BasicSidewallGuide {
  public:
   using Chart = kinematics::BasicSidewallChart<S>;
 
-  /// Normals that jump by less are as good as one: 1e-6 rad is 20 nm at a tool of 20 mm.
-  static constexpr S smooth_angle = S(1e-6);
+  /// Normals that jump by less are as good as one: what rounding leaves of a tangent joint.
+  static constexpr S smooth_angle = S(1e-8);
   /// Radii that pass a piece's end by less have not left it, mm.
   static constexpr S margin = S(1e-9);
 
