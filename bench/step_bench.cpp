@@ -18,15 +18,15 @@ using namespace cncplan;
 
 // Quarters of circles of 5 to 50 mm from rest to rest at the paper's limits and 400 steps/mm, all axes merged
 // into one stream: starting up and slowing down is an eighth to two thirds of each.
-void exact(benchmark::State& state) {
+void exact(benchmark::State& state, double end_radius_excess) {
   struct Block {
     path::Arc arc;
     std::array<Phase, 7> phases;
   };
   std::vector<Block> blocks;
   for (const double radius : {5.0, 10.0, 20.0, 50.0}) {
-    const auto arc = path::arc_from_center<double>({radius, 0, 0}, {0, radius, 0}, {0, 0, 0},
-                                                   Turn::counterclockwise, Plane::xy);
+    const auto arc = path::arc_from_center<double>({radius, 0, 0}, {0, radius + end_radius_excess, 0},
+                                                   {0, 0, 0}, Turn::counterclockwise, Plane::xy);
     const auto profile =
         profile::seven_phase(arc->length(), {.start = 0.0, .end = 0.0},
                              Limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0});
@@ -50,7 +50,9 @@ void exact(benchmark::State& state) {
   }
   state.SetItemsProcessed(edges);
 }
-BENCHMARK(exact)->Name("step/exact");
+BENCHMARK_CAPTURE(exact, circle, 0.0)->Name("step/exact");
+// As programs have them: centres rounded to 1 um, so the radii at both ends differ.
+BENCHMARK_CAPTURE(exact, spiral, 1e-3)->Name("step/exact/spiral");
 
 // Nearly coprime: 4.1 million slots for 1013 steps by the LCM method, 2026 by the other.
 constexpr std::array<std::int64_t, 3> counts{1009, 1013, 4};

@@ -64,6 +64,7 @@
 #include "cncplan/path/rotation.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/path/spiral.hpp"
+#include "cncplan/path/spiral_crossings.hpp"
 #include "cncplan/plan/block.hpp"
 #include "cncplan/plan/block_planner.hpp"
 #include "cncplan/plan/caps.hpp"

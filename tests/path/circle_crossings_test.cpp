@@ -81,7 +81,7 @@ TEST_CASE("a batch on a line, on an arc's third axis and on a spiral is that of 
   const path::Line line({0, 0, 0}, {3, 4, 0});
   std::vector<double> values{9.0, 5.0, 0.5};
   spiral->crossings(0, values, 0.0, spiral->parameter_end());
-  CHECK(values[1] == spiral->crossing(0, 5.0, 0.0, spiral->parameter_end()));
+  CHECK(values[1] == Approx(spiral->crossing(0, 5.0, 0.0, spiral->parameter_end())).epsilon(1e-15));
   values = {1.0, 2.0};
   spiral->crossings(2, values, 0.0, spiral->parameter_end());
   CHECK(values[1] == spiral->crossing(2, 2.0, 0.0, spiral->parameter_end()));

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <limits>
+#include <span>
 
 namespace cncplan::path {
 
@@ -21,12 +24,16 @@ struct Spiral {
   friend bool operator==(const Spiral&, const Spiral&) = default;
 };
 
-/// log(1 + x) / x, continued by 1 to x = 0; the series is exact to rounding where it is used.
+/// log(1 + x) / x, continued by 1 to x = 0, by its series: exact to rounding for |x| < 1e-3.
+template <std::floating_point S>
+[[nodiscard]] S small_log1p_over(S x) {
+  return S(1) - x * (S(1) / 2 - x * (S(1) / 3 - x * (S(1) / 4 - x * (S(1) / 5 - x / 6))));
+}
+
+/// log(1 + x) / x, continued by 1 to x = 0.
 template <std::floating_point S>
 [[nodiscard]] S log1p_over(S x) {
-  if (std::abs(x) < S(1e-3))
-    return S(1) - x * (S(1) / 2 - x * (S(1) / 3 - x * (S(1) / 4 - x * (S(1) / 5 - x / 6))));
-  return std::log1p(x) / x;
+  return std::abs(x) < S(1e-3) ? small_log1p_over(x) : std::log1p(x) / x;
 }
 
 /// Length travelled per radian, ds/dangle = sqrt(r^2 + growth^2 + rise^2).
@@ -42,17 +49,49 @@ template <std::floating_point S>
 /// are spirals of growth 1e-6):
 ///   r1 g1 - r0 g0     = (r1^2 g1^2 - r0^2 g0^2) / (r1 g1 + r0 g0),
 ///   asinh r1/m - asinh r0/m = log1p(x),   x = (r1 - r0) c,   c = (1 + (r1 + r0) / (g1 + g0)) / (r0 + g0).
-template <std::floating_point S>
-[[nodiscard]] S length_at(const Spiral<S>& spiral, S angle) {
-  const S g0 = speed_at(spiral, S(0));
-  if (spiral.growth == S(0)) return angle * g0;
-  const S g1 = speed_at(spiral, angle);
+/// Here `log_over` is `log1p_over` or what stands for it.
+template <std::floating_point S, class Log>
+[[nodiscard]] S length_at(const Spiral<S>& spiral, S angle, S g0, S g1, Log log_over) {
   const S r0 = spiral.radius;
   const S r1 = spiral.radius_at(angle);
   const S m_sq = spiral.growth * spiral.growth + spiral.rise * spiral.rise;
   const S c = (S(1) + (r1 + r0) / (g1 + g0)) / (r0 + g0);
   const S rational = (r1 + r0) * (r1 * r1 + r0 * r0 + m_sq) / (r1 * g1 + r0 * g0);
-  return angle / 2 * (rational + m_sq * c * log1p_over((r1 - r0) * c));
+  return angle / 2 * (rational + m_sq * c * log_over((r1 - r0) * c));
+}
+
+template <std::floating_point S>
+[[nodiscard]] S length_at(const Spiral<S>& spiral, S angle) {
+  const S g0 = speed_at(spiral, S(0));
+  if (spiral.growth == S(0)) return angle * g0;
+  return length_at(spiral, angle, g0, speed_at(spiral, angle), log1p_over<S>);
+}
+
+/// `length_at` for each of `angles`, none farther from 0 than `farthest`, in place. As x above is at most
+/// |r1 - r0| / min(r0, r1), the series serves all of a spiral of little growth: vector code.
+template <std::floating_point S>
+void lengths_at(const Spiral<S>& spiral, std::span<S> angles, S farthest) {
+  const S g0 = speed_at(spiral, S(0));
+  const S nearest = std::min(spiral.radius, spiral.radius_at(farthest));
+  if (spiral.growth == S(0)) {
+    for (S& angle : angles) angle *= g0;
+  } else if (std::abs(spiral.growth * farthest) < S(0.5e-3) * nearest) {
+    constexpr std::size_t chunk = 32;
+    const S m_sq = spiral.growth * spiral.growth + spiral.rise * spiral.rise;
+    for (; !angles.empty(); angles = angles.subspan(std::min(chunk, angles.size()))) {
+      const std::size_t count = std::min(chunk, angles.size());
+      std::array<S, chunk> speeds;
+      for (std::size_t i = 0; i < count; ++i) {
+        const S r = spiral.radius_at(angles[i]);
+        speeds[i] = r * r + m_sq;
+      }
+      for (std::size_t i = 0; i < count; ++i) speeds[i] = std::sqrt(std::max(speeds[i], S(0)));
+      for (std::size_t i = 0; i < count; ++i)
+        angles[i] = length_at(spiral, angles[i], g0, speeds[i], small_log1p_over<S>);
+    }
+  } else {
+    for (S& angle : angles) angle = length_at(spiral, angle);
+  }
 }
 
 /// Inverse of `length_at` for s in [0, end_length], where end_length belongs to end_angle.

@@ -128,7 +128,10 @@ class StepCursor {
     else
       for (Scalar& value : values) value = path_->crossing(axis_, value, low, piece_end_);
     parameter_ = values.back();
-    for (Scalar& value : values) value = path_->length_at(value);
+    if constexpr (requires { path_->lengths_at(values); })
+      path_->lengths_at(values);
+    else
+      for (Scalar& value : values) value = path_->length_at(value);
   }
 
   const P* path_;
