@@ -54,7 +54,7 @@ class BasicSolver {
     if (ramps <= length) return assemble(length, speeds, {room_above, room_below});
 
     const S direct = (high + low) * law_.half_duration(root_d);
-    constexpr S rounding = S(2) * std::numeric_limits<S>::epsilon();
+    constexpr S rounding = S(4) * std::numeric_limits<S>::epsilon();
     if (!(direct <= length)) {
       if (direct > length + rounding * length) return unreachable(length, speeds);
       return assemble(length, speeds, {S(0), root_d});
