@@ -83,3 +83,8 @@ TEST_CASE("zero length and the speed limit itself are ordinary cases") {
   CHECK(solver.reachable_speed(5.0, 0.0) == 5.0);
   CHECK(solver.reachable_speed(30.0, 1.0) == 30.0);
 }
+
+TEST_CASE("a ramp that fills its length to the last digit is feasible (found by the soak, seed 1)") {
+  const Limits limits{0.021340459271441979, 3.7496784472480762, 6838613.1541934507};
+  CHECK(profile::five_phase(4.4861359234020375e-05, {0.016946962267085339, 0.021340459271441979}, limits));
+}
