@@ -97,15 +97,11 @@ void read_drive(const Section& section, double unit, step::Drive& drive) {
   section.not_negative("direction_setup", drive.direction_setup);
   section.not_negative("direction_hold", drive.direction_hold);
   section.not_negative("backlash", drive.backlash, unit);
-  if (const toml::node* inverted = section.find("inverted")) {
-    if (!inverted->is_boolean()) section.refuse(*inverted, "inverted must be true or false");
-    drive.inverted = *inverted->value<bool>();
-  }
 }
 
 void read_axis(const Section& section, Machine& machine) {
   section.allow({"letter", "kind", "travel", "velocity", "acceleration", "jerk", "steps_per_unit",
-                 "max_step_rate", "pulse_width", "pulse_gap", "direction_setup", "direction_hold", "inverted",
+                 "max_step_rate", "pulse_width", "pulse_gap", "direction_setup", "direction_hold",
                  "backlash"});
   MachineAxis axis;
   gcode::Axis word{};

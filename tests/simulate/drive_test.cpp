@@ -198,7 +198,6 @@ TEST_CASE("bad drive rules are refused: line, column and what is wrong") {
         {"direction_setup = -1", "3:19: error: direction_setup must not be negative"},
         {"direction_hold = \"long\"", "3:18: error: direction_hold must be a number"},
         {"backlash = -0.1", "3:12: error: backlash must not be negative"},
-        {"inverted = 1", "3:12: error: inverted must be true or false"},
         {"steps = 1", "3:1: error: unknown key 'steps' in axis"}}) {
     folder.write("m.toml", machine(keys));
     const auto run = folder.run_text("G1 X1\n", "--quiet --machine m.toml");
