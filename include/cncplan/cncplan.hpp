@@ -106,6 +106,7 @@
 #include "cncplan/step/edge.hpp"
 #include "cncplan/step/fixed_tick.hpp"
 #include "cncplan/step/merge.hpp"
+#include "cncplan/step/port.hpp"
 #include "cncplan/step/timer.hpp"
 #include "cncplan/step/traced_path.hpp"
 #include "cncplan/step/vcd.hpp"
