@@ -1,7 +1,10 @@
 // Cartesian programs on a rotary table, as KK22 ran them (section 4): X and Y become a radial slide R and the
 // table's angle C. Plans programs of their three kinds within the limits of R, Z and C, turns the plan into
-// step pulses, and prints how close each axis came to its limits. Names of kinds as arguments choose some.
+// step pulses, and prints how close each axis came to its limits, and how far the stepped axes are off the
+// planned ones every millisecond: root mean square, beside a step over the root of 12 (KK22 Table 4). Names
+// of kinds as arguments choose some.
 #include <array>
+#include <cmath>
 #include <cncplan/cncplan.hpp>
 #include <cncplan/gcode/lines.hpp>
 #include <cstdio>
@@ -21,6 +24,7 @@ using Joints = VectorN<double, 3>;
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double feed = 30.0;        // mm/s, the paper's
+constexpr double period = 0.001;     // s, likewise
 const Vector3 workpiece(150, 0, 0);  // where it is clamped, from the table's axis
 constexpr std::array steps_per_unit{400.0, 400.0, 1000.0 / degree};
 
@@ -67,7 +71,7 @@ int run(const char* name, generate::Kind kind) {
   const auto& blocks = course->blocks();
   const auto limits = machine_limits();
   std::vector<plan::BlockCaps> caps;
-  plan::joint_caps(std::span<const Course::Block>(blocks), limits, 0.001, std::back_inserter(caps));
+  plan::joint_caps(std::span<const Course::Block>(blocks), limits, period, std::back_inserter(caps));
   std::vector<plan::Gate> gates(caps.size() + 1);
   std::vector<plan::Span> spans;
   const auto law = [](const Limits& l) { return profile::seven_phase_solver(l); };
@@ -80,8 +84,10 @@ int run(const char* name, generate::Kind kind) {
   const Joints first = blocks.front().path.position(0);
   for (std::size_t i = 0; i < 3; ++i)
     counts[i] = step::count_at(first[static_cast<int>(i)] * steps_per_unit[i]);
-  double start = 0, length = 0;
-  long edges = 0;
+  const Joints per_unit(steps_per_unit[0], steps_per_unit[1], steps_per_unit[2]);
+  step::SimulatedBackend<double, 3> backend(per_unit, counts);
+  double start = 0, length = 0, last = 0;
+  long edges = 0, samples = 0;
   for (const plan::Span& span : spans) {
     const auto phases = span.profile.phases();
     double origin = 0;
@@ -97,8 +103,20 @@ int run(const char* name, generate::Kind kind) {
       }
       const step::TracedPath traced(path, 2);
       auto stream = step::block_edges(traced, step::PhaseClock(std::span<const Phase>(phases), start, origin),
-                                      steps_per_unit, counts);
-      while (stream.next()) ++edges;
+                                      steps_per_unit, counts, last);
+      const auto observe_until = [&](double time) {
+        for (; static_cast<double>(samples) * period < time; ++samples) {
+          const double s = span.profile.at(static_cast<double>(samples) * period - start).position - origin;
+          backend.observe(path.position(path.parameter_at(s)));
+        }
+      };
+      while (const auto edge = stream.next()) {
+        last = edge->time;
+        observe_until(last);
+        if (!backend.accept(*edge)) return 1;
+        ++edges;
+      }
+      observe_until(start + span.profile.time_at(origin + path.length()));
       counts = step::counts(stream);
       origin += path.length();
     }
@@ -107,6 +125,12 @@ int run(const char* name, generate::Kind kind) {
   }
   std::printf("%-10s %8zu pieces %10.1f mm %9.1f s %10ld edges", name, blocks.size(), length, start, edges);
   for (int i = 0; i < 3; ++i) std::printf("  %c %.3f %.3f", "RZC"[i], velocity[i], acceleration[i]);
+  std::printf("\n%-10s", "");
+  for (int i = 0; i < 3; ++i) {
+    const double unit = i == 2 ? degree : 1.0;
+    std::printf("  %c rmse %.3g, floor %.3g %s", "RZC"[i], backend.report(i).rms_error / unit,
+                1 / per_unit[i] / std::sqrt(12.0) / unit, i == 2 ? "deg" : "mm");
+  }
   std::printf("\n");
   return velocity.maxCoeff() < 1 + 1e-9 && acceleration.maxCoeff() < 1 + 1e-9 ? 0 : 1;
 }
