@@ -16,6 +16,7 @@
 #include "cncplan/plan/program.hpp"
 #include "cncplan/plan/sampler.hpp"
 #include "cncplan/plan/span_planner.hpp"
+#include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 
 namespace {
@@ -78,6 +79,23 @@ struct Job {
         .has_value();
   }
 
+  // The same blocks one by one through a window.
+  bool stream(std::size_t window) {
+    std::vector<plan::BlockCaps> ahead(window);
+    std::vector<plan::Gate> first(window + 1), second(window + 1);
+    spans.clear();
+    const auto solver = [](const Limits& within) { return profile::seven_phase_solver(within); };
+    plan::StreamPlanner<double, decltype(solver)> planner({ahead, first, second}, solver);
+    const junction::Deviation deviation{0.01};
+    const auto out = std::back_inserter(spans);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const auto block = i == 0 ? plan::caps_from_rest(blocks[i], plan::ShareLimits{})
+                                : plan::caps(blocks[i - 1], blocks[i], deviation, plan::ShareLimits{});
+      if (!planner.push(block, out)) return false;
+    }
+    return planner.finish(out).has_value();
+  }
+
   std::int64_t sample() {
     plan::Sampler sampler(blocks, spans, lengths, 1e-3);
     std::int64_t count = 0;
@@ -98,6 +116,18 @@ void plan_ball(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(job.blocks.size()));
 }
 BENCHMARK(plan_ball)->Name("plan/ball")->Unit(benchmark::kMillisecond);
+
+// The same, block by block through windows of different sizes. An item is a block.
+void plan_ball_stream(benchmark::State& state, std::size_t window) {
+  Job job;
+  if (!job.read(ball())) state.SkipWithError("the program does not read");
+  for (auto _ : state)
+    if (!job.stream(window)) state.SkipWithError("the program has no plan");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(job.blocks.size()));
+}
+BENCHMARK_CAPTURE(plan_ball_stream, , 256)->Name("plan/ball/stream")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(plan_ball_stream, , 16)->Name("plan/ball/stream/16")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(plan_ball_stream, , 4096)->Name("plan/ball/stream/4096")->Unit(benchmark::kMillisecond);
 
 // Text to positions at every millisecond, on one core. An item is a sample; `times_real_time` is how often
 // faster than the machine would move it is.

@@ -133,6 +133,35 @@ TEST_CASE("a window of 256 costs less than half a per cent") {
   CHECK(worst < 0.005);
 }
 
+TEST_CASE("ten million blocks go through in constant memory") {
+  test::Random random;
+  Windowed w(256);
+  struct Counter {
+    using difference_type = std::ptrdiff_t;
+    std::int64_t* blocks;
+    Counter& operator*() { return *this; }
+    Counter& operator=(const plan::Span& span) {
+      *blocks += static_cast<std::int64_t>(span.count);
+      return *this;
+    }
+    Counter& operator++() { return *this; }
+    Counter operator++(int) { return *this; }
+  };
+  std::int64_t blocks = 0;
+  constexpr std::int64_t wanted = 10'000'000;
+  const auto allocations = test::heap_allocations_of([&] {
+    for (std::int64_t i = 0; i < wanted; ++i) {
+      const double cap = i % 37 == 0 ? random.uniform(0.0, 30.0) : 30.0;
+      if (!w.planner.push({random.uniform(0.05, 1.0), i == 0 ? 0.0 : cap, {30.0, 1000.0, 10000.0}, 0.0},
+                          Counter{&blocks}))
+        return;
+    }
+    (void)w.planner.finish(Counter{&blocks});
+  });
+  CHECK(allocations == 0);
+  CHECK(blocks == wanted);
+}
+
 TEST_CASE("planning allocates nothing, and a planner goes on after its end") {
   test::Random random;
   const auto blocks = random_blocks(random, 2000);
