@@ -14,14 +14,16 @@ namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
 
+// Angle of a point about a centre, in the plane.
+double angle_of(const Vector3& point, const Vector3& center, Plane plane) {
+  const auto [first, second, third] = axes(plane);
+  return std::atan2(point[second] - center[second], point[first] - center[first]);
+}
+
 // Signed sweep from start to end about a centre, whole turns included: `rotation` turns begun.
 double sweep_of(const Vector3& start, const Vector3& end, const Vector3& center, Plane plane, int rotation) {
-  const auto [first, second, third] = axes(plane);
-  const auto angle = [&](const Vector3& p) {
-    return std::atan2(p[second] - center[second], p[first] - center[first]);
-  };
   const double sense = rotation < 0 ? -1.0 : 1.0;
-  double sweep = sense * (angle(end) - angle(start));
+  double sweep = sense * (angle_of(end, center, plane) - angle_of(start, center, plane));
   sweep -= turn * std::floor(sweep / turn);
   if (sweep < 1e-9) sweep += turn;
   return sense * (sweep + turn * (std::abs(rotation) - 1));
