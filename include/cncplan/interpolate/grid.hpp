@@ -18,10 +18,10 @@ struct BasicGrid {
   [[nodiscard]] bool is_last(std::int64_t k) const { return !(static_cast<S>(k) * period < end); }
   [[nodiscard]] S time(std::int64_t k) const { return is_last(k) ? end : static_cast<S>(k) * period; }
 
-  /// The smallest k >= 0 with k period >= t. The quotient is right but for rounding, hence a step or two.
+  /// The smallest k >= 0 with k period >= t. The quotient rounded down is never beyond
+  /// it, and a step or two short at most.
   [[nodiscard]] std::int64_t first_at(S t) const {
     auto k = static_cast<std::int64_t>(t / period);
-    if (k > 0) --k;
     while (static_cast<S>(k) * period < t) ++k;
     return k;
   }
