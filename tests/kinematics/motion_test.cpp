@@ -14,6 +14,7 @@
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "support/catch.hpp"
+#include "support/no_heap.hpp"
 #include "support/random.hpp"
 
 using namespace cncplan;
@@ -254,6 +255,11 @@ TEST_CASE("mapped paths measure themselves", "[motion]") {
     }
   }
   CHECK(course.blocks().size() > 500);
+  const auto& any = course.blocks().front().path;
+  CHECK(test::heap_allocations_of([&] {
+          (void)any.position(any.parameter_at(any.length() / 3));
+          (void)plan::rate_bounds(any);
+        }) == 0);
   CHECK(length < 1e-7);
   CHECK(inverse < 1e-11);
   CHECK(first < 1e-6);

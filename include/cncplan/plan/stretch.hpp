@@ -1,5 +1,4 @@
-// What a programmed segment becomes on a machine with kinematics: stretches with one chart each, and the
-// short pieces that are planned (set-up).
+// Stretches of a program under one chart each, and the short pieces that are planned (set-up).
 #pragma once
 
 #include <algorithm>
