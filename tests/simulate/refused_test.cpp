@@ -1,9 +1,12 @@
 // What is refused: the code, one line that says why and where, and no file left behind.
 #include <algorithm>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "simulate/run.hpp"
 #include "support/catch.hpp"
+#include "support/shared.hpp"
 
 using namespace cncplan;
 
@@ -22,6 +25,21 @@ std::string refused(const test::Folder& folder, const std::string& arguments, in
 }
 
 constexpr const char* outputs = " --json --motions m.csv --blocks b.csv --samples s.csv --steps x.vcd";
+
+// Fields of a row of CSV, some between double quotes.
+std::vector<std::string> fields(const std::string& row) {
+  std::vector<std::string> result(1);
+  bool quoted = false;
+  for (const char c : row) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      result.emplace_back();
+    else
+      result.back() += c;
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -61,6 +79,34 @@ TEST_CASE("every rejected program fails with the sentence on its first line") {
     ++programs;
   }
   CHECK(programs > 50);
+}
+
+TEST_CASE("odd arcs are accepted and refused as by LinuxCNC") {
+  const auto shared = test::shared();
+  if (!shared) {
+    WARN("SKIPPED: CNCPLAN_SHARED is not set");
+    return;
+  }
+  const test::Folder folder;
+  std::ifstream rows(*shared + "/data/arc_errors_linuxcnc.csv");
+  std::string row;
+  std::getline(rows, row);  // names of the columns
+  int blocks = 0;
+  while (std::getline(rows, row)) {
+    const auto columns = fields(row);  // case, block, accepted, what LinuxCNC said
+    INFO(row);
+    REQUIRE(columns.size() == 4);
+    std::string block = columns[1];
+    for (auto at = block.find("\\n"); at != std::string::npos; at = block.find("\\n"))
+      block.replace(at, 2, "\n");
+    folder.write("part.ngc", "G21 G90 G17 G91.1 G94 F100\n" + block + "\n");
+    if (columns[2] == "1")
+      CHECK(folder.run("part.ngc --quiet --period 1").exit == 0);
+    else
+      CHECK(refused(folder, std::string("part.ngc") + outputs, 2).starts_with("part.ngc:"));
+    ++blocks;
+  }
+  CHECK(blocks == 34);
 }
 
 TEST_CASE("bad arguments: exit code 2 and the option's name") {
