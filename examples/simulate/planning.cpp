@@ -16,7 +16,8 @@ namespace {
 using namespace cncplan;
 
 template <class Rule>
-std::vector<plan::BlockCaps> all_caps(const Program& program, const JunctionChoice& policy, const Rule& rule) {
+std::vector<plan::BlockCaps> all_caps(const Program& program, const JunctionChoice& policy,
+                                      const Rule& rule) {
   std::vector<plan::BlockCaps> caps;
   caps.reserve(program.blocks.size());
   for (std::size_t i = 0; i < program.blocks.size(); ++i)
