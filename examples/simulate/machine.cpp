@@ -202,7 +202,8 @@ Machine interpret(const std::string& file, const toml::table& root) {
   if (top.find("rapid_rate") != nullptr)
     top.positive("rapid_rate", machine.rapid_rate.emplace(), machine.unit);
   top.positive("feed_limit", machine.feed_limit, machine.unit);
-  top.positive("smallest_radius", machine.smallest_radius, machine.unit);
+  if (top.find("smallest_radius") != nullptr)
+    top.positive("smallest_radius", machine.smallest_radius.emplace(), machine.unit);
   if (const toml::node* node = top.find("axis")) {
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty()) top.refuse(*node, "axis must be a list of tables, [[axis]]");
@@ -264,6 +265,9 @@ Machine read_machine_of_any_axes(const std::string& file) {
 
 Machine read_machine(const std::string& file) {
   Machine machine = read_machine_of_any_axes(file);
+  if (machine.smallest_radius)
+    throw Failure(Exit::bad_input,
+                  fmt::format("{}:1:1: error: smallest_radius is for machines with a rotary table", file));
   std::string letters;
   bool linear = true;
   for (const gcode::Axis& axis : machine.dialect.axes) {

@@ -32,7 +32,7 @@ struct Machine {
   std::vector<MachineAxis> axes{{.letter = 'X'}, {.letter = 'Y'}, {.letter = 'Z'}};
   std::optional<double> rapid_rate;                             ///< mm/s
   double feed_limit = std::numeric_limits<double>::infinity();  ///< mm/s
-  double smallest_radius = 1.0;  ///< mm from a rotary table's axis; nothing nearer is driven
+  std::optional<double> smallest_radius;  ///< mm from a rotary table's axis; nothing nearer is driven
 
   /// Of X, Y or Z; none where there is no such axis.
   [[nodiscard]] Travel travel(int axis) const {

@@ -64,7 +64,7 @@ Machine machine_of(const std::optional<std::string>& file) {
     machine.pulse_width[i] = axis.drive.high_time;
   }
   if (read.rapid_rate) machine.rapid_rate = *read.rapid_rate;
-  machine.smallest_radius = read.smallest_radius;
+  machine.smallest_radius = read.smallest_radius.value_or(1.0);
   machine.artwork.pass_through = read.dialect.pass_through;
   return machine;
 }
