@@ -98,7 +98,7 @@ TEST_CASE("odd arcs are accepted and refused as by LinuxCNC") {
     REQUIRE(columns.size() == 4);
     std::string block = columns[1];
     for (auto at = block.find("\\n"); at != std::string::npos; at = block.find("\\n"))
-      block.replace(at, 2, "\n");
+      block.replace(at, 2, 1, '\n');
     folder.write("part.ngc", "G21 G90 G17 G91.1 G94 F100\n" + block + "\n");
     if (columns[2] == "1")
       CHECK(folder.run("part.ngc --quiet --period 1").exit == 0);
