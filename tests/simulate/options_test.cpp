@@ -30,7 +30,7 @@ TEST_CASE("limits: the lower, the slower") {
   CHECK(time_of("--jmax 100000") < standard);
 }
 
-TEST_CASE("--period sets the number of samples and nothing of the plan") {
+TEST_CASE("option --period sets the number of samples and nothing of the plan") {
   const auto fine = summary("--period 0.0005"), coarse = summary("--period 0.002");
   CHECK(fine["time_s"] == coarse["time_s"]);
   CHECK(fine["steps"] == coarse["steps"]);
@@ -106,7 +106,7 @@ TEST_CASE("constant increments: length over feed, for every block") {
   CHECK(run.json()["end_error_mm"] < 1e-9);
 }
 
-TEST_CASE("--plot draws, or says why not") {
+TEST_CASE("option --plot draws, or says why not") {
   const test::Folder folder;
   const auto run = folder.run(test::example("kk22_figure7") + " --quiet --plot \"it's/deep\"");
   REQUIRE(run.exit == 0);
@@ -118,7 +118,7 @@ TEST_CASE("--plot draws, or says why not") {
   }
 }
 
-TEST_CASE("--help and --version say what they promise and succeed") {
+TEST_CASE("option --help and --version say what they promise and succeed") {
   const test::Folder folder;
   const auto help = folder.run("--help");
   CHECK(help.exit == 0);

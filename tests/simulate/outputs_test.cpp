@@ -97,7 +97,7 @@ TEST_CASE("a table for people, JSON for programs, nothing when quiet") {
   CHECK(folder.files().empty());
 }
 
-TEST_CASE("--motions has the programmed feed, whatever the limits") {
+TEST_CASE("option --motions has the programmed feed, whatever the limits") {
   const test::Folder folder;
   REQUIRE(
       folder.run_text("G1 X1\nX2 F6000\nX3 F60\nG93 X5 F6\nG0 X6\n", "--quiet --motions m.csv --blocks b.csv")
