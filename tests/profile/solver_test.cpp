@@ -71,6 +71,31 @@ TEST_CASE("the reachable speed is the one whose ramp fills the length") {
   CHECK(worst < 1e-14);
 }
 
+TEST_CASE("the root between two ramps is exact to rounding over all magnitudes") {
+  test::Random random;
+  double worst = 0.0;
+  for (int n = 0; n < 200000; ++n) {
+    const double high = random.integer(0, 9) == 0 ? 0.0 : random.log_uniform(1e-6, 1e4);
+    const double low =
+        random.coin() ? high * random.uniform(0.0, 1.0) : high * (1.0 - random.log_uniform(1e-12, 1.0));
+    const double sum = high + low, d = high - low;
+    const double c =
+        std::sqrt(d) * sum * (1.0 + random.log_uniform(1e-12, 1e4)) + random.log_uniform(1e-12, 1e8);
+    const double w = profile::detail::double_ramp_root(sum, c, d);
+    // by halving, of w^3 + 4 sum w - d^2 / w = 4 c, which grows with w
+    test::Real below = w / 2, above = 2 * w;
+    for (int halving = 0; halving < 80; ++halving) {
+      const test::Real middle = (below + above) / 2;
+      const test::Real value = middle * (middle * middle + 4 * static_cast<test::Real>(sum)) -
+                               static_cast<test::Real>(d) * d / middle - 4 * static_cast<test::Real>(c);
+      (value < 0 ? below : above) = middle;
+    }
+    worst = std::max(worst, std::abs(static_cast<double>(w / below - 1)));
+  }
+  INFO("seed " << test::seed());
+  CHECK(worst < 1e-15);
+}
+
 TEST_CASE("zero length and the speed limit itself are ordinary cases") {
   const auto solver = profile::seven_phase_solver(Limits{30.0, 1000.0, 10000.0});
   const auto nothing = solver(0.0, {5.0, 5.0});

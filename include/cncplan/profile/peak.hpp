@@ -27,8 +27,8 @@ template <std::floating_point S>
 /// It is the peak between two ramps at full jerk: with y^2 and z^2 the speed above the higher and the lower
 /// end speed, z^2 - y^2 = d, the distance c / sqrt(J) is
 ///     y^3 + 2 high y + z^3 + 2 low z = c,
-/// and w = y + z, d/w = z - y make it rational. From a start within 8 % of the root, over all arguments, two
-/// Householder steps of order three (quartic convergence: 8 %, 2e-5) leave rounding.
+/// and w = y + z, d/w = z - y make it rational. From a start within 10 % of the root, over all arguments, two
+/// Householder steps of order three (quartic convergence: 10 %, 1e-4) leave rounding.
 template <std::floating_point S>
 [[nodiscard]] constexpr S double_ramp_root(S sum, S c, S d) {
   const S k = S(4) * sum;
