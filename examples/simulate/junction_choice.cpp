@@ -6,9 +6,12 @@
 #include <cmath>
 #include <string>
 
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace simulate {
+
+using support::Exit;
+using support::Failure;
 
 namespace {
 

@@ -1,24 +1,15 @@
-// The machine that a program runs on, as its TOML file says.
+// The mill that a program runs on: a machine with the axes X, Y and maybe Z.
 #pragma once
 
-#include <limits>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "cncplan/cncplan.hpp"
+#include "support/machine_file.hpp"
 
 namespace simulate {
 
-/// Lengths in mm, angles in degrees; so `drive` counts per mm or per degree.
-struct MachineAxis {
-  char letter{};
-  cncplan::step::Drive drive{.steps_per_unit = 400.0, .high_time = 2e-6};
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  cncplan::Limits limits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-                         std::numeric_limits<double>::infinity()};
-};
+using support::Machine;
+using support::MachineAxis;
 
 struct Travel {
   char letter;
@@ -26,30 +17,13 @@ struct Travel {
   double high;
 };
 
-struct Machine {
-  double unit = 1.0;  ///< mm, the unit of the file's lengths
-  cncplan::gcode::Dialect dialect;
-  std::vector<MachineAxis> axes{{.letter = 'X'}, {.letter = 'Y'}, {.letter = 'Z'}};
-  std::optional<double> rapid_rate;                             ///< mm/s
-  double feed_limit = std::numeric_limits<double>::infinity();  ///< mm/s
-  std::optional<double> smallest_radius;  ///< mm from a rotary table's axis; nothing nearer is driven
+/// Of X, Y or Z; none where there is no such axis.
+[[nodiscard]] Travel travel(const Machine& machine, int axis);
 
-  /// Of X, Y or Z; none where there is no such axis.
-  [[nodiscard]] Travel travel(int axis) const {
-    const auto i = static_cast<std::size_t>(axis);
-    if (i >= axes.size()) return {"XYZ"[axis], 0.0, 0.0};
-    return {axes[i].letter, axes[i].low, axes[i].high};
-  }
+/// The block's limits, lowered so that no axis breaks its own.
+[[nodiscard]] cncplan::Limits limits_along(const Machine& machine, const cncplan::plan::Block& block);
 
-  /// The block's limits, lowered so that no axis breaks its own.
-  [[nodiscard]] cncplan::Limits limits_along(const cncplan::plan::Block& block) const;
-};
-
-/// Reads the file of a machine with the axes X, Y and maybe Z. Throws `Failure` for one that cannot be read
-/// or has an unknown or wrong entry.
-[[nodiscard]] Machine read_machine(const std::string& file);
-
-/// The same for a machine with any axes.
-[[nodiscard]] Machine read_machine_of_any_axes(const std::string& file);
+/// Reads the file of a mill. Throws `Failure`.
+[[nodiscard]] Machine read_mill(const std::string& file);
 
 }  // namespace simulate

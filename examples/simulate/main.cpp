@@ -5,21 +5,24 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/timer/progress_display.hpp>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
-#include "failure.hpp"
 #include "options.hpp"
-#include "output_file.hpp"
 #include "plots.hpp"
 #include "report.hpp"
 #include "run.hpp"
+#include "support/failure.hpp"
+#include "support/gnuplot.hpp"
+#include "support/main_program.hpp"
+#include "support/output_file.hpp"
 #include "tables.hpp"
 
 namespace simulate {
+
+using support::Exit;
+using support::Failure;
 
 namespace {
 
@@ -45,15 +48,6 @@ class Progress {
   std::size_t since_ = 0;
 };
 
-std::unique_ptr<OutputFile> open(const std::optional<std::string>& path) {
-  return path ? std::make_unique<OutputFile>(*path) : nullptr;
-}
-
-void print(const std::string& text) {
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
-    throw Failure(Exit::other, "standard output cannot be written");
-}
-
 // Refuses what would not come to its end: a period or a number of steps that is a slip of the keyboard.
 void check_size(const Plan& plan, const Options& options, const Machine& machine) {
   constexpr double most = 1e10;
@@ -76,35 +70,36 @@ constexpr std::size_t drawn_points = 20000;
 
 int run(const Options& options) {
   Machine machine;
-  if (options.machine) machine = read_machine(*options.machine);
+  if (options.machine) machine = read_mill(*options.machine);
   const Program program = read_program(options.program, machine, options.limits);
   Measures measures;
   const Plan plan = make_plan(program, options, measures);
   check_size(plan, options, machine);
-  if (options.plot) make_folder(*options.plot);
+  if (options.plot) support::make_folder(*options.plot);
 
-  const auto motions = open(options.motions), blocks = open(options.blocks), samples = open(options.samples),
-             steps = open(options.steps);
-  if (motions) write_motions(motions->stream(), program);
-  if (blocks) write_blocks(blocks->stream(), program, plan);
-  if (samples) write_samples_header(samples->stream());
+  support::OutputFiles files;
+  if (std::ostream* out = files.open(options.motions)) write_motions(*out, program);
+  if (std::ostream* out = files.open(options.blocks)) write_blocks(*out, program, plan);
+  std::ostream* const samples = files.open(options.samples);
+  std::ostream* const steps = files.open(options.steps);
+  if (samples != nullptr) write_samples_header(*samples);
 
   Progress progress(!options.quiet, plan.duration, options.period);
   std::vector<Sample> drawn;
   const auto every = static_cast<std::size_t>(plan.duration / options.period) / drawn_points + 1;
   make_samples(program, plan, options, measures, [&](const Sample& sample) {
-    if (samples) write_sample(samples->stream(), program, sample);
+    if (samples != nullptr) write_sample(*samples, program, sample);
     if (options.plot && (measures.samples % every == 0 || !(sample.time < plan.duration)))
       drawn.push_back(sample);
     progress.step();
   });
   measure_axes(program, plan, measures);
 
-  if (steps) {
+  if (steps != nullptr) {
     std::vector<cncplan::step::Trace> traces;
     for (const MachineAxis& axis : machine.axes)
       traces.push_back({std::string(1, axis.letter), axis.drive.high_time, axis.drive.direction_setup});
-    auto vcd = cncplan::step::vcd_writer(steps->stream(), traces);
+    auto vcd = cncplan::step::vcd_writer(*steps, traces);
     make_steps(program, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
       if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
     });
@@ -113,23 +108,14 @@ int run(const Options& options) {
     make_steps(program, plan, options, machine, measures, [](const cncplan::step::Edge&) {});
   }
 
-  const std::array files{motions.get(), blocks.get(), samples.get(), steps.get()};
-  for (OutputFile* file : files)
-    if (file != nullptr) file->finish();
+  files.finish();
   if (options.plot) draw(*options.plot, drawn);
-  for (OutputFile* file : files)
-    if (file != nullptr) file->commit();
+  files.commit();
   if (options.json)
-    print(json_summary(program, plan, options, machine, measures));
+    support::print(json_summary(program, plan, options, machine, measures));
   else if (!options.quiet)
-    print(table_summary(program, plan, machine, measures));
+    support::print(table_summary(program, plan, machine, measures));
   return static_cast<int>(Exit::done);
-}
-
-// One line, whatever it quotes.
-void complain(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  fmt::print(stderr, "{}{}\n", text.find(": error: ") == std::string::npos ? "error: " : "", text);
 }
 
 }  // namespace
@@ -137,14 +123,8 @@ void complain(std::string text) {
 }  // namespace simulate
 
 int main(int argc, char** argv) {
-  try {
+  return support::main_program([&] {
     const auto options = simulate::parse_options(argc, argv);
     return options ? simulate::run(*options) : 0;
-  } catch (const simulate::Failure& failure) {
-    simulate::complain(failure.what());
-    return static_cast<int>(failure.code);
-  } catch (const std::exception& error) {
-    simulate::complain(error.what());
-    return static_cast<int>(simulate::Exit::other);
-  }
+  });
 }

@@ -5,15 +5,17 @@
 #include <chrono>
 #include <iterator>
 
-#include "failure.hpp"
 #include "run.hpp"
 #include "stopwatch.hpp"
+#include "support/failure.hpp"
 
 namespace simulate {
 
 namespace {
 
 using namespace cncplan;
+using support::Exit;
+using support::Failure;
 
 template <class Rule>
 std::vector<plan::BlockCaps> all_caps(const Program& program, const JunctionChoice& policy,

@@ -8,9 +8,6 @@
 
 namespace simulate {
 
-/// Makes the folder if it is missing. Throws `Failure` for one that cannot be made or written.
-void make_folder(const std::string& folder);
-
 /// Draws path.svg and profile.svg into `folder`. Says so on standard error where there is no gnuplot. Throws
 /// `Failure` where gnuplot fails.
 void draw(const std::string& folder, const std::vector<Sample>& samples);

@@ -11,13 +11,15 @@
 
 #include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace simulate {
 
 namespace {
 
 using namespace cncplan;
+using support::Exit;
+using support::Failure;
 
 [[noreturn]] void refuse(const std::string& file, const gcode::Diagnostic& diagnostic) {
   throw Failure(Exit::bad_input, gcode::to_text(file, diagnostic));
@@ -37,7 +39,7 @@ class Builder {
     auto block = plan::block(motion, limits, rapid_rate);
     if (!block) refuse(file_, {block.error(), motion.line, motion.column, {}});
     check_travel(*block, motion);
-    block->limits = machine_.limits_along(*block);
+    block->limits = limits_along(machine_, *block);
     program_.blocks.push_back(*block);
     const bool says_feed = motion.feed || motion.kind == gcode::MotionKind::rapid;
     const double feed =
@@ -74,7 +76,7 @@ class Builder {
   void check_travel(const plan::Block& block, const gcode::Motion& motion) const {
     const auto bounds = block.segment.bounds();
     for (int axis = 0; axis < 3; ++axis) {
-      const auto& [letter, low, high] = machine_.travel(axis);
+      const auto& [letter, low, high] = travel(machine_, axis);
       const double beyond = bounds.low[axis] < low ? bounds.low[axis] : bounds.high[axis];
       if (bounds.low[axis] >= low && bounds.high[axis] <= high) continue;
       throw Failure(

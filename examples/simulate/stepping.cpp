@@ -3,15 +3,17 @@
 
 #include <span>
 
-#include "failure.hpp"
 #include "run.hpp"
 #include "stopwatch.hpp"
+#include "support/failure.hpp"
 
 namespace simulate {
 
 namespace {
 
 using namespace cncplan;
+using support::Exit;
+using support::Failure;
 
 using Counts = std::array<std::int64_t, 3>;
 

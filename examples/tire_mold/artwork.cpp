@@ -11,15 +11,15 @@
 #include <variant>
 
 #include "cncplan/gcode/diagnostic_text.hpp"
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
 namespace {
 
 using namespace cncplan;
-using simulate::Exit;
-using simulate::Failure;
+using support::Exit;
+using support::Failure;
 
 [[noreturn]] void refuse(const std::string& file, const gcode::Diagnostic& diagnostic) {
   throw Failure(Exit::bad_input, gcode::to_text(file, diagnostic));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
@@ -161,14 +161,14 @@ class Converter {
     for (std::size_t i = 0; i < 4; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       if (joints[k] >= machine_.limits.low[k] && joints[k] <= machine_.limits.high[k]) continue;
-      throw simulate::Failure(
-          simulate::Exit::bad_input,
+      throw support::Failure(
+          support::Exit::bad_input,
           fmt::format("{}:{}:{}: error: axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}",
                       artwork_.file, index_ + 1, move.column, machine_.letters[i],
                       machine_.shown(i, joints[k]), machine_.shown(i, machine_.limits.low[k]),
                       machine_.shown(i, machine_.limits.high[k])));
     }
-    throw simulate::Failure(simulate::Exit::bad_input, "a joint is not a number");
+    throw support::Failure(support::Exit::bad_input, "a joint is not a number");
   }
 
   [[nodiscard]] std::string row_text(const Joints& joints) const {
@@ -264,8 +264,8 @@ void refuse_move(const Artwork& artwork, std::size_t line, const Move& move, con
                         error.bound)
           : fmt::format("a radius of {:.6g} mm is below {:.6g}, the least that is mapped", error.value,
                         error.bound);
-  throw simulate::Failure(simulate::Exit::bad_input,
-                          fmt::format("{}:{}:{}: error: {}", artwork.file, line + 1, move.column, why));
+  throw support::Failure(support::Exit::bad_input,
+                         fmt::format("{}:{}:{}: error: {}", artwork.file, line + 1, move.column, why));
 }
 
 Conversion convert(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,

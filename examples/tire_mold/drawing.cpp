@@ -12,7 +12,7 @@
 
 #include "cncplan/plan/sidewall_guide.hpp"
 #include "dxf.hpp"
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
@@ -23,8 +23,8 @@ using kinematics::Drawn;
 using kinematics::DrawnArc;
 using kinematics::DrawnLine;
 using kinematics::Vector2;
-using simulate::Exit;
-using simulate::Failure;
+using support::Exit;
+using support::Failure;
 
 constexpr double radians = std::numbers::pi / 180.0;
 

@@ -10,14 +10,14 @@
 #include <string_view>
 #include <utility>
 
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
 namespace {
 
-using simulate::Exit;
-using simulate::Failure;
+using support::Exit;
+using support::Failure;
 
 [[noreturn]] void refuse(const std::string& file, int line, std::string_view why) {
   throw Failure(Exit::bad_input, fmt::format("{}:{}:1: error: {}", file, line, why));

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
@@ -15,12 +15,12 @@ using namespace cncplan;
 constexpr double degree = std::numbers::pi / 180.0;
 
 // K17's travels, table speed and words of its control; the rest is a machine of that size.
-simulate::Machine of_the_thesis() {
+support::Machine of_the_thesis() {
   const auto axis = [](char letter, double steps, double low, double high, const Limits& limits) {
-    return simulate::MachineAxis{letter, {.steps_per_unit = steps, .high_time = 2e-6}, low, high, limits};
+    return support::MachineAxis{letter, {.steps_per_unit = steps, .high_time = 2e-6}, low, high, limits};
   };
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  simulate::Machine machine;
+  support::Machine machine;
   machine.axes = {axis('R', 400.0, 0.0, 900.0, {100.0, 500.0, 5000.0}),
                   axis('Z', 400.0, 0.0, 600.0, {100.0, 500.0, 5000.0}),
                   axis('A', 200.0, -90.0, 90.0, {60.0, 300.0, 3000.0}),
@@ -38,20 +38,20 @@ simulate::Machine of_the_thesis() {
 double Machine::shown(std::size_t axis, double joint) const { return rotary[axis] ? joint / degree : joint; }
 
 Machine machine_of(const std::optional<std::string>& file) {
-  const simulate::Machine read = file ? simulate::read_machine_of_any_axes(*file) : of_the_thesis();
+  const support::Machine read = file ? support::read_machine(*file) : of_the_thesis();
   Machine machine;
   bool right = read.axes.size() == 4;
   for (std::size_t i = 0; i < 4 && right; ++i)
     right = (read.dialect.axes[i].kind == gcode::AxisKind::rotary) == machine.rotary[i];
   if (!right)
-    throw simulate::Failure(
-        simulate::Exit::bad_input,
+    throw support::Failure(
+        support::Exit::bad_input,
         fmt::format(
             "{}:1:1: error: the axes must be a radial, a vertical (linear), a tilting and a table axis "
             "(rotary), in this order",
             *file));
   for (std::size_t i = 0; i < 4; ++i) {
-    const simulate::MachineAxis& axis = read.axes[i];
+    const support::MachineAxis& axis = read.axes[i];
     const double unit = machine.rotary[i] ? degree : 1.0;
     const auto k = static_cast<Eigen::Index>(i);
     machine.letters[i] = axis.letter;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "../simulate/machine.hpp"
+#include "support/machine_file.hpp"
 
 namespace tire_mold {
 

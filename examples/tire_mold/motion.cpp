@@ -8,15 +8,15 @@
 #include <span>
 
 #include "conversion.hpp"
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
 namespace {
 
 using namespace cncplan;
-using simulate::Exit;
-using simulate::Failure;
+using support::Exit;
+using support::Failure;
 
 using Course = plan::JointCourse<plan::SidewallGuide>;
 using Block = Course::Block;

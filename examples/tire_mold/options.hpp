@@ -4,9 +4,11 @@
 #include <optional>
 #include <string>
 
+#include "support/arguments.hpp"
+
 namespace tire_mold {
 
-struct Options {
+struct Options : support::RunOptions {
   std::string profile;
   std::string artwork;
   double tool_length = 0.0;   ///< mm
@@ -17,14 +19,7 @@ struct Options {
   double chain_tolerance = 0.001;   ///< mm
   int decimals = 3;
   double corner_time = 0.001;  ///< s
-  double period = 0.001;       ///< s
-  std::optional<std::string> machine;
   std::optional<std::string> out;
-  std::optional<std::string> samples;
-  std::optional<std::string> steps;
-  std::optional<std::string> plot;
-  bool json = false;
-  bool quiet = false;
 };
 
 /// The options of a command line; nothing after `--help` or `--version`, which print what they promise.

@@ -12,8 +12,8 @@
 namespace tire_mold {
 
 /// Draws profile.svg (the chain, mapped points and tool directions), unrolled.svg, top.svg and axes.svg (each
-/// axis' speed and acceleration against its limit) into a folder, which is made if need be; says so on
-/// standard error where gnuplot is missing.
+/// axis' speed and acceleration against its limit) into a folder; says so on standard error where gnuplot is
+/// missing.
 void draw(const std::string& folder, const cncplan::kinematics::Sidewall& sidewall,
           const Conversion& conversion, const Machine& machine, const std::vector<Sample>& samples);
 

@@ -1,4 +1,4 @@
-// A file that is there whole or not at all.
+// Output files that are there whole or not at all.
 #pragma once
 
 #include <unistd.h>
@@ -6,15 +6,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <streambuf>
 #include <string>
 #include <system_error>
 #include <vector>
 
-#include "failure.hpp"
+#include "support/failure.hpp"
 
-namespace simulate {
+namespace support {
 
 /// A C file as a stream buffer. The one of libstdc++ 12's ofstream writes past its end where a disk is full.
 class FileBuffer : public std::streambuf {
@@ -94,4 +95,23 @@ class OutputFile {
   std::ostream stream_{nullptr};
 };
 
-}  // namespace simulate
+/// Files that appear together, when all is done.
+class OutputFiles {
+ public:
+  /// Where to write; null without a path.
+  [[nodiscard]] std::ostream* open(const std::optional<std::string>& path) {
+    return path ? &files_.emplace_back(std::make_unique<OutputFile>(*path))->stream() : nullptr;
+  }
+
+  void finish() {
+    for (const auto& file : files_) file->finish();
+  }
+  void commit() {
+    for (const auto& file : files_) file->commit();
+  }
+
+ private:
+  std::vector<std::unique_ptr<OutputFile>> files_;
+};
+
+}  // namespace support

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace simulate {
+namespace support {
 
 enum class Exit { done = 0, other = 1, bad_input = 2 };
 
@@ -13,4 +13,4 @@ struct Failure : std::runtime_error {
   Exit code;
 };
 
-}  // namespace simulate
+}  // namespace support

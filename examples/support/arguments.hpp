@@ -1,0 +1,43 @@
+// What the command lines of the programs share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace support {
+
+/// A number greater than zero, or not below.
+[[nodiscard]] const CLI::Validator& positive();
+[[nodiscard]] const CLI::Validator& not_negative();
+
+/// The tail of every command line.
+struct RunOptions {
+  double period = 0.001;  ///< s
+  std::optional<std::string> machine;
+  std::optional<std::string> samples;
+  std::optional<std::string> steps;
+  std::optional<std::string> plot;
+  bool json = false;
+  bool quiet = false;
+};
+
+void add_period(CLI::App& app, RunOptions& options);
+/// All but the period.
+void add_run_options(CLI::App& app, RunOptions& options);
+
+/// False after `--help` or `--version`, which print what they promise. Throws `Failure` for bad arguments.
+[[nodiscard]] bool parse(CLI::App& app, int argc, char** argv);
+
+/// A file and the option that names it.
+struct NamedFile {
+  std::string_view option;
+  std::optional<std::string> file;
+};
+
+/// No output may overwrite an input or another output; throws `Failure` where one would.
+void refuse_shared_files(std::initializer_list<NamedFile> files);
+
+}  // namespace support

@@ -1,0 +1,248 @@
+#include "support/machine_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
+#include <string_view>
+
+#include "support/failure.hpp"
+
+namespace support {
+
+namespace {
+
+using namespace cncplan;
+
+// A table of the file, with the means to complain about what is in it.
+class Section {
+ public:
+  Section(const std::string& file, const toml::table& table, std::string name)
+      : file_(file), table_(table), name_(std::move(name)) {}
+
+  [[noreturn]] void refuse(const toml::node& node, const std::string& why) const {
+    const auto at = node.source().begin;
+    throw Failure(Exit::bad_input, fmt::format("{}:{}:{}: error: {}", file_, at.line, at.column, why));
+  }
+
+  void allow(std::initializer_list<std::string_view> keys) const {
+    for (const auto& [key, node] : table_)
+      if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
+        const auto at = key.source().begin;
+        throw Failure(Exit::bad_input,
+                      fmt::format("{}:{}:{}: error: unknown key '{}'{}", file_, at.line, at.column, key.str(),
+                                  name_.empty() ? "" : " in " + name_));
+      }
+  }
+
+  [[nodiscard]] const toml::node* find(std::string_view key) const { return table_.get(key); }
+
+  [[nodiscard]] double number(const toml::node& node, std::string_view what) const {
+    const auto value = node.value<double>();
+    if (!value || !std::isfinite(*value) || !node.is_number())
+      refuse(node, fmt::format("{} must be a number", what));
+    return *value;
+  }
+  void positive(std::string_view key, double& into, double unit = 1.0) const {
+    if (const toml::node* node = find(key)) {
+      const double value = number(*node, key);
+      if (value <= 0.0) refuse(*node, fmt::format("{} must be greater than zero", key));
+      into = value * unit;
+    }
+  }
+  void not_negative(std::string_view key, double& into, double unit = 1.0) const {
+    if (const toml::node* node = find(key)) {
+      const double value = number(*node, key);
+      if (value < 0.0) refuse(*node, fmt::format("{} must not be negative", key));
+      into = value * unit;
+    }
+  }
+  [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what,
+                                            std::size_t count) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != count)
+      refuse(node, fmt::format("{} must be a list of {} numbers", what, count));
+    std::vector<double> values;
+    for (const toml::node& item : *array) values.push_back(number(item, what));
+    return values;
+  }
+  [[nodiscard]] std::string text(const toml::node& node, std::string_view what) const {
+    const auto value = node.value<std::string>();
+    if (!value) refuse(node, fmt::format("{} must be a text", what));
+    return *value;
+  }
+  [[nodiscard]] Section section(std::string_view key, const toml::node& node) const {
+    if (!node.is_table()) refuse(node, fmt::format("{} must be a table", key));
+    return {file_, *node.as_table(), std::string(key)};
+  }
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const toml::table& table() const { return table_; }
+
+ private:
+  const std::string& file_;
+  const toml::table& table_;
+  std::string name_;
+};
+
+constexpr double radians(double degrees) { return degrees * (3.14159265358979323846 / 180.0); }
+
+void read_drive(const Section& section, double unit, step::Drive& drive) {
+  section.positive("steps_per_unit", drive.steps_per_unit, 1.0 / unit);
+  section.positive("max_step_rate", drive.max_rate);
+  section.positive("pulse_width", drive.high_time);
+  section.not_negative("pulse_gap", drive.low_time);
+  section.not_negative("direction_setup", drive.direction_setup);
+  section.not_negative("direction_hold", drive.direction_hold);
+  section.not_negative("backlash", drive.backlash, unit);
+}
+
+void read_axis(const Section& section, Machine& machine) {
+  section.allow({"letter", "kind", "travel", "velocity", "acceleration", "jerk", "steps_per_unit",
+                 "max_step_rate", "pulse_width", "pulse_gap", "direction_setup", "direction_hold",
+                 "backlash"});
+  MachineAxis axis;
+  gcode::Axis word{};
+  const toml::node* letter = section.find("letter");
+  if (letter == nullptr) section.refuse(section.table(), "an axis needs a letter");
+  const std::string name = section.text(*letter, "letter");
+  if (name.size() != 1) section.refuse(*letter, "letter must be one letter");
+  axis.letter = word.letter = name[0];
+  if (const toml::node* kind = section.find("kind")) {
+    const std::string value = section.text(*kind, "kind");
+    if (value != "linear" && value != "rotary")
+      section.refuse(*kind, "kind must be \"linear\" or \"rotary\"");
+    word.kind = value == "rotary" ? gcode::AxisKind::rotary : gcode::AxisKind::linear;
+  }
+  const double unit = word.kind == gcode::AxisKind::rotary ? 1.0 : machine.unit;
+  section.positive("velocity", axis.limits.velocity, unit);
+  section.positive("acceleration", axis.limits.acceleration, unit);
+  section.positive("jerk", axis.limits.jerk, unit);
+  if (const toml::node* travel = section.find("travel")) {
+    const auto range = section.numbers(*travel, "travel", 2);
+    if (!(range[0] < range[1])) section.refuse(*travel, "travel must go from the lower to the higher end");
+    axis.low = range[0] * unit;
+    axis.high = range[1] * unit;
+  }
+  read_drive(section, unit, axis.drive);
+  axis.limits.velocity = std::min(axis.limits.velocity, step::max_speed(axis.drive));
+  machine.axes.push_back(axis);
+  machine.dialect.axes.push_back(word);
+}
+
+gcode::Position position(const Section& section, const toml::node& node, std::string_view what,
+                         const Machine& machine) {
+  const auto values = section.numbers(node, what, machine.dialect.axes.size());
+  gcode::Position result{};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    result[i] = machine.dialect.axes[i].kind == gcode::AxisKind::rotary ? radians(values[i])
+                                                                        : values[i] * machine.unit;
+  return result;
+}
+
+void read_tools(const Section& section, Machine& machine) {
+  for (const auto& [key, node] : section.table()) {
+    int number = 0;
+    const std::string_view digits = key.str();
+    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (code != std::errc{} || end != digits.data() + digits.size() || number < 0)
+      section.refuse(node, fmt::format("'{}' is not a tool number", digits));
+    for (const gcode::Tool& tool : machine.dialect.tools)
+      if (tool.number == number) section.refuse(node, fmt::format("tool {} is there twice", number));
+    machine.dialect.tools.push_back({number, section.number(node, "tool length") * machine.unit});
+  }
+}
+
+void read_offsets(const Section& section, Machine& machine) {
+  constexpr std::array<std::string_view, gcode::work_systems> names{"G54", "G55",   "G56",   "G57",  "G58",
+                                                                    "G59", "G59.1", "G59.2", "G59.3"};
+  for (const auto& [key, node] : section.table()) {
+    const auto it = std::find(names.begin(), names.end(), key.str());
+    if (it == names.end())
+      section.refuse(node, fmt::format("'{}' is not a work coordinate system", key.str()));
+    machine.dialect.work_offsets[static_cast<std::size_t>(it - names.begin())] =
+        position(section, node, *it, machine);
+  }
+}
+
+void read_pass_through(const Section& section, const toml::node& node, Machine& machine) {
+  const toml::array* words = node.as_array();
+  if (words == nullptr) section.refuse(node, "pass_through must be a list of words");
+  for (const toml::node& item : *words) {
+    const std::string word = section.text(item, "a word to pass through");
+    gcode::PassThrough passed{};
+    if (word.empty() || word[0] < 'A' || word[0] > 'Z')
+      section.refuse(item, "a word begins with a letter A to Z");
+    passed.letter = word[0];
+    if (word.size() > 1) {
+      double value = 0.0;
+      const auto [end, code] =
+          std::from_chars(word.data() + 1, word.data() + word.size(), value, std::chars_format::fixed);
+      if (code != std::errc{} || end != word.data() + word.size())
+        section.refuse(item, "'" + word + "' is not a word");
+      passed.number = value;
+    }
+    machine.dialect.pass_through.push_back(passed);
+  }
+}
+
+Machine interpret(const std::string& file, const toml::table& root) {
+  const Section top(file, root, "");
+  top.allow({"name", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home", "pass_through",
+             "smallest_radius"});
+  Machine machine;
+  if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
+  if (const toml::node* unit = top.find("unit")) {
+    const std::string value = top.text(*unit, "unit");
+    if (value != "mm" && value != "inch") top.refuse(*unit, "unit must be \"mm\" or \"inch\"");
+    machine.unit = value == "inch" ? 25.4 : 1.0;
+  }
+  if (top.find("rapid_rate") != nullptr)
+    top.positive("rapid_rate", machine.rapid_rate.emplace(), machine.unit);
+  top.positive("feed_limit", machine.feed_limit, machine.unit);
+  if (top.find("smallest_radius") != nullptr)
+    top.positive("smallest_radius", machine.smallest_radius.emplace(), machine.unit);
+  if (const toml::node* node = top.find("axis")) {
+    const toml::array* list = node->as_array();
+    if (list == nullptr || list->empty()) top.refuse(*node, "axis must be a list of tables, [[axis]]");
+    machine.axes.clear();
+    machine.dialect.axes.clear();
+    for (const toml::node& item : *list) read_axis(top.section("axis", item), machine);
+  }
+  if (const toml::node* node = top.find("tools")) read_tools(top.section("tools", *node), machine);
+  if (const toml::node* node = top.find("offsets")) read_offsets(top.section("offsets", *node), machine);
+  if (const toml::node* node = top.find("home")) {
+    const Section home = top.section("home", *node);
+    home.allow({"G28", "G30"});
+    if (const toml::node* place = home.find("G28"))
+      machine.dialect.home_g28 = position(home, *place, "G28", machine);
+    if (const toml::node* place = home.find("G30"))
+      machine.dialect.home_g30 = position(home, *place, "G30", machine);
+  }
+  if (const toml::node* node = top.find("pass_through")) read_pass_through(top, *node, machine);
+  if (const auto valid = gcode::validate(machine.dialect); !valid)
+    throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {} {}", file, valid.error().field,
+                                               message(valid.error().code)));
+  return machine;
+}
+
+}  // namespace
+
+Machine read_machine(const std::string& file) {
+  if (std::filesystem::is_directory(file))
+    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+  toml::table root;
+  try {
+    root = toml::parse_file(file);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    if (at.line == 0) throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+    throw Failure(Exit::bad_input,
+                  fmt::format("{}:{}:{}: error: {}", file, at.line, at.column, error.description()));
+  }
+  return interpret(file, root);
+}
+
+}  // namespace support
