@@ -8,21 +8,22 @@
 
 #include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/limits.hpp"
-#include "cncplan/plan/mapped_path.hpp"
+#include "cncplan/plan/joint_path.hpp"
 
 namespace cncplan::plan {
 
 /// Upper bounds of the magnitudes of a path's joint rates, everywhere on it. Between five evenly spaced
 /// places a derivative departs from the nearer one by at most an eighth of the length times the next
 /// derivative; for the third, the largest difference between neighbours stands for that.
-template <Chart C>
-[[nodiscard]] typename MappedPath<C>::Rates rate_bounds(const MappedPath<C>& path) {
-  using S = typename C::Scalar;
-  using Rates = typename MappedPath<C>::Rates;
+template <JointPath P>
+[[nodiscard]] auto rate_bounds(const P& path) {
+  using S = typename P::Scalar;
+  using Vector = typename P::Vector;
+  using Rates = BasicJointRates<S, Vector::RowsAtCompileTime>;
   constexpr int intervals = 4;
   const S reach = path.length() / S(2 * intervals);
   Rates bounds;
-  typename MappedPath<C>::Vector before = MappedPath<C>::Vector::Zero(), change = before;
+  Vector before = Vector::Zero(), change = before;
   for (int i = 0; i <= intervals; ++i) {
     const Rates here = path.rates(path.parameter_end() * static_cast<S>(i) / static_cast<S>(intervals));
     bounds.first = bounds.first.cwiseMax(here.first.cwiseAbs());
@@ -71,22 +72,34 @@ template <std::floating_point S, int N>
   return limits;
 }
 
-/// The highest speed at which the motion may pass from one path to the next: within `period` seconds, the
-/// joints' velocities may jump by what their acceleration limits allow, and their accelerations by what their
-/// jerk limits allow. With a period of zero every joint of paths that is not smooth is a stop. Infinite where
-/// the joints' rates agree to rounding.
+/// The highest speed at which the motion may pass from one path to the next where they do not join smoothly.
+/// A jump of a joint's velocity counts as spread over `period` seconds, or over the time that the shorter of
+/// both paths takes, `length` mm, if that is less: so many short paths in a row are a curve. So spread, and
+/// with the bends of both paths, it keeps to the joint's acceleration limit; a jump of its acceleration keeps
+/// to its jerk limit. With a period of zero every such place is a stop. Infinite where the joints' rates
+/// agree to rounding.
 template <std::floating_point S, int N>
 [[nodiscard]] S corner_speed(const BasicJointRates<S, N>& before, const BasicJointRates<S, N>& after,
-                             const BasicJointLimits<S, N>& joints, S period) {
+                             const BasicJointLimits<S, N>& joints, S period, S length) {
   const S rounding = std::sqrt(std::numeric_limits<S>::epsilon());
+  const S size = std::max(before.first.cwiseAbs().maxCoeff(), after.first.cwiseAbs().maxCoeff());
+  const S bends = std::max(before.second.cwiseAbs().maxCoeff(), after.second.cwiseAbs().maxCoeff());
   S speed = std::numeric_limits<S>::infinity();
   for (int i = 0; i < N; ++i) {
     const S jump = std::abs(after.first[i] - before.first[i]);
-    const S size = std::max(before.first.cwiseAbs().maxCoeff(), after.first.cwiseAbs().maxCoeff());
-    if (jump > rounding * size) speed = std::min(speed, joints.acceleration[i] * period / jump);
-    const S bend = std::abs(after.second[i] - before.second[i]);
-    const S bends = std::max(before.second.cwiseAbs().maxCoeff(), after.second.cwiseAbs().maxCoeff());
-    if (bend > rounding * (bends + size)) speed = std::min(speed, std::sqrt(joints.jerk[i] * period / bend));
+    const S bend = std::max(std::abs(before.second[i]), std::abs(after.second[i]));
+    const S most = joints.acceleration[i];
+    if (jump > rounding * size && std::isfinite(most)) {
+      // jump v / period + bend v^2 = most, and jump v^2 / length + bend v^2 = most
+      const S by_time = jump / period;
+      const S root = std::sqrt(by_time * by_time + S(4) * most * bend);
+      speed = std::min({speed, period > S(0) ? S(2) * most / (by_time + root) : S(0),
+                        std::sqrt(most / (jump / length + bend))});
+    }
+    const S bending = std::abs(after.second[i] - before.second[i]);
+    if (bending > rounding * (bends + size))
+      speed = std::min({speed, std::sqrt(joints.jerk[i] * period / bending),
+                        std::cbrt(joints.jerk[i] * length / bending)});
   }
   return speed;
 }

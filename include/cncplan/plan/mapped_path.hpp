@@ -8,19 +8,10 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/path/segment.hpp"
+#include "cncplan/plan/joint_path.hpp"
 #include "cncplan/plan/moving_point.hpp"
 
 namespace cncplan::plan {
-
-/// Derivatives of the joints by the length travelled, first to third: 1, 1/mm, 1/mm^2 (times rad/mm for a
-/// rotary joint). At speed v, acceleration a and jerk j along the path, the joints move with first v, second
-/// v^2 + first a, and third v^3 + 3 second v a + first j.
-template <std::floating_point S, int N>
-struct BasicJointRates {
-  VectorN<S, N> first = VectorN<S, N>::Zero();
-  VectorN<S, N> second = VectorN<S, N>::Zero();
-  VectorN<S, N> third = VectorN<S, N>::Zero();
-};
 
 /// A segment between two of its parameters, seen through a chart; a path in the space of the joints. Its
 /// length is that of the chart's measured point, by five-point Gauss integration: exact to rounding for the

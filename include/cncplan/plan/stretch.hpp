@@ -23,15 +23,9 @@ struct Stretch {
   bool kink{};
 };
 
-/// One piece of a program in machine space.
+/// One piece of a mapped program.
 template <Chart C>
-struct MappedBlock {
-  MappedPath<C> path;
-  typename C::Scalar feed{};   ///< mm/s of the measured point
-  bool stop_at_end{};          ///< exact stop
-  typename C::Scalar pause{};  ///< s at rest at its end
-  std::size_t motion{};        ///< which motion of the program it belongs to
-};
+using MappedBlock = JointBlock<MappedPath<C>>;
 
 /// Cuts a stretch into pieces over which the joints' rates vary little: no longer than `longest` mm, a tenth
 /// of the chart's reach, and a quarter of a radian of an arc. `table` is where the rotary table stands, rad
