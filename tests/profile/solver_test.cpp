@@ -96,6 +96,23 @@ TEST_CASE("the root between two ramps is exact to rounding over all magnitudes")
   CHECK(worst < 1e-15);
 }
 
+TEST_CASE("the cube root is exact to rounding over all magnitudes") {
+  double worst = 0.0;
+  float worst_float = 0.0F;
+  for (const double scale : {1e-300, 1e-9, 1.0, 1e11, 1e300})
+    for (int n = 0; n < 100000; ++n) {
+      const double x = scale * std::exp2(3.0 * n / 100000);
+      const test::Real root = std::cbrt(static_cast<test::Real>(x));
+      worst = std::max(worst, static_cast<double>(std::abs(profile::detail::cube_root(x) / root - 1)));
+      if (scale < 1e-9 || scale > 1e11) continue;
+      const float narrow = static_cast<float>(x);
+      const float off = profile::detail::cube_root(narrow) / std::cbrt(narrow) - 1.0F;
+      worst_float = std::max(worst_float, std::abs(off));
+    }
+  CHECK(worst < 3 * std::numeric_limits<double>::epsilon());
+  CHECK(worst_float < 4 * std::numeric_limits<float>::epsilon());
+}
+
 TEST_CASE("zero length and the speed limit itself are ordinary cases") {
   const auto solver = profile::seven_phase_solver(Limits{30.0, 1000.0, 10000.0});
   const auto nothing = solver(0.0, {5.0, 5.0});

@@ -39,10 +39,10 @@ int main(int argc, char** argv) {
   }
 
   using E = test::ProfileErrors;
-  Quantity quantities[] = {{"end position (eps)", &E::end_position, 8.0},
-                           {"end speed (eps)", &E::end_speed, 8.0},
+  Quantity quantities[] = {{"end position (eps)", &E::end_position, 4.0},
+                           {"end speed (eps)", &E::end_speed, 4.0},
                            {"end acceleration", &E::end_acceleration, 1e-12},
-                           {"continuity (eps)", &E::continuity, 16.0},
+                           {"continuity (eps)", &E::continuity, 8.0},
                            {"velocity excess", &E::velocity_excess, 1e-12},
                            {"acceleration excess", &E::acceleration_excess, 1e-12},
                            {"jerk excess", &E::jerk_excess, 1e-12},

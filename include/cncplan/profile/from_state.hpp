@@ -170,7 +170,7 @@ class FromState {
                             .end_velocity = end_,
                             .cruise = left > S(0) && top > S(0) ? left / top : S(0),
                             .up = ramp_from(start_, top, limits_),
-                            .down = law_.ramp(std::sqrt(top - end_), S(-1))});
+                            .down = law_.ramp(std::sqrt(top - end_), end_ - top)});
   }
 
   // The brake released to a (negative) acceleration, then a ramp to the end speed. As long as it is, or as

@@ -2,8 +2,10 @@
 // law.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 
 #include "cncplan/core/limits.hpp"
 #include "cncplan/profile/profile.hpp"
@@ -41,16 +43,21 @@ struct BasicRampLaw {
     return (from + to) * half_duration(std::sqrt(std::abs(to - from)));
   }
 
-  /// The ramp that changes the speed by root^2, upwards or, with sign = -1, downwards.
-  [[nodiscard]] constexpr BasicRamp<S> ramp(S root, S sign) const {
+  /// The ramp of a signed change of speed, `root` being the root of its size to within rounding. Its
+  /// acceleration and jerk are those by which the rounded times make exactly that change: the law's, but for
+  /// a few units in the last place.
+  [[nodiscard]] constexpr BasicRamp<S> ramp(S root, S change) const {
+    constexpr S rounding = S(1) + S(8) * std::numeric_limits<S>::epsilon();
+    const S size = std::abs(change);
     if (root <= root_break) {
       const S time = root * inverse_root_jerk;
-      return {time, S(0), time, sign * jerk * time, sign * jerk};
+      const S sharp = std::copysign(std::min(jerk * rounding, size / (time * time)), change);
+      return {time, S(0), time, sharp * time, sharp};
     }
     const S full = root * root / acceleration;
-    if (!holds) return {full, S(0), full, sign * acceleration, sign * acceleration / full};
-    const S rise = S(2) * offset;
-    return {rise, full - rise, rise, sign * acceleration, sign * jerk};
+    const S peak = std::copysign(std::min(acceleration * rounding, size / full), change);
+    const S rise = holds ? S(2) * offset : full;
+    return {rise, full - rise, rise, peak, rise > S(0) ? peak / rise : S(0)};
   }
 };
 
@@ -62,8 +69,7 @@ template <std::floating_point S>
   const S inverse = smooth ? S(1) / root : S(0);
   const S root_break =
       std::isfinite(limits.acceleration) ? limits.acceleration * inverse : limits.acceleration;
-  // J to within rounding, such that the rounded times and speeds of a ramp belong together.
-  const S jerk = smooth ? S(1) / (inverse * inverse) : S(0);
+  const S jerk = smooth ? limits.jerk : S(0);
   return {jerk, root, inverse, limits.acceleration, root_break, S(1) / limits.acceleration, S(0), false};
 }
 

@@ -62,7 +62,8 @@ class BasicSolver {
     if (length == S(0))
       return BasicProfile<S>(
           {.length = S(0), .start_velocity = start, .top_velocity = start, .end_velocity = end});
-    return assemble(length, speeds, peak_between(law_, high, low, root_d, length, room_above));
+    return assemble(length, speeds,
+                    peak_between(law_, high, low, root_d, detail::below<S> * length, room_above));
   }
 
   /// The highest speed to which the motion can change from `start` within `length` (both >= 0), or from which
@@ -72,7 +73,8 @@ class BasicSolver {
     if ((start + velocity_limit_) * law_.half_duration(std::sqrt(room)) <= length) return velocity_limit_;
     if (!(length > S(0))) return start;
     // half of a peak between equal speeds over twice the length
-    const auto peak = peak_between(law_, start, start, S(0), S(2) * length, std::sqrt(room));
+    const auto peak =
+        peak_between(law_, start, start, S(0), detail::below<S> * S(2) * length, std::sqrt(room));
     const S top = start + peak.from_high * peak.from_high;
     return std::max(start, top - S(4) * std::numeric_limits<S>::epsilon() * top);
   }
@@ -83,13 +85,11 @@ class BasicSolver {
   Expected<BasicProfile<S>> assemble(S length, const BasicBoundarySpeeds<S>& speeds,
                                      const detail::Peak<S>& peak) const {
     const bool rising = speeds.start <= speeds.end;
-    const BasicRamp<S> up = law_.ramp(rising ? peak.from_low : peak.from_high, S(1));
-    const BasicRamp<S> down = law_.ramp(rising ? peak.from_high : peak.from_low, S(-1));
-    const S gain = up.acceleration * (up.first + up.hold);
-    const S loss = down.acceleration * (down.first + down.hold);
-    const S top = speeds.start + gain;
+    const S top = std::max(speeds.start, speeds.end) + peak.from_high * peak.from_high;
+    const BasicRamp<S> up = law_.ramp(rising ? peak.from_low : peak.from_high, top - speeds.start);
+    const BasicRamp<S> down = law_.ramp(rising ? peak.from_high : peak.from_low, speeds.end - top);
     const S covered = (speeds.start + top) * (up.first + up.hold / S(2)) +
-                      (top + top + loss) * (down.first + down.hold / S(2));
+                      (top + speeds.end) * (down.first + down.hold / S(2));
     return BasicProfile<S>({.length = length,
                             .start_velocity = speeds.start,
                             .start_acceleration = S(0),

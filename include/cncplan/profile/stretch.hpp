@@ -28,8 +28,8 @@ template <std::floating_point S>
   const S start = speeds.start;  // clang++ 14 captures no structured bindings
   const S end = speeds.end;
   const auto at_middle_speed = [&](S speed) {
-    const BasicRamp<S> first = law.ramp(std::sqrt(std::abs(speed - start)), speed < start ? S(-1) : S(1));
-    const BasicRamp<S> last = law.ramp(std::sqrt(std::abs(end - speed)), end < speed ? S(-1) : S(1));
+    const BasicRamp<S> first = law.ramp(std::sqrt(std::abs(speed - start)), speed - start);
+    const BasicRamp<S> last = law.ramp(std::sqrt(std::abs(end - speed)), end - speed);
     const S covered = (start + speed) / S(2) * first.duration() + (speed + end) / S(2) * last.duration();
     return BasicProfile<S>({.length = length,
                             .start_velocity = start,
