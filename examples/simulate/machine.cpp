@@ -5,19 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/failure.hpp"
-
 namespace simulate {
 
 using namespace cncplan;
-using support::Exit;
-using support::Failure;
-
-Travel travel(const Machine& machine, int axis) {
-  const auto i = static_cast<std::size_t>(axis);
-  if (i >= machine.axes.size()) return {"XYZ"[axis], 0.0, 0.0};
-  return {machine.axes[i].letter, machine.axes[i].low, machine.axes[i].high};
-}
 
 Limits limits_along(const Machine& machine, const plan::Block& block) {
   Limits limits = block.limits;
@@ -37,25 +27,12 @@ Limits limits_along(const Machine& machine, const plan::Block& block) {
   return limits;
 }
 
-Machine read_mill(const std::string& file) {
-  Machine machine = support::read_machine(file);
-  if (machine.smallest_radius)
-    throw Failure(Exit::bad_input,
-                  fmt::format("{}:1:1: error: smallest_radius is for machines with a rotary table", file));
-  std::string letters;
-  bool linear = true;
-  for (const gcode::Axis& axis : machine.dialect.axes) {
-    letters += axis.letter;
-    linear = linear && axis.kind == gcode::AxisKind::linear;
-  }
-  if (letters != "XY" && letters != "XYZ")
-    throw Failure(Exit::bad_input,
-                  fmt::format("{}:1:1: error: the axes must be X, Y, Z, in this order, or X, Y", file));
-  if (!linear)
-    throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: the axes X, Y, Z must be linear", file));
-  // The language has a Z whatever the machine; where it lacks one, the travel of Z is none.
-  if (letters == "XY") machine.dialect.axes.push_back({'Z', gcode::AxisKind::linear});
-  return machine;
+std::string beyond_travel(const Machine& machine, std::size_t axis, double place) {
+  // where a mill has no Z, it has no travel
+  const MachineAxis it =
+      axis < machine.axes.size() ? machine.axes[axis] : MachineAxis{.letter = 'Z', .low = 0.0, .high = 0.0};
+  return fmt::format("axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}", it.letter,
+                     place / it.unit(), it.low, it.high);
 }
 
 }  // namespace simulate

@@ -1,4 +1,4 @@
-// The mill that a program runs on: a machine with the axes X, Y and maybe Z.
+// What the machine asks of a program's motions.
 #pragma once
 
 #include <string>
@@ -8,22 +8,14 @@
 
 namespace simulate {
 
+using support::Kinematics;
 using support::Machine;
 using support::MachineAxis;
 
-struct Travel {
-  char letter;
-  double low;
-  double high;
-};
-
-/// Of X, Y or Z; none where there is no such axis.
-[[nodiscard]] Travel travel(const Machine& machine, int axis);
-
-/// The block's limits, lowered so that no axis breaks its own.
+/// A block's limits on a mill, lowered so that no axis breaks its own.
 [[nodiscard]] cncplan::Limits limits_along(const Machine& machine, const cncplan::plan::Block& block);
 
-/// Reads the file of a mill. Throws `Failure`.
-[[nodiscard]] Machine read_mill(const std::string& file);
+/// Says that an axis would leave its travel; its place in mm or rad.
+[[nodiscard]] std::string beyond_travel(const Machine& machine, std::size_t axis, double place);
 
 }  // namespace simulate

@@ -49,73 +49,107 @@ class Progress {
 };
 
 // Refuses what would not come to its end: a period or a number of steps that is a slip of the keyboard.
-void check_size(const Plan& plan, const Options& options, const Machine& machine) {
+template <class P>
+void check_size(const Route<P>& route, const Plan& plan, const Options& options, const Machine& machine) {
   constexpr double most = 1e10;
   const double samples = plan.duration / options.period;
   if (!(samples <= most))
     throw Failure(Exit::bad_input, fmt::format("the program takes {:.6g} s, which is {:.3g} samples at a "
                                                "period of {:.6g} s: more than {:.0e}",
                                                plan.duration, samples, options.period, most));
-  for (const MachineAxis& axis : machine.axes) {
-    const double steps = plan.length * axis.drive.steps_per_unit;
-    if (!(steps <= most))
-      throw Failure(Exit::bad_input, fmt::format("a path of {:.6g} mm at {:.6g} steps of {} per mm: more "
-                                                 "than {:.0e} steps",
-                                                 plan.length, axis.drive.steps_per_unit, axis.letter, most));
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const MachineAxis& axis = machine.axes[i];
+    double travelled = plan.length;
+    if (axis.rotary) {
+      travelled = 0.0;
+      const auto k = static_cast<Eigen::Index>(i);
+      for (const auto& [path, block] : route)
+        travelled += std::abs(path.position(path.parameter_end())[k] - path.position(0.0)[k]) / axis.unit();
+    }
+    if (!(travelled * axis.drive.steps_per_unit <= most))
+      throw Failure(
+          Exit::bad_input,
+          fmt::format("a path of {:.6g} {} at {:.6g} steps of {} for each: more than {:.0e} steps", travelled,
+                      axis.rotary ? "degrees" : "mm", axis.drive.steps_per_unit, axis.letter, most));
   }
+}
+
+// What the options ask for and the machine cannot do.
+void check_options(const Options& options, const Machine& machine) {
+  const auto refuse = [](const char* why) { throw Failure(Exit::bad_input, why); };
+  const bool mill = machine.kinematics == Kinematics::cartesian;
+  if (options.corner_time && mill) refuse("--corner-time is for machines with a rotary table");
+  if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
+    refuse("--tool-length is for machines with a tilting axis");
+  if (options.interpolator == Interpolator::taylor && !mill)
+    refuse("--interpolator taylor is for machines without a rotary table");
 }
 
 // At most so many points are drawn.
 constexpr std::size_t drawn_points = 20000;
 
-int run(const Options& options) {
-  Machine machine;
-  if (options.machine) machine = read_mill(*options.machine);
-  const Program program = read_program(options.program, machine, options.limits);
+template <class P>
+int run(const Options& options, const Machine& machine, const Program& program, const Route<P>& route) {
   Measures measures;
-  const Plan plan = make_plan(program, options, measures);
-  check_size(plan, options, machine);
+  const Plan plan = make_plan(program, route, options, machine, measures);
+  check_size(route, plan, options, machine);
   if (options.plot) support::make_folder(*options.plot);
 
   support::OutputFiles files;
   if (std::ostream* out = files.open(options.motions)) write_motions(*out, program);
-  if (std::ostream* out = files.open(options.blocks)) write_blocks(*out, program, plan);
+  if (std::ostream* out = files.open(options.blocks)) {
+    std::vector<std::size_t> blocks;
+    for (const Piece<P>& piece : route) blocks.push_back(piece.block);
+    write_blocks(*out, program, plan, blocks);
+  }
   std::ostream* const samples = files.open(options.samples);
   std::ostream* const steps = files.open(options.steps);
-  if (samples != nullptr) write_samples_header(*samples);
+  if (samples != nullptr) write_samples_header(*samples, machine);
 
   Progress progress(!options.quiet, plan.duration, options.period);
   std::vector<Sample> drawn;
   const auto every = static_cast<std::size_t>(plan.duration / options.period) / drawn_points + 1;
-  make_samples(program, plan, options, measures, [&](const Sample& sample) {
-    if (samples != nullptr) write_sample(*samples, program, sample);
+  make_samples(program, route, plan, options, measures, [&](const Sample& sample) {
+    if (samples != nullptr) write_sample(*samples, program, machine, sample);
     if (options.plot && (measures.samples % every == 0 || !(sample.time < plan.duration)))
       drawn.push_back(sample);
     progress.step();
   });
-  measure_axes(program, plan, measures);
+  measure_axes(route, plan, machine, measures);
 
   if (steps != nullptr) {
-    std::vector<cncplan::step::Trace> traces;
-    for (const MachineAxis& axis : machine.axes)
-      traces.push_back({std::string(1, axis.letter), axis.drive.high_time, axis.drive.direction_setup});
-    auto vcd = cncplan::step::vcd_writer(*steps, traces);
-    make_steps(program, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
+    auto vcd = cncplan::step::vcd_writer(*steps, support::traces_of(machine));
+    make_steps(program, route, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
       if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
     });
     vcd.finish();
   } else {
-    make_steps(program, plan, options, machine, measures, [](const cncplan::step::Edge&) {});
+    make_steps(program, route, plan, options, machine, measures, [](const cncplan::step::Edge&) {});
   }
 
   files.finish();
-  if (options.plot) draw(*options.plot, drawn);
+  if (options.plot) draw(*options.plot, machine, drawn);
   files.commit();
   if (options.json)
     support::print(json_summary(program, plan, options, machine, measures));
   else if (!options.quiet)
     support::print(table_summary(program, plan, machine, measures));
   return static_cast<int>(Exit::done);
+}
+
+int run(const Options& options) {
+  Machine machine;
+  if (options.machine) machine = support::read_machine(*options.machine);
+  check_options(options, machine);
+  const Program program = read_program(options, machine);
+  switch (machine.kinematics) {
+    case Kinematics::tire_mold:
+      return run(options, machine, program, row_route(program));
+    case Kinematics::polar:
+      return run(options, machine, program, polar_route(program, machine));
+    default:
+      return run(options, machine, program, mill_route(program));
+  }
 }
 
 }  // namespace

@@ -51,6 +51,13 @@ std::optional<Options> parse_options(int argc, char** argv) {
               {"constant", Interpolator::constant}},
              "how samples are made");
   app.option_defaults()->always_capture_default(false);
+  app.add_option("--corner-time", options.corner_time,
+                 "with a rotary table: s within which a corner may change what an axis does at its limits; 0 "
+                 "stops at corners; 0.001 if not given")
+      ->check(support::not_negative());
+  app.add_option("--tool-length", options.tool_length,
+                 "with a tilting axis: from there to the tool's tip, mm; 0 if not given")
+      ->check(support::not_negative());
   app.add_option("--motions", options.motions, "write the program's motions, CSV");
   app.add_option("--blocks", options.blocks, "write the planned blocks, CSV");
   support::add_run_options(app, options);

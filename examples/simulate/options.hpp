@@ -21,6 +21,8 @@ struct Options : support::RunOptions {
   Law law = Law::seven;
   Planning planning = Planning::span;
   Interpolator interpolator = Interpolator::exact;
+  std::optional<double> corner_time;  ///< s
+  std::optional<double> tool_length;  ///< mm
   std::optional<std::string> motions;
   std::optional<std::string> blocks;
 };

@@ -1,9 +1,9 @@
-// Plans a program: caps, then spans, then the timing of each block.
+// Plans a program: caps, then spans, then the timing of each piece.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
+#include <utility>
 
 #include "run.hpp"
 #include "stopwatch.hpp"
@@ -17,10 +17,11 @@ using namespace cncplan;
 using support::Exit;
 using support::Failure;
 
+using Caps = std::vector<plan::BlockCaps>;
+
 template <class Rule>
-std::vector<plan::BlockCaps> all_caps(const Program& program, const JunctionChoice& policy,
-                                      const Rule& rule) {
-  std::vector<plan::BlockCaps> caps;
+Caps block_caps(const Program& program, const JunctionChoice& policy, const Rule& rule) {
+  Caps caps;
   caps.reserve(program.blocks.size());
   for (std::size_t i = 0; i < program.blocks.size(); ++i)
     caps.push_back(i == 0 ? plan::caps_from_rest(program.blocks[i], rule)
@@ -29,12 +30,52 @@ std::vector<plan::BlockCaps> all_caps(const Program& program, const JunctionChoi
 }
 
 // Published planning knows limits along the path only; ramps that cross blocks keep the vector sums as well.
-std::vector<plan::BlockCaps> all_caps(const Program& program, const Options& options) {
-  return options.planning == Planning::block ? all_caps(program, options.junction, plan::CapSpeed{})
-                                             : all_caps(program, options.junction, plan::ShareLimits{});
+Caps block_caps(const Program& program, const Options& options) {
+  return options.planning == Planning::block ? block_caps(program, options.junction, plan::CapSpeed{})
+                                             : block_caps(program, options.junction, plan::ShareLimits{});
 }
 
-std::vector<plan::Span> spans_of(const std::vector<plan::BlockCaps>& caps, const Options& options) {
+// A mill's pieces are the program's blocks.
+Caps route_caps(const Program& program, const Route<MillPath>&, const Options& options, const Machine&) {
+  return block_caps(program, options);
+}
+
+// Behind a rotary table, each piece keeps to the limits of its block, and the axes to theirs.
+template <plan::JointPath P>
+Caps route_caps(const Program& program, const Route<P>& route, const Options& options,
+                const Machine& machine) {
+  constexpr double default_corner_time = 0.001;
+  const Caps of_blocks = block_caps(program, options);
+  std::vector<plan::JointBlock<P>> pieces;
+  pieces.reserve(route.size());
+  std::size_t block = 0;
+  const auto end_blocks_before = [&](std::size_t next) {
+    for (; block < next; ++block) {
+      if (pieces.empty()) continue;
+      pieces.back().stop_at_end = pieces.back().stop_at_end || program.blocks[block].stop_at_end;
+      pieces.back().pause += program.blocks[block].pause;
+    }
+  };
+  for (const Piece<P>& piece : route) {
+    end_blocks_before(piece.block);
+    pieces.push_back({piece.path, of_blocks[piece.block].limits.velocity, false, 0.0, piece.block});
+  }
+  end_blocks_before(program.blocks.size());
+  Caps caps;
+  plan::joint_caps(std::span<const plan::JointBlock<P>>(pieces),
+                   machine.joint_limits<P::Vector::RowsAtCompileTime>(),
+                   options.corner_time.value_or(default_corner_time), std::back_inserter(caps));
+  for (std::size_t i = 0; i < caps.size(); ++i) {
+    const plan::BlockCaps& block_caps = of_blocks[route[i].block];
+    caps[i].limits.acceleration = std::min(caps[i].limits.acceleration, block_caps.limits.acceleration);
+    caps[i].limits.jerk = std::min(caps[i].limits.jerk, block_caps.limits.jerk);
+    if (i > 0 && route[i].block != route[i - 1].block)
+      caps[i].entry = std::min(caps[i].entry, block_caps.entry);
+  }
+  return caps;
+}
+
+std::vector<plan::Span> spans_of(const Caps& caps, const Options& options) {
   std::vector<plan::Span> spans;
   if (options.interpolator == Interpolator::constant) {
     for (std::size_t i = 0; i < caps.size(); ++i) {
@@ -46,13 +87,10 @@ std::vector<plan::Span> spans_of(const std::vector<plan::BlockCaps>& caps, const
   const auto law =
       options.law == Law::five ? profile::five_phase_solver<double> : profile::seven_phase_solver<double>;
   const auto factory = [law](const Limits& limits) { return law(limits); };
-  const std::span<const plan::BlockCaps> blocks(caps);
-  const auto out = std::back_inserter(spans);
+  if (options.planning == Planning::span) return support::spans_of(caps, factory);
   std::vector<double> speeds(caps.size() + 1);
-  std::vector<plan::Gate> gates(caps.size() + 1);
-  const auto planned = options.planning == Planning::block
-                           ? plan::plan_blocks(blocks, factory, std::span(speeds), out)
-                           : plan::plan_spans(blocks, factory, std::span(gates), out);
+  const auto planned = plan::plan_blocks(std::span<const plan::BlockCaps>(caps), factory, std::span(speeds),
+                                         std::back_inserter(spans));
   if (!planned)
     throw Failure(Exit::other,
                   fmt::format("planning: {} {}", planned.error().field, message(planned.error().code)));
@@ -61,29 +99,34 @@ std::vector<plan::Span> spans_of(const std::vector<plan::BlockCaps>& caps, const
 
 }  // namespace
 
-Plan make_plan(const Program& program, const Options& options, Measures& measures) {
-  Plan plan;
+template <class P>
+Plan make_plan(const Program& program, const Route<P>& route, const Options& options, const Machine& machine,
+               Measures& measures) {
+  Caps caps;
+  std::vector<plan::Span> spans;
   {
     const Stopwatch watch(measures.plan_seconds);
-    plan.caps = all_caps(program, options);
-    plan.spans = spans_of(plan.caps, options);
+    caps = route_caps(program, route, options, machine);
+    spans = spans_of(caps, options);
   }
-  for (const auto& caps : plan.caps) plan.lengths.push_back(caps.length);
-  plan::block_timings(std::span<const plan::Span>(plan.spans), std::span<const double>(plan.lengths),
-                      std::back_inserter(plan.timings));
+  Plan plan = support::plan_of(std::move(caps), std::move(spans));
   for (const auto& span : plan.spans) {
-    plan.length += span.profile.length();
-    plan.duration += span.profile.duration();
     const State peak = span.profile.peak();
     measures.peak.velocity = std::max(measures.peak.velocity, peak.velocity);
     measures.peak.acceleration = std::max(measures.peak.acceleration, peak.acceleration);
     measures.peak.jerk = std::max(measures.peak.jerk, peak.jerk);
   }
   for (std::size_t i = 1; i < plan.caps.size(); ++i) {
-    const double slower = std::min(program.blocks[i - 1].limits.velocity, program.blocks[i].limits.velocity);
-    if (plan.caps[i].entry < slower) ++measures.junctions_limited;
+    const std::size_t before = route[i - 1].block, after = route[i].block;
+    const double slower =
+        std::min(program.blocks[before].limits.velocity, program.blocks[after].limits.velocity);
+    if (before != after && plan.caps[i].entry < slower) ++measures.junctions_limited;
   }
   return plan;
 }
+
+template Plan make_plan(const Program&, const Route<MillPath>&, const Options&, const Machine&, Measures&);
+template Plan make_plan(const Program&, const Route<PolarPath>&, const Options&, const Machine&, Measures&);
+template Plan make_plan(const Program&, const Route<RowPath>&, const Options&, const Machine&, Measures&);
 
 }  // namespace simulate

@@ -1,16 +1,18 @@
 #include "plots.hpp"
 
-#include "support/gnuplot.hpp"
+#include "support/axes_plot.hpp"
 
 namespace simulate {
 
-void draw(const std::string& folder, const std::vector<Sample>& samples) {
+void draw(const std::string& folder, const Machine& machine, const std::vector<Sample>& samples) {
   auto plot = support::Gnuplot::start(folder);
   if (!plot) return;
   (*plot)("$samples << EOD\n");
-  for (const Sample& s : samples)
-    (*plot)("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", s.time, s.position.x(), s.position.y(),
+  for (const Sample& s : samples) {
+    (*plot)("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", s.time, s.position.x(), s.position.y(),
             s.position.z(), s.along.velocity, s.along.acceleration, s.along.jerk);
+    support::put_axis_shares(*plot, machine, s.velocity, s.acceleration);
+  }
   (*plot)("EOD\n");
   (*plot)(
       "set output 'path.svg'\nset size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
@@ -28,6 +30,7 @@ void draw(const std::string& folder, const std::vector<Sample>& samples) {
     (*plot)("set ylabel '{}'\nplot $samples using 1:{} with {} linewidth 1.5 linecolor '#2166ac'\n", label,
             column, column == 7 ? "steps" : "lines");
   (*plot)("unset multiplot\n");
+  support::draw_axes(*plot, machine, 8);
   plot->finish();
 }
 

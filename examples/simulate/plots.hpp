@@ -8,8 +8,8 @@
 
 namespace simulate {
 
-/// Draws path.svg and profile.svg into `folder`. Says so on standard error where there is no gnuplot. Throws
-/// `Failure` where gnuplot fails.
-void draw(const std::string& folder, const std::vector<Sample>& samples);
+/// Draws path.svg and profile.svg into `folder`, and axes.svg where the machine limits all of its axes. Says
+/// so on standard error where there is no gnuplot. Throws `Failure` where gnuplot fails.
+void draw(const std::string& folder, const Machine& machine, const std::vector<Sample>& samples);
 
 }  // namespace simulate

@@ -28,23 +28,25 @@ using support::Failure;
 // Turns items into blocks, in order.
 class Builder {
  public:
-  Builder(const std::string& file, const Machine& machine, const Limits& limits, Program& program)
-      : file_(file), machine_(machine), limits_(limits), program_(program) {}
+  Builder(const Options& options, const Machine& machine, Program& program)
+      : machine_(machine), limits_(options.limits), program_(program) {
+    tool_.tool_length = options.tool_length.value_or(0.0);
+  }
 
   void operator()(const gcode::Motion& motion) {
     const double rapid_rate = machine_.rapid_rate.value_or(limits_.velocity);
     Limits limits = limits_;
     if (motion.kind != gcode::MotionKind::rapid)
       limits.velocity = std::min(limits.velocity, machine_.feed_limit);
-    auto block = plan::block(motion, limits, rapid_rate);
-    if (!block) refuse(file_, {block.error(), motion.line, motion.column, {}});
-    check_travel(*block, motion);
-    block->limits = limits_along(machine_, *block);
-    program_.blocks.push_back(*block);
+    gcode::Motion placed = motion;
+    for (std::size_t i = 0; i < 2; ++i) placed.offset[i] -= machine_.table_center[i];
+    if (rows())
+      add_row(motion, limits, rapid_rate);
+    else
+      add_segment(placed, limits, rapid_rate);
+    Origin& origin = program_.origins.back();
     const bool says_feed = motion.feed || motion.kind == gcode::MotionKind::rapid;
-    const double feed =
-        says_feed ? plan::feed(motion, block->segment.length(), unlimited, rapid_rate) : limits.velocity;
-    program_.origins.push_back({motion.line, motion.plane, plan::xyz(motion.offset), feed});
+    origin.feed = says_feed ? plan::feed(motion, origin.length, unlimited, rapid_rate) : limits.velocity;
   }
   void operator()(const gcode::Dwell& dwell) {
     plan::Block& block = last_block(dwell.line);
@@ -57,50 +59,100 @@ class Builder {
   }  // spindle and coolant are for others to act on, without a stop
   void operator()(const gcode::Warning& warning) {
     ++program_.warnings;
-    fmt::print(stderr, "{}\n", gcode::to_text(file_, warning.about, "warning"));
+    fmt::print(stderr, "{}\n", gcode::to_text(program_.file, warning.about, "warning"));
   }
 
   /// A pause before any motion stands on a block of its own, of length zero.
   plan::Block& last_block(int line) {
     if (program_.blocks.empty()) {
-      program_.blocks.push_back(
-          {path::Line(Vector3::Zero(), Vector3::Zero()), limits_, junction::Kind::rapid, true, 0.0});
-      program_.origins.push_back({line, Plane::xy, Vector3::Zero(), 0.0});
+      const RowPath row(tool_, Joints::Zero(), Joints::Zero());
+      const Vector3 start =
+          rows() ? row.tip(0.0) : Vector3(-machine_.table_center[0], -machine_.table_center[1], 0.0);
+      if (rows()) program_.rows.push_back(row);
+      add({path::Line(start, start), limits_, junction::Kind::rapid, true, 0.0},
+          {line, 1, Plane::xy, Vector3::Zero(), 0.0, 0.0});
     }
     return program_.blocks.back();
   }
 
  private:
+  using Joints = RowPath::Vector;
+
   static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-  void check_travel(const plan::Block& block, const gcode::Motion& motion) const {
-    const auto bounds = block.segment.bounds();
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto& [letter, low, high] = travel(machine_, axis);
-      const double beyond = bounds.low[axis] < low ? bounds.low[axis] : bounds.high[axis];
-      if (bounds.low[axis] >= low && bounds.high[axis] <= high) continue;
-      throw Failure(
-          Exit::bad_input,
-          fmt::format("{}:{}:{}: error: axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}",
-                      file_, motion.line, motion.column, letter, beyond, low, high));
+  [[nodiscard]] bool rows() const { return machine_.kinematics == Kinematics::tire_mold; }
+
+  void add(const plan::Block& block, const Origin& origin) {
+    program_.blocks.push_back(block);
+    program_.origins.push_back(origin);
+  }
+
+  void add_segment(const gcode::Motion& motion, const Limits& limits, double rapid_rate) {
+    auto block = plan::block(motion, limits, rapid_rate);
+    if (!block) refuse(program_.file, {block.error(), motion.line, motion.column, {}});
+    if (machine_.kinematics == Kinematics::cartesian) {
+      const auto bounds = block->segment.bounds();
+      check_travel<3>(motion, bounds.low, bounds.high);
+      block->limits = limits_along(machine_, *block);
+    }
+    add(*block,
+        {motion.line, motion.column, motion.plane, plan::xyz(motion.offset), 0.0, block->segment.length()});
+  }
+
+  void add_row(const gcode::Motion& motion, Limits limits, double rapid_rate) {
+    const auto joints = [&](const gcode::Position& place) {
+      Joints result;
+      for (std::size_t i = 0; i < 4; ++i) result[static_cast<Eigen::Index>(i)] = place[i] + motion.offset[i];
+      return result;
+    };
+    const Joints start = joints(motion.start), end = joints(motion.end);
+    check_travel<4>(motion, start.cwiseMin(end), start.cwiseMax(end));
+    const RowPath row(tool_, start, end);
+    limits.velocity = plan::feed(motion, row.length(), limits.velocity, rapid_rate);
+    program_.rows.push_back(row);
+    const bool rapid = motion.kind == gcode::MotionKind::rapid;
+    add({path::Line(row.tip(0.0), row.tip(row.length())), limits,
+         rapid ? junction::Kind::rapid : junction::Kind::line, motion.exact_stop, 0.0},
+        {motion.line, motion.column, motion.plane, Vector3::Zero(), 0.0, row.length()});
+  }
+
+  // Against the lowest and the highest place of each axis; a mill that lacks an axis does not move it.
+  template <int N>
+  void check_travel(const gcode::Motion& motion, const VectorN<double, N>& low,
+                    const VectorN<double, N>& high) const {
+    const auto limits = machine_.joint_limits<N>();
+    for (std::size_t i = 0; i < N; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const bool there = i < machine_.axes.size();
+      const double lowest = there ? limits.low[k] : 0.0, highest = there ? limits.high[k] : 0.0;
+      if (low[k] >= lowest && high[k] <= highest) continue;
+      const double beyond = low[k] < lowest ? low[k] : high[k];
+      throw Failure(Exit::bad_input, fmt::format("{}:{}:{}: error: {}", program_.file, motion.line,
+                                                 motion.column, beyond_travel(machine_, i, beyond)));
     }
   }
 
-  const std::string& file_;
   const Machine& machine_;
   const Limits& limits_;
+  kinematics::TireMold tool_;
   Program& program_;
 };
 
 }  // namespace
 
-Program read_program(const std::string& file, const Machine& machine, const Limits& limits) {
+std::string Program::place(std::size_t block) const {
+  return fmt::format("{}:{}:{}", file, origins[block].line, origins[block].column);
+}
+
+Program read_program(const Options& options, const Machine& machine) {
+  const std::string& file = options.program;
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
     throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
   Program program;
+  program.file = file;
   gcode::Reader reader(machine.dialect);
-  Builder build(file, machine, limits, program);
+  Builder build(options, machine, program);
   const auto read = gcode::read_program(gcode::StreamLines(stream), reader,
                                         [&](const gcode::Item& item) { std::visit(build, item); });
   if (!read) refuse(file, read.error());

@@ -7,28 +7,39 @@
 
 #include "cncplan/cncplan.hpp"
 #include "machine.hpp"
+#include "options.hpp"
 
 namespace simulate {
+
+/// A row of the four-axis machine.
+using RowPath = cncplan::plan::JointRow<cncplan::kinematics::TireMold>;
 
 /// What a motion was in the text.
 struct Origin {
   int line{};
+  int column{};
   cncplan::Plane plane{};
   cncplan::Vector3 offset;  ///< machine = work + offset
   double feed{};            ///< mm/s as programmed; of a rapid the rapid rate
+  double length{};          ///< mm along the path
 };
 
-/// There is always a block: a program without motion is one of length zero.
+/// There is always a block: a program without motion is one of length zero. Of a machine with a rotary table,
+/// machine coordinates are those of the table, its axis at X0 Y0.
 struct Program {
-  std::vector<cncplan::plan::Block> blocks;
-  std::vector<Origin> origins;  ///< one a block
+  std::string file;
+  std::vector<cncplan::plan::Block> blocks;  ///< where rows are, straight between their ends
+  std::vector<RowPath> rows;                 ///< of the four-axis machine, one a block; else none
+  std::vector<Origin> origins;               ///< one a block
   std::size_t lines = 0;
   std::size_t warnings = 0;
+
+  /// FILE:LINE:COLUMN of a block.
+  [[nodiscard]] std::string place(std::size_t block) const;
 };
 
 /// Reads a program; warnings go to standard error. Throws `Failure` for a file that cannot be read, for text
 /// that is not understood, and for motions that cannot be made or leave the machine's travel.
-[[nodiscard]] Program read_program(const std::string& file, const Machine& machine,
-                                   const cncplan::Limits& limits);
+[[nodiscard]] Program read_program(const Options& options, const Machine& machine);
 
 }  // namespace simulate

@@ -17,10 +17,10 @@ struct Counts {
 
 Counts count(const Program& program) {
   Counts counts;
-  for (const auto& block : program.blocks) {
-    if (block.segment.length() > 0.0) ++counts.motions;
+  for (const Origin& origin : program.origins)
+    if (origin.length > 0.0) ++counts.motions;
+  for (const auto& block : program.blocks)
     if (block.segment.arc() != nullptr) ++counts.arcs;
-  }
   return counts;
 }
 
@@ -89,14 +89,15 @@ std::string table_summary(const Program& program, const Plan& plan, const Machin
   row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
   row("plan, interpolate, step",
       fmt::format("{:.4f} s, {:.4f} s, {:.4f} s", m.plan_seconds, m.interpolate_seconds, m.steps_seconds));
-  text += fmt::format("\n{:<6}{:>12}{:>14}{:>12}{:>12}{:>14}{:>14}\n", "axis", "peak mm/s", "peak mm/s^2",
-                      "edges", "net", "error steps", "rmse mm");
+  text += fmt::format("\n{:<6}{:>12}{:>14}{:>12}{:>12}{:>14}{:>14}\n", "axis", "peak /s", "peak /s^2",
+                      "edges", "net", "error steps", "rmse");
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const auto& steps = m.steps[i];
     const auto axis = static_cast<int>(i);
-    text += fmt::format("{:<6}{:>12.4f}{:>14.3f}{:>12}{:>12}{:>14.4f}{:>14.3g}\n", machine.axes[i].letter,
+    text += fmt::format("{:<6}{:>12.4f}{:>14.3f}{:>12}{:>12}{:>14.4f}{:>14.3g}  {}\n", machine.axes[i].letter,
                         m.axis_velocity[axis], m.axis_acceleration[axis], steps.total_steps, steps.net_steps,
-                        steps.max_error * machine.axes[i].drive.steps_per_unit, steps.rms_error);
+                        steps.max_error * machine.axes[i].drive.steps_per_unit, steps.rms_error,
+                        machine.axes[i].rotary ? "deg" : "mm");
   }
   return text;
 }

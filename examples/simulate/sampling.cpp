@@ -1,10 +1,12 @@
 // Samples a plan on the grid of the period, by the interpolator that was asked for.
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <optional>
+#include <type_traits>
 
 #include "run.hpp"
 #include "stopwatch.hpp"
+#include "support/axis_motion.hpp"
 
 namespace simulate {
 
@@ -16,7 +18,7 @@ using namespace cncplan;
 // period.
 class TaylorFollower {
  public:
-  TaylorFollower(const Program& program, const Plan& plan) : program_(program), plan_(plan) {}
+  TaylorFollower(const Route<MillPath>& route, const Plan& plan) : route_(route), plan_(plan) {}
 
   Vector3 operator()(const plan::Place& place, double time) {
     if (place.block != block_ || !started_) {
@@ -26,7 +28,7 @@ class TaylorFollower {
       along_ = plan_.timings[block_].entry;
       time_ = plan_.timings[block_].start;
     }
-    const path::Segment& segment = program_.blocks[block_].segment;
+    const path::Segment& segment = route_[block_].path;
     if (segment.length() > 0.0)
       parameter_ =
           interpolate::taylor_step(segment, parameter_, along_.velocity, along_.acceleration, time - time_);
@@ -36,7 +38,7 @@ class TaylorFollower {
   }
 
  private:
-  const Program& program_;
+  const Route<MillPath>& route_;
   const Plan& plan_;
   bool started_ = false;
   std::size_t block_ = 0;
@@ -46,8 +48,10 @@ class TaylorFollower {
 };
 
 // Distance of a point from a segment: the nearest parameter by Newton's method, from a guess that is close.
-double distance(const path::Segment& segment, const Vector3& point, double along) {
-  double u = segment.parameter_at(along);
+double distance(const Programmed& programmed, const Vector3& point) {
+  if (programmed.segment == nullptr) return 0.0;
+  const path::Segment& segment = *programmed.segment;
+  double u = programmed.parameter;
   for (int step = 0; step < 3; ++step) {
     const Vector3 gap = segment.position(u) - point;
     const Vector3 first = segment.derivative(u);
@@ -60,31 +64,54 @@ double distance(const path::Segment& segment, const Vector3& point, double along
 
 }  // namespace
 
-void make_samples(const Program& program, const Plan& plan, const Options& options, Measures& measures,
-                  const std::function<void(const Sample&)>& take) {
+template <class P>
+void make_samples(const Program& program, const Route<P>& route, const Plan& plan, const Options& options,
+                  Measures& measures, const std::function<void(const Sample&)>& take) {
+  constexpr bool mill = std::is_same_v<P, MillPath>;
   plan::Cursor cursor(plan.spans, plan.lengths);
-  TaylorFollower follow(program, plan);
-  Vector3 position = Vector3::Zero();
+  std::optional<TaylorFollower> follow;
+  if constexpr (mill)
+    if (options.interpolator == Interpolator::taylor) follow.emplace(route, plan);
+  Sample row;
   const auto sample = [&](double time, const plan::Place& place) {
-    const path::Segment& segment = program.blocks[place.block].segment;
+    const auto& [path, block] = route[place.block];
+    const bool last = !(time < plan.duration);
+    double u = 0.0;
     {
       const Stopwatch watch(measures.interpolate_seconds);
-      position = options.interpolator == Interpolator::taylor
-                     ? follow(place, time)
-                     : segment.position(segment.parameter_at(place.along));
+      u = last ? path.parameter_end() : path.parameter_at(place.along);
+      row.position = follow && !last ? (*follow)(place, time) : tool(path, u);
     }
-    if (!(time < plan.duration)) position = segment.end();
-    measures.contour_error = std::max(measures.contour_error, distance(segment, position, place.along));
+    measures.contour_error = std::max(measures.contour_error, distance(programmed(path, u), row.position));
     ++measures.samples;
-    take({time, place.block, position, place.state});
+    row.time = time;
+    row.block = block;
+    row.along = place.state;
+    if (!mill || options.plot) {
+      State within = place.state;
+      within.position = place.along;
+      const auto axes = support::axis_motion(path, within);
+      row.axes = axes.position;
+      row.velocity = axes.velocity;
+      row.acceleration = axes.acceleration;
+    }
+    take(row);
   };
   for (std::size_t k = 0; static_cast<double>(k) * options.period < plan.duration; ++k) {
     const double time = static_cast<double>(k) * options.period;
     sample(time, cursor.at(time));
   }
   // At rest on the end point, whatever rounding left of the last phase.
-  sample(plan.duration, {program.blocks.size() - 1, plan.lengths.back(), {plan.length, 0.0, 0.0, 0.0}});
-  measures.end_error = (position - program.blocks.back().segment.end()).norm();
+  sample(plan.duration, {route.size() - 1, plan.lengths.back(), {plan.length, 0.0, 0.0, 0.0}});
+  measures.end_error = (row.position - program.blocks.back().segment.end()).norm();
 }
+
+using Take = std::function<void(const Sample&)>;
+template void make_samples(const Program&, const Route<MillPath>&, const Plan&, const Options&, Measures&,
+                           const Take&);
+template void make_samples(const Program&, const Route<PolarPath>&, const Plan&, const Options&, Measures&,
+                           const Take&);
+template void make_samples(const Program&, const Route<RowPath>&, const Plan&, const Options&, Measures&,
+                           const Take&);
 
 }  // namespace simulate

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 namespace simulate {
@@ -34,7 +35,7 @@ void write_motions(std::ostream& out, const Program& program) {
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
     const plan::Block& block = program.blocks[i];
     const Origin& origin = program.origins[i];
-    if (!(block.segment.length() > 0.0)) continue;
+    if (!(origin.length > 0.0)) continue;
     const Vector3 start = block.segment.start() - origin.offset;
     const Vector3 end = block.segment.end() - origin.offset;
     out << origin.line << ',' << name(block.kind) << ',' << g_code(origin.plane);
@@ -45,30 +46,44 @@ void write_motions(std::ostream& out, const Program& program) {
     } else {
       out << ",,,,,";
     }
-    put(out, block.segment.length(), origin.feed);
+    put(out, origin.length, origin.feed);
     out << '\n';
   }
 }
 
-void write_blocks(std::ostream& out, const Program& program, const Plan& plan) {
+void write_blocks(std::ostream& out, const Program& program, const Plan& plan,
+                  const std::vector<std::size_t>& blocks) {
   out << "line,length,v_in,v_peak,v_out,duration\n";
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    if (!(plan.lengths[i] > 0.0)) continue;
-    const plan::BlockTiming& timing = plan.timings[i];
-    out << program.origins[i].line;
-    put(out, plan.lengths[i], timing.entry.velocity, timing.peak_velocity, timing.exit.velocity,
-        timing.duration);
+  for (std::size_t first = 0, end = 0; first < blocks.size(); first = end) {
+    const Origin& origin = program.origins[blocks[first]];
+    double peak = 0.0, duration = 0.0;
+    for (; end < blocks.size() && blocks[end] == blocks[first]; ++end) {
+      peak = std::max(peak, plan.timings[end].peak_velocity);
+      duration += plan.timings[end].duration;
+    }
+    if (!(origin.length > 0.0)) continue;
+    out << origin.line;
+    put(out, origin.length, plan.timings[first].entry.velocity, peak, plan.timings[end - 1].exit.velocity,
+        duration);
     out << '\n';
   }
 }
 
-void write_samples_header(std::ostream& out) { out << "t,x,y,z,s,v,a,j\n"; }
+void write_samples_header(std::ostream& out, const Machine& machine) {
+  out << "t,x,y,z";
+  if (machine.kinematics != Kinematics::cartesian)
+    for (const MachineAxis& axis : machine.axes) out << ',' << axis.letter;
+  out << ",s,v,a,j\n";
+}
 
-void write_sample(std::ostream& out, const Program& program, const Sample& sample) {
+void write_sample(std::ostream& out, const Program& program, const Machine& machine, const Sample& sample) {
   const Vector3 point = sample.position - program.origins[sample.block].offset;
   fmt::format_to(std::ostreambuf_iterator<char>(out), "{:.17g}", sample.time);
-  put(out, point.x(), point.y(), point.z(), sample.along.position, sample.along.velocity,
-      sample.along.acceleration, sample.along.jerk);
+  put(out, point.x(), point.y(), point.z());
+  if (machine.kinematics != Kinematics::cartesian)
+    for (std::size_t i = 0; i < machine.axes.size(); ++i)
+      put(out, machine.shown(i, sample.axes[static_cast<Eigen::Index>(i)]));
+  put(out, sample.along.position, sample.along.velocity, sample.along.acceleration, sample.along.jerk);
   out << '\n';
 }
 

@@ -87,7 +87,7 @@ class Section {
   std::string name_;
 };
 
-constexpr double radians(double degrees) { return degrees * (3.14159265358979323846 / 180.0); }
+constexpr double radians(double degrees) { return degrees * gcode::radians_per_degree; }
 
 void read_drive(const Section& section, double unit, step::Drive& drive) {
   section.positive("steps_per_unit", drive.steps_per_unit, 1.0 / unit);
@@ -114,9 +114,10 @@ void read_axis(const Section& section, Machine& machine) {
     const std::string value = section.text(*kind, "kind");
     if (value != "linear" && value != "rotary")
       section.refuse(*kind, "kind must be \"linear\" or \"rotary\"");
-    word.kind = value == "rotary" ? gcode::AxisKind::rotary : gcode::AxisKind::linear;
+    axis.rotary = value == "rotary";
+    word.kind = axis.rotary ? gcode::AxisKind::rotary : gcode::AxisKind::linear;
   }
-  const double unit = word.kind == gcode::AxisKind::rotary ? 1.0 : machine.unit;
+  const double unit = axis.rotary ? 1.0 : machine.unit;
   section.positive("velocity", axis.limits.velocity, unit);
   section.positive("acceleration", axis.limits.acceleration, unit);
   section.positive("jerk", axis.limits.jerk, unit);
@@ -188,10 +189,43 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
   }
 }
 
+// Which machine the kinds of its axes make, and what its programs name.
+void settle_kinematics(const Section& top, Machine& machine) {
+  const auto refuse = [&](const char* why) {
+    throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {}", top.file(), why));
+  };
+  std::string letters, kinds;
+  for (const MachineAxis& axis : machine.axes) {
+    if (letters.find(axis.letter) != std::string::npos) refuse("an axis is there twice");
+    letters += axis.letter;
+    kinds += axis.rotary ? 'R' : 'L';
+  }
+  if (kinds == "LLRR") {
+    machine.kinematics = Kinematics::tire_mold;
+  } else if (kinds == "LLR") {
+    machine.kinematics = Kinematics::polar;
+    machine.dialect.axes = gcode::Dialect{}.axes;
+  } else if (kinds != "LLL" && kinds != "LL") {
+    refuse(
+        "the axes must be X, Y, Z, in this order, or X, Y; or two slides, maybe a tilting axis, and a rotary "
+        "table");
+  } else if (letters != "XYZ" && letters != "XY") {
+    refuse("the axes must be X, Y, Z, in this order, or X, Y");
+  }
+  const bool polar = machine.kinematics == Kinematics::polar;
+  if (machine.smallest_radius && machine.kinematics == Kinematics::cartesian)
+    refuse("smallest_radius is for machines with a rotary table");
+  if (const toml::node* node = top.find("table_center")) {
+    if (!polar) top.refuse(*node, "table_center is for machines of two slides and a rotary table");
+    const auto place = top.numbers(*node, "table_center", 2);
+    machine.table_center = {place[0] * machine.unit, place[1] * machine.unit};
+  }
+}
+
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
   top.allow({"name", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home", "pass_through",
-             "smallest_radius"});
+             "smallest_radius", "table_center"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
   if (const toml::node* unit = top.find("unit")) {
@@ -211,6 +245,7 @@ Machine interpret(const std::string& file, const toml::table& root) {
     machine.dialect.axes.clear();
     for (const toml::node& item : *list) read_axis(top.section("axis", item), machine);
   }
+  settle_kinematics(top, machine);
   if (const toml::node* node = top.find("tools")) read_tools(top.section("tools", *node), machine);
   if (const toml::node* node = top.find("offsets")) read_offsets(top.section("offsets", *node), machine);
   if (const toml::node* node = top.find("home")) {
@@ -222,6 +257,8 @@ Machine interpret(const std::string& file, const toml::table& root) {
       machine.dialect.home_g30 = position(home, *place, "G30", machine);
   }
   if (const toml::node* node = top.find("pass_through")) read_pass_through(top, *node, machine);
+  // The language has a Z whatever the mill; where that lacks one, its places have two numbers.
+  if (machine.axes.size() == 2) machine.dialect.axes.push_back({'Z', gcode::AxisKind::linear});
   if (const auto valid = gcode::validate(machine.dialect); !valid)
     throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {} {}", file, valid.error().field,
                                                message(valid.error().code)));

@@ -1,7 +1,9 @@
 // A machine, as its TOML file says.
 #pragma once
 
+#include <array>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,15 +20,47 @@ struct MachineAxis {
   double high = std::numeric_limits<double>::infinity();
   cncplan::Limits limits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                          std::numeric_limits<double>::infinity()};
+  bool rotary = false;
+
+  /// Of positions as they are shown: 1 mm, or a degree in rad.
+  [[nodiscard]] double unit() const { return rotary ? std::numbers::pi / 180.0 : 1.0; }
+};
+
+/// What moves the tool.
+enum class Kinematics {
+  cartesian,  ///< X, Y and maybe Z
+  tire_mold,  ///< radial and vertical slide, tilting spindle, rotary table; programs name these axes
+  polar,      ///< radial and vertical slide, rotary table; programs name X, Y, Z
 };
 
 struct Machine {
   double unit = 1.0;  ///< mm, the unit of the file's lengths
   cncplan::gcode::Dialect dialect;
   std::vector<MachineAxis> axes{{.letter = 'X'}, {.letter = 'Y'}, {.letter = 'Z'}};
+  Kinematics kinematics = Kinematics::cartesian;
   std::optional<double> rapid_rate;                             ///< mm/s
   double feed_limit = std::numeric_limits<double>::infinity();  ///< mm/s
   std::optional<double> smallest_radius;  ///< mm from a rotary table's axis; nothing nearer is driven
+  std::array<double, 2> table_center{};   ///< X, Y of a polar machine's table axis, mm
+
+  /// An axis' position, speed ... in mm or degrees.
+  [[nodiscard]] double shown(std::size_t axis, double joint) const { return joint / axes[axis].unit(); }
+
+  /// Of the first N axes; mm, rad, s.
+  template <int N>
+  [[nodiscard]] cncplan::BasicJointLimits<double, N> joint_limits() const {
+    cncplan::BasicJointLimits<double, N> result;
+    for (std::size_t i = 0; i < std::min<std::size_t>(N, axes.size()); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const double scale = axes[i].unit();
+      result.velocity[k] = axes[i].limits.velocity * scale;
+      result.acceleration[k] = axes[i].limits.acceleration * scale;
+      result.jerk[k] = axes[i].limits.jerk * scale;
+      result.low[k] = axes[i].low * scale;
+      result.high[k] = axes[i].high * scale;
+    }
+    return result;
+  }
 };
 
 /// Reads a machine file. Throws `Failure` for one that cannot be read or has an unknown or wrong entry.

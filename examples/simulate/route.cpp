@@ -1,0 +1,74 @@
+#include "route.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "support/failure.hpp"
+
+namespace simulate {
+
+using namespace cncplan;
+using support::Exit;
+using support::Failure;
+
+namespace {
+
+[[noreturn]] void refuse(const Program& program, std::size_t block, const std::string& why) {
+  throw Failure(Exit::bad_input, fmt::format("{}: error: {}", program.place(block), why));
+}
+
+// Every axis at its turnings and at the end of a piece.
+void check_travel(const Program& program, const Machine& machine, const Piece<PolarPath>& piece) {
+  const auto limits = machine.joint_limits<3>();
+  const step::TracedPath traced(piece.path, 2);
+  for (int axis = 0; axis < 3; ++axis)
+    for (double u = 0.0;; u = traced.next_turning(axis, u)) {
+      const double place = piece.path.position(u)[axis];
+      if (!(place >= limits.low[axis] && place <= limits.high[axis]))
+        refuse(program, piece.block, beyond_travel(machine, static_cast<std::size_t>(axis), place));
+      if (!(u < piece.path.parameter_end())) break;
+    }
+}
+
+}  // namespace
+
+Route<MillPath> mill_route(const Program& program) {
+  Route<MillPath> route;
+  route.reserve(program.blocks.size());
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) route.push_back({program.blocks[i].segment, i});
+  return route;
+}
+
+Route<RowPath> row_route(const Program& program) {
+  Route<RowPath> route;
+  route.reserve(program.rows.size());
+  for (std::size_t i = 0; i < program.rows.size(); ++i) route.push_back({program.rows[i], i});
+  return route;
+}
+
+Route<PolarPath> polar_route(const Program& program, const Machine& machine) {
+  const double smallest = machine.smallest_radius.value_or(1.0);
+  plan::JointCourse course{plan::PolarGuide(smallest)};
+  Route<PolarPath> route;
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
+    const path::Segment& segment = program.blocks[i].segment;
+    const auto followed = course.append(segment, 1.0, i);
+    if (!followed)
+      refuse(program, i,
+             fmt::format("{:.6g} mm from the table's axis: no nearer than {:.6g} is driven",
+                         followed.error().value, smallest));
+    if (i > 0 || segment.length() > 0.0) continue;
+    // a wait before the first motion: no way, on any line
+    const Vector3 place = segment.start();
+    kinematics::PolarChart chart;
+    chart.azimuth = {place.x(), place.y(), 0.0};
+    route.push_back({PolarPath(path::Line(place, place + Vector3::UnitZ()), chart, 0.0, 0.0), i});
+  }
+  for (const auto& block : course.blocks()) route.push_back({block.path, block.motion});
+  for (const auto& piece : route) check_travel(program, machine, piece);
+  return route;
+}
+
+}  // namespace simulate
