@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <string>
 
 #include "cncplan/profile/from_state.hpp"
+#include "profile/state_case.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -16,19 +15,7 @@ using namespace cncplan;
 
 namespace {
 
-struct Move {
-  double length;
-  profile::StartState start;
-  double end;
-  Limits limits;
-
-  [[nodiscard]] std::string literal() const {
-    char text[320];
-    std::snprintf(text, sizeof text, "Move{%.17g, {%.17g, %.17g}, %.17g, {%.17g, %.17g, %.17g}}", length,
-                  start.velocity, start.acceleration, end, limits.velocity, limits.acceleration, limits.jerk);
-    return text;
-  }
-};
+using Move = test::StateCase;
 
 // Accelerations held, and for how long the first is; the other two holds follow from speed and length.
 struct Choice {

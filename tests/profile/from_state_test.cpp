@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <string>
 
+#include "profile/state_case.hpp"
 #include "support/catch.hpp"
 #include "support/profile_oracle.hpp"
 
@@ -13,20 +12,7 @@ using namespace cncplan;
 namespace {
 
 using test::Real;
-
-struct StateCase {
-  double length;
-  profile::StartState start;
-  double end;
-  Limits limits;
-
-  [[nodiscard]] std::string literal() const {
-    char text[320];
-    std::snprintf(text, sizeof text, "StateCase{%.17g, {%.17g, %.17g}, %.17g, {%.17g, %.17g, %.17g}}", length,
-                  start.velocity, start.acceleration, end, limits.velocity, limits.acceleration, limits.jerk);
-    return text;
-  }
-};
+using test::StateCase;
 
 struct Travelled {
   Real position = 0, velocity = 0, acceleration = 0, lowest = 0, highest = 0, steepest = 0, duration = 0;
