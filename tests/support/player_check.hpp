@@ -22,6 +22,7 @@ struct PlayerFaults {
   double end{};     ///< mm from the end of the last block
   bool finished{};
   long ticks{};
+  long requests{};
 };
 
 /// Short and long blocks, slow and free joints, curved (lower limits) and straight ones.
@@ -47,11 +48,12 @@ inline std::vector<plan::PlayedBlock> random_program(Random& random, int count) 
   return program;
 }
 
-/// Plays a program with a request about every `mean_gap` ticks (0: none) until it is finished. Backwards runs
-/// are among the requests if there is memory for them.
+/// Plays a program with a request about every `mean_gap` ticks for `restless` ticks, then undisturbed until
+/// it is finished.
 inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& random, int mean_gap,
-                         std::size_t window, long most_ticks = 2'000'000) {
+                         std::size_t window, long restless) {
   constexpr double period = 1e-3;
+  constexpr long most_ticks = 1'000'000;
   std::vector<plan::PlayedBlock> blocks(window + 24);
   std::vector<plan::BlockCaps> course(window);
   std::vector<plan::Gate> gates(window + 1), spare(window + 1);
@@ -61,14 +63,15 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
 
   PlayerFaults faults;
   const auto grow = [](double& worst, double value) { worst = std::max(worst, value); };
-  plan::Played before{0, 0.0, 0.0, 0.0, true};
+  plan::Played before{0, 0.0, 0.0, 0.0, 0.0, true};
   double position = 0.0;
   std::size_t fed = 0;
   for (; faults.ticks < most_ticks; ++faults.ticks) {
-    const bool starving = mean_gap > 0 && random.integer(0, 9) == 0;
+    const bool calm = faults.ticks >= restless;
+    const bool starving = !calm && random.integer(0, 9) == 0;
     while (!starving && fed < program.size() && player.push(program[fed])) ++fed;
-    const bool calm = faults.ticks > most_ticks / 2;  // in the end let it finish
-    if (mean_gap > 0 && (calm ? faults.ticks % 1000 == 0 : random.integer(0, mean_gap - 1) == 0)) {
+    if (calm ? faults.ticks == restless : random.integer(0, mean_gap - 1) == 0) {
+      ++faults.requests;
       switch (calm ? 100 : random.integer(0, 9)) {
         case 0:
           player.hold();
@@ -114,6 +117,8 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
       grow(faults.joint,
            std::min(std::abs(now.velocity), std::abs(before.velocity)) - slack - program[i].caps.entry);
     const double moved = start[static_cast<std::size_t>(now.block)] + now.along - position;
+    grow(faults.travel,
+         std::max(-now.along, now.along - program[static_cast<std::size_t>(now.block)].caps.length));
     grow(faults.travel, std::abs(moved - period * (now.velocity + before.velocity) / 2) - slack * period / 4);
     position += moved;
     before = now;

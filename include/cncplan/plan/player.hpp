@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -12,7 +11,10 @@
 #include <span>
 #include <utility>
 
-#include "cncplan/plan/course.hpp"
+#include "cncplan/plan/brake.hpp"
+#include "cncplan/plan/leg.hpp"
+#include "cncplan/plan/ramp_ahead.hpp"
+#include "cncplan/plan/road.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/from_state.hpp"
 
@@ -33,10 +35,11 @@ using PlayerMemory = BasicPlayerMemory<double>;
 /// Where the machine is after a tick.
 template <std::floating_point S>
 struct BasicPlayed {
-  std::int64_t block{};  ///< number of the block, from 0; -1 before the first has come
+  std::int64_t block{};  ///< number of the block; that before the first while none has come
   S along{};             ///< mm from the block's start
   S velocity{};          ///< mm/s along the path, negative when it runs backwards
   S acceleration{};      ///< mm/s^2, likewise
+  S jerk{};              ///< mm/s^3, likewise, from now on
   bool at_rest{};
 
   friend bool operator==(const BasicPlayed&, const BasicPlayed&) = default;
@@ -49,6 +52,9 @@ using Played = BasicPlayed<double>;
 /// acceleration, then spans. A plan that could not keep the joints' caps is not taken: the one before goes
 /// on, and the request is tried again a tick later. So whatever is asked for and however often, speed,
 /// acceleration and jerk stay within limits.
+///
+/// Plans reach as far as the blocks ahead can matter. Where a way down begins that more blocks might spare,
+/// and at the end of each leg that they might better, the rest is planned anew.
 template <std::floating_point S>
 class BasicPlayer {
  public:
@@ -57,320 +63,287 @@ class BasicPlayer {
 
   /// `keep_behind` blocks stay in memory for running backwards.
   explicit BasicPlayer(const BasicPlayerMemory<S>& memory, std::int64_t keep_behind = 0)
-      : ring_(memory.blocks), memory_(memory), keep_behind_(keep_behind) {}
+      : memory_(memory), road_(memory.blocks), keep_behind_(keep_behind) {}
 
   /// Takes the next block of the program. False when there is no room.
   bool push(const Block& block) {
-    const std::int64_t first_needed = std::max<std::int64_t>(spot_block() - keep_behind_, 0);
-    if (ring_.end() - first_needed >= ring_.capacity()) return false;
-    ring_.push(block);
-    extended_ = true;
+    BlockRing<S>& ring = road_.ring;
+    const std::int64_t first_needed = std::max(at_.block - keep_behind_, ring.oldest());
+    if (ring.end() - first_needed >= ring.capacity()) return false;
+    ring.push(block);
+    more_ = true;
     pending_ = pending_ || idle_;
     return true;
   }
 
   /// Comes to rest as soon as the limits allow; `resume` goes on from there.
-  void hold() { set(held_, true); }
-  void resume() { set(held_, false); }
+  void hold() { ask(road_.asked.held, true); }
+  void resume() { ask(road_.asked.held, false); }
 
-  /// Share of the programmed feed, 0 to 2; 0 is a hold. Values outside are cut.
-  void feed_override(S share) { set(feed_share_, std::clamp(share, S(0), S(2))); }
-  /// Share of the rapid rate, 0 to 1.
-  void rapid_override(S share) { set(rapid_share_, std::clamp(share, S(0), S(1))); }
+  /// Comes to rest likewise, and does not go on: the program ends there.
+  void stop() {
+    wait_ = S(0);
+    ask(road_.asked.stopped, true);
+  }
 
-  /// Comes to rest at once with acceleration and jerk limits of its own, which may be higher; then it is
-  /// held.
+  /// Comes to rest with acceleration and jerk limits of its own, which may be higher; then it is held.
   void quick_stop(S acceleration, S jerk) {
-    const BasicState<S> now = state();
+    hold();
+    if (idle_) return;
+    const BasicState<S> now = leg_.state();
     const auto ramp =
         profile::stop(profile::BasicStartState<S>{now.velocity, now.acceleration},
                       BasicLimits<S>{S(1), std::max(acceleration, std::abs(now.acceleration)), jerk});
-    held_ = true;
-    if (ramp && now.velocity > S(0)) begin(*ramp, spot(), no_gate);
+    if (!ramp) return;
+    follow(BasicLeg<S>(*ramp), locate(), no_gate);
     pending_ = false;
   }
 
+  /// Share of the programmed feed, 0 to 2; 0 is a hold. Values outside are cut.
+  void feed_override(S share) { ask(road_.asked.feed_share, std::clamp(share, S(0), S(2))); }
+  /// Share of the rapid rate, 0 to 1.
+  void rapid_override(S share) { ask(road_.asked.rapid_share, std::clamp(share, S(0), S(1))); }
+
   /// Runs backwards along the path, as far as blocks are kept, or forwards again. It comes to rest in
   /// between.
-  void backwards(bool wanted) { set(wanted_direction_, wanted ? -1 : 1); }
+  void backwards(bool wanted) { ask(road_.asked.direction, wanted ? -1 : 1); }
 
   /// Stops behind every block (single step): `resume` runs the next one.
-  void single_step(bool wanted) { set(single_step_, wanted); }
+  void single_step(bool wanted) { ask(road_.asked.single_step, wanted); }
   /// Whether blocks with an optional stop stop.
-  void optional_stop(bool wanted) { set(optional_stops_, wanted); }
+  void optional_stop(bool wanted) { ask(road_.asked.optional_stops, wanted); }
   /// Stops before the first block of this line of the program; `resume` goes on. 0: none.
-  void pause_at(int line) { set(pause_line_, line); }
+  void pause_at(int line) { ask(road_.asked.pause_line, line); }
 
-  /// Moves on by `period` seconds.
+  /// At rest: forgets all blocks; the next one that is pushed has this number, and the motion begins at its
+  /// start. The way there is the caller's, as is all that the blocks before would have brought about (tools,
+  /// offsets, spindle). A program that was stopped can begin anew so. False, and nothing done, in motion.
+  bool skip_to(std::int64_t block) {
+    if (!idle_) return false;
+    road_.ring.restart(block);
+    road_.asked.direction = road_.direction = 1;
+    road_.asked.stopped = false;
+    road_.passed_pause = -1;
+    at_ = {block, S(0)};
+    wait_ = S(0);
+    pending_ = false;
+    return true;
+  }
+
+  /// Moves on by `period` seconds. It plans at most 16 times on the way: enough for a tenth of a second and
+  /// more; over a longer one the machine may slow down for blocks that it has.
   BasicPlayed<S> tick(S period) {
-    const bool turning_point = !idle_ && extended_ && !leg_settled_ && time_ + period >= phases_[4].time;
-    if (pending_ || turning_point) renew();
+    if (pending_ || (could_better() && leg_.to_turn() <= S(0))) renew();
     S left = period;
-    for (std::size_t hop = 0; hop <= memory_.gates.size() && left > S(0); ++hop) {
+    int plans = most_plans;
+    const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: legs end blocks
+    for (std::size_t hops = 0; left > S(0) && hops < most_hops; ++hops) {
       if (wait_ > S(0)) {
         const S waited = std::min(wait_, left);
         wait_ -= waited;
         left -= waited;
-        continue;
+      } else if (idle_) {
+        if (!pending_ || plans-- == 0) break;
+        renew();
+      } else if (const S turn = leg_.to_turn(); plans > 0 && could_better() && turn > S(0) && turn <= left) {
+        leg_.advance(turn);
+        left -= turn;
+        --plans;
+        const BasicSpot<S> at = locate();
+        if (plan_from(at, leg_.state().velocity)) adopt(at);
+      } else if (left < leg_.left()) {
+        leg_.advance(left);
+        left = S(0);
+      } else {
+        left -= leg_.left();
+        leg_.advance(leg_.left());
+        if (next_leg(plans > 0)) --plans;
       }
-      if (time_ + left < duration_) {
-        time_ += left;
-        break;
-      }
-      left -= duration_ - time_;
-      if (!next_leg()) break;
     }
+    rested_ = idle_ && !(wait_ > S(0)) ? rested_ + left : S(0);
     return played();
   }
 
+  /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
+  [[nodiscard]] S until_change() const {
+    if (wait_ > S(0)) return wait_;
+    return idle_ ? std::numeric_limits<S>::infinity() : leg_.to_edge();
+  }
+
+  /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
+  [[nodiscard]] S rested() const { return rested_; }
+
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && wait_ == S(0) && direction_ > 0 && here_.block >= ring_.end();
+    return idle_ && !(wait_ > S(0)) && road_.direction > 0 && at_.block >= road_.ring.end();
   }
+  /// Whether it rests because of `stop`.
+  [[nodiscard]] bool stopped() const { return road_.asked.stopped && idle_; }
 
  private:
   static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
+  static constexpr int most_plans = 16;  // in one tick
+
+  static constexpr auto solver = [](const BasicLimits<S>& limits) {
+    return profile::seven_phase_solver(limits);
+  };
 
   template <class T>
-  void set(T& value, const T& wanted) {
+  void ask(T& value, const T& wanted) {
     if (value == wanted) return;
     value = wanted;
     pending_ = true;
   }
 
-  [[nodiscard]] bool in_memory(std::int64_t block) const {
-    return block >= ring_.oldest() && block < ring_.end();
-  }
-  [[nodiscard]] S length(std::int64_t block) const { return ring_[block].caps.length; }
-  [[nodiscard]] std::int64_t spot_block() const { return here_.block; }
+  // Whether blocks that the plan does not know could spare the way down that this leg ends with.
+  [[nodiscard]] bool could_better() const { return more_ && !leg_settled_; }
 
-  [[nodiscard]] BasicState<S> state() const {
-    if (idle_) return {};
-    std::size_t phase = phases_.size() - 1;
-    while (phase > 0 && (time_ < phases_[phase].time || phases_[phase].duration == S(0))) --phase;
-    BasicState<S> now =
-        phases_[phase].at(std::clamp(time_ - phases_[phase].time, S(0), phases_[phase].duration));
-    now.velocity = std::max(now.velocity, S(0));  // rounding, where it comes to rest
-    return now;
-  }
-
-  // Follows the leg to where it is now: blocks that have been passed lie behind.
-  [[nodiscard]] BasicSpot<S> spot() const { return idle_ ? here_ : advance(here_, state().position); }
-
-  [[nodiscard]] BasicSpot<S> advance(BasicSpot<S> from, S distance) const {
-    from.along += distance;
-    while (in_memory(from.block) && from.along >= length(from.block) && in_memory(from.block + direction_)) {
-      from.along -= length(from.block);
-      from.block += direction_;
-    }
-    return from;
+  // Where it is now. The block goes along, the leg's start then lies before it.
+  BasicSpot<S> locate() {
+    const S position = leg_.state().position;
+    const BasicSpot<S> at = road_.advance(at_, position);
+    if (at.block != at_.block) at_ = {at.block, at.along - position};
+    return at;
   }
 
   [[nodiscard]] BasicPlayed<S> played() {
-    if (ring_.end() == 0) return {-1, S(0), S(0), S(0), true};
-    const BasicState<S> now = state();
-    BasicSpot<S> at = spot();
-    if (!in_memory(at.block)) at = {at.block - direction_, length(at.block - direction_)};  // behind the last
-    const S whole = length(at.block);
+    const BlockRing<S>& ring = road_.ring;
+    if (ring.end() == ring.oldest()) return {at_.block - 1, S(0), S(0), S(0), S(0), true};
+    const BasicState<S> now = leg_.state();
+    BasicSpot<S> at = locate();
+    if (!ring.holds(at.block))  // behind the last
+      at = {at.block - road_.direction, ring.length(at.block - road_.direction)};
+    const S whole = ring.length(at.block);
     const S travelled = std::min(at.along, whole);
-    const S sign = static_cast<S>(direction_);
-    return {at.block, direction_ > 0 ? travelled : whole - travelled, sign * now.velocity,
-            sign * now.acceleration, idle_};
+    const S sign = static_cast<S>(road_.direction);
+    return {at.block,
+            sign > S(0) ? travelled : whole - travelled,
+            sign * now.velocity,
+            sign * now.acceleration,
+            sign * now.jerk,
+            idle_};
   }
 
-  // The speed that a block is asked to run at.
-  [[nodiscard]] S wanted_speed(const Block& block) const {
-    const S share = block.rapid ? rapid_share_ : feed_share_;
-    return std::min(share * block.feed, block.caps.limits.velocity);
+  // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
+  void renew() {
+    pending_ = false;
+    if (idle_)
+      start();
+    else
+      pending_ = !replan();
   }
 
-  [[nodiscard]] bool stops_behind(std::int64_t block, std::int64_t first) const {
-    const Block& b = ring_[block];
-    if (b.caps.pause > S(0) || (single_step_ && block >= first) || (optional_stops_ && b.optional_stop))
+  void start() {
+    if (road_.asked.held || road_.asked.stopped || road_.ring.end() == road_.ring.oldest()) return;
+    at_ = road_.turned_round(at_);
+    if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
+  }
+
+  bool replan() {
+    const BasicState<S> now = leg_.state();
+    const BasicSpot<S> at = locate();
+    if (!road_.ring.holds(at.block)) return false;
+    if (road_.must_rest(at.block)) return brake(at, now, false);
+    const S wanted = road_.wanted_speed(at.block);
+    if (now.acceleration == S(0) && now.velocity <= wanted && plan_from(at, now.velocity)) {
+      adopt(at);
       return true;
-    return direction_ > 0 && pause_line_ > 0 && in_memory(block + 1) &&
-           ring_[block + 1].line == pause_line_ && b.line != pause_line_ && block + 1 != passed_pause_;
-  }
-
-  // Cap of the joint between a block and the one behind it in the direction of travel.
-  [[nodiscard]] S joint_cap(std::int64_t block) const {
-    return direction_ > 0 ? ring_[block].caps.entry : ring_[block + 1].caps.entry;
-  }
-
-  // Blocks ahead of a spot, as far as the look-ahead reaches or the motion may go; how many.
-  std::size_t make_course(const BasicSpot<S>& from, S speed) {
-    std::size_t count = 0;
-    BasicSpot<S> at = from;
-    while (count < memory_.course.size() && in_memory(at.block)) {
-      const Block& block = ring_[at.block];
-      BasicBlockCaps<S> caps = block.caps;
-      caps.length = std::max(caps.length - at.along, S(0));
-      caps.limits.velocity = std::max(wanted_speed(block), count == 0 ? speed : S(0));
-      if (!(caps.limits.velocity > S(0))) break;
-      caps.entry = count == 0 ? speed : joint_cap(at.block);
-      memory_.course[count++] = caps;
-      if (stops_behind(at.block, from.block)) break;
-      at = {at.block + direction_, S(0)};
     }
-    return count;
+    const profile::BasicStartState<S> state{now.velocity, now.acceleration};
+    const S settled = std::max(profile::settled_speed(state, road_.ring[at.block].caps.limits), S(0));
+    for (const S target : {wanted, std::min(settled, wanted)}) {
+      const auto ramp = ramp_ahead(road_, at, now, target);
+      if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
+      take_spare();
+      follow(BasicLeg<S>(*ramp), at, 0);
+      return true;
+    }
+    return false;
+  }
+
+  // Begins to come to rest, or goes on with it, under the limits of each block; false if it cannot begin
+  // here.
+  bool brake(const BasicSpot<S>& at, const BasicState<S>& now, bool going_on) {
+    const profile::BasicStartState<S> state{now.velocity, now.acceleration};
+    const S fastest = std::max(now.velocity, profile::settled_speed(state, road_.ring[at.block].caps.limits));
+    const auto stretches = memory_.course.first(road_.stretches(at, fastest, memory_.course));
+    const auto ramp = profile::stop(state, stretches[0].limits);
+    constexpr S rounding = S(1e-9);  // of a plan that rests at the end of the stretch
+    if (ramp && (stretches.size() == 1 || ramp->length() < stretches[0].length + rounding)) {
+      follow(BasicLeg<S>(*ramp), at, no_gate);
+      return true;
+    }
+    const BasicBrake<S> brake(stretches);
+    if (!going_on && !brake.safe(now)) return false;
+    follow(brake.leg(now), at, no_gate);
+    return true;
   }
 
   // Plans from a spot at a speed with zero acceleration, into the spare gates. False if the speed is too high
   // there.
   bool plan_from(const BasicSpot<S>& from, S speed) {
-    const std::size_t blocks = make_course(from, speed);
-    if (blocks == 0) return speed == S(0) && (spare_count_ = 0, true);
+    const auto [blocks, whole] = road_.course(from, speed, memory_.course);
+    spare_whole_ = whole;
+    spare_count_ = 0;
+    if (blocks == 0) return speed == S(0);
     const std::span<const BasicBlockCaps<S>> course = memory_.course.first(blocks);
     spare_count_ = make_gates(course, speed, memory_.spare_gates);
     GatePlanner planner(memory_.spare_gates.first(spare_count_), solver);
     planner.solve();
-    if (memory_.spare_gates[0].speed < speed) return false;
-    extended_ = false;
-    return true;
+    return !(memory_.spare_gates[0].speed < speed);
   }
 
-  // The ramp from the present state to a speed, if no cap ahead forbids it: its limits are those of all
-  // blocks that it touches.
-  [[nodiscard]] Expected<profile::BasicProfile<S>> ramp_to(S target, const BasicSpot<S>& from,
-                                                           const BasicState<S>& now) const {
-    const auto refuse = [&] {
-      return tl::unexpected(Error{ErrorCode::above_limit, "speed", double(now.velocity), double(target)});
-    };
-    const profile::BasicStartState<S> start{now.velocity, now.acceleration};
-    BasicLimits<S> limits = ring_[from.block].caps.limits;
-    for (int round = 0; round < 4; ++round) {
-      if (std::abs(now.acceleration) > limits.acceleration * (S(1) + S(1e-9))) return refuse();
-      if (profile::settled_speed(start, limits) < -S(1e-9)) return refuse();
-      const profile::BasicRamp<S> ramp = profile::ramp_from(start, target, limits);
-      const S whole = profile::distance(start, ramp);
-      const profile::BasicProfile<S> result({.length = whole,
-                                             .start_velocity = start.velocity,
-                                             .start_acceleration = start.acceleration,
-                                             .top_velocity = target,
-                                             .end_velocity = target,
-                                             .cruise = S(0),
-                                             .up = ramp,
-                                             .down = {}});
-      BasicLimits<S> touched = limits;
-      const auto speed_at = [&](S position) { return result.at(result.time_at(position)).velocity; };
-      const bool crests = now.acceleration > S(0) && target < now.velocity;
-      const S crest = crests ? result.at(now.acceleration / limits.jerk).position : S(-1);
-      constexpr S tolerance = S(1) + S(1e-12);
-      BasicSpot<S> at = from;
-      S position = S(0);
-      S speed = now.velocity;
-      for (S until = length(at.block) - at.along;; until += length(at.block)) {
-        const BasicLimits<S>& there = ring_[at.block].caps.limits;
-        touched.acceleration = std::min(touched.acceleration, there.acceleration);
-        touched.jerk = std::min(touched.jerk, there.jerk);
-        const bool last = !(until < whole);
-        const S next_speed = last ? target : speed_at(until);
-        const S highest =
-            crest >= position && crest <= until ? result.peak().velocity : std::max(speed, next_speed);
-        const S allowed = std::max(there.velocity, at.block == from.block ? now.velocity : S(0));
-        if (highest > allowed * tolerance) return refuse();
-        if (last) break;
-        if (!in_memory(at.block + direction_) || stops_behind(at.block, from.block)) return refuse();
-        at.block += direction_;
-        if (next_speed > joint_cap(at.block) * tolerance) return refuse();
-        position = until;
-        speed = next_speed;
-      }
-      if (touched == limits) return result;
-      limits = touched;
-    }
-    return refuse();
-  }
-
-  // Answers a request by a new plan from where the machine is, if there is one that keeps all caps.
-  void renew() {
-    if (idle_) {
-      if (!may_run()) {
-        pending_ = false;
-        return;
-      }
-      turn_round();
-      if (plan_from(here_, S(0))) adopt();
-      pending_ = false;
-      return;
-    }
-    const BasicState<S> now = state();
-    const BasicSpot<S> at = spot();
-    if (!in_memory(at.block)) return;
-    if (must_rest()) {
-      const auto ramp = ramp_to(S(0), at, now);
-      if (!ramp) return;
-      begin(*ramp, at, no_gate);
-      pending_ = false;
-      return;
-    }
-    const S wanted = wanted_speed(ring_[at.block]);
-    const bool steady = now.acceleration == S(0) && now.velocity <= wanted;
-    if (steady && plan_from(at, now.velocity)) {
-      here_ = at;
-      adopt();
-      pending_ = false;
-      return;
-    }
-    const S settled =
-        std::max(profile::settled_speed(profile::BasicStartState<S>{now.velocity, now.acceleration},
-                                        ring_[at.block].caps.limits),
-                 S(0));
-    for (const S target : {wanted, std::min(settled, wanted)}) {
-      const auto ramp = ramp_to(target, at, now);
-      if (!ramp) continue;
-      if (!plan_from(advance(at, ramp->length()), target)) continue;
-      std::swap(memory_.gates, memory_.spare_gates);
-      gate_count_ = spare_count_;
-      begin(*ramp, at, 0);
-      pending_ = false;
-      return;
-    }
-  }
-
-  [[nodiscard]] bool must_rest() const {
-    return held_ || wanted_direction_ != direction_ ||
-           (in_memory(spot().block) && !(wanted_speed(ring_[spot().block]) > S(0)));
-  }
-  [[nodiscard]] bool may_run() const { return !held_ && ring_.end() > ring_.oldest(); }
-
-  // At rest: takes the direction that is wanted.
-  void turn_round() {
-    if (wanted_direction_ == direction_) return;
-    direction_ = wanted_direction_;
-    if (!in_memory(here_.block))
-      here_ = {here_.block + direction_, S(0)};
-    else
-      here_.along = length(here_.block) - here_.along;
-  }
-
-  // Takes over the plan in the spare gates, from `here_`.
-  void adopt() {
+  // Makes the plan in the spare gates the one that holds.
+  void take_spare() {
     std::swap(memory_.gates, memory_.spare_gates);
     gate_count_ = spare_count_;
-    idle_ = gate_count_ == 0;
-    if (!idle_) begin_span(0);
+    more_ = !spare_whole_;
   }
 
-  // Starts a leg; behind it the plan goes on at a gate, or the machine rests.
-  void begin(const profile::BasicProfile<S>& leg, const BasicSpot<S>& from, std::size_t gate) {
-    here_ = from;
-    leg_settled_ = gate == no_gate || gate == 0 || memory_.gates[gate].settled;
-    phases_ = leg.phases();
-    duration_ = leg.duration();
-    leg_length_ = leg.length();
-    time_ = S(0);
+  // The same, and follows it from a spot.
+  void adopt(const BasicSpot<S>& from) {
+    at_ = from;
+    take_spare();
+    if (gate_count_ == 0)
+      rest();
+    else
+      begin_span(0);
+  }
+
+  // Drives a leg; behind it the plan goes on at a gate, or the machine comes to rest.
+  void follow(const BasicLeg<S>& leg, const BasicSpot<S>& from, std::size_t gate) {
+    at_ = from;
+    leg_ = leg;
     next_gate_ = gate;
+    leg_settled_ = gate == no_gate || gate == 0 || memory_.gates[gate].settled;
     idle_ = false;
   }
 
-  bool begin_span(std::size_t gate) {
+  void begin_span(std::size_t gate) {
     GatePlanner planner(memory_.gates.first(gate_count_), solver);
     const std::size_t next = planner.next_knot(gate);
-    const auto leg = planner.profile(gate, next);
-    if (!leg) return false;
-    begin(*leg, here_, next);
-    return true;
+    if (const auto profile = planner.profile(gate, next)) return follow(BasicLeg<S>(*profile), at_, next);
+    const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
+                                    memory_.gates[gate].limits);
+    follow(BasicLeg<S>(*stop), at_, no_gate);
+  }
+
+  // The leg is over: the next one, or rest. True if it has planned, where that is allowed.
+  bool next_leg(bool may_plan) {
+    const BasicState<S> end = leg_.state();
+    at_ = road_.snapped(road_.advance(at_, leg_.length()));
+    if (next_gate_ == no_gate) {
+      constexpr S negligible = S(1e5) * std::numeric_limits<S>::epsilon();  // mm/s
+      if (end.velocity > negligible && road_.ring.holds(at_.block)) return brake(at_, end, true);
+      return rest(), false;
+    }
+    if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
+    const bool plans = may_plan && more_ && !settled_behind(next_gate_);
+    if (plans && plan_from(at_, memory_.gates[next_gate_].speed))
+      adopt(at_);
+    else
+      begin_span(next_gate_);
+    return plans;
   }
 
   // Whether the span behind a gate ends where nothing that comes can change it.
@@ -380,71 +353,41 @@ class BasicPlayer {
     return memory_.gates[gate].settled;
   }
 
-  // The leg is over: the next one, or rest. False at rest.
-  bool next_leg() {
-    if (idle_) return false;
-    here_ = advance(here_, leg_length_);
-    time_ = duration_ = S(0);
-    if (next_gate_ != no_gate && next_gate_ + 1 < gate_count_) {
-      snap();
-      if (extended_ && !settled_behind(next_gate_) && plan_from(here_, memory_.gates[next_gate_].speed)) {
-        adopt();
-        return !idle_;
-      }
-      return begin_span(next_gate_);
+  // The plan ends here, at a joint.
+  void rest_as_planned() {
+    const std::int64_t done = at_.block - road_.direction;
+    const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;
+    BasicRequests<S>& asked = road_.asked;
+    if (block != nullptr && road_.direction > 0) wait_ = block->caps.pause;
+    if (asked.single_step || (asked.optional_stops && block != nullptr && block->optional_stop))
+      asked.held = true;
+    if (road_.pauses_before(at_.block, block != nullptr ? block->line : 0)) {
+      asked.held = true;
+      road_.passed_pause = at_.block;
     }
-    const bool planned_end = next_gate_ != no_gate;
+    rest();
+  }
+
+  void rest() {
+    leg_ = {};
+    leg_settled_ = true;
     idle_ = true;
-    if (!planned_end) return pending_ = may_run(), false;
-    snap();
-    const std::int64_t done = here_.block - direction_;
-    if (in_memory(done) && direction_ > 0) wait_ = ring_[done].caps.pause;
-    if (single_step_ || (optional_stops_ && in_memory(done) && ring_[done].optional_stop)) held_ = true;
-    if (pause_line_ > 0 && in_memory(here_.block) && ring_[here_.block].line == pause_line_) {
-      held_ = true;
-      passed_pause_ = here_.block;
-    }
-    if (!held_ && plan_from(here_, S(0))) adopt();
-    return !idle_ || wait_ > S(0);
+    pending_ = !road_.asked.held;
   }
 
-  // A knot lies on a joint: takes rounding out of the spot.
-  void snap() {
-    constexpr S near = S(1e-9);
-    if (!in_memory(here_.block)) return;
-    if (here_.along > length(here_.block) - near)
-      here_ = {here_.block + direction_, S(0)};
-    else if (here_.along < near)
-      here_.along = S(0);
-  }
-
-  static constexpr auto solver = [](const BasicLimits<S>& limits) {
-    return profile::seven_phase_solver(limits);
-  };
-
-  BlockRing<S> ring_;
   BasicPlayerMemory<S> memory_;
+  BasicRoad<S> road_;
   std::int64_t keep_behind_;
-  BasicSpot<S> here_;  // where the leg starts, or the machine rests
-  std::array<BasicPhase<S>, profile::BasicProfile<S>::phase_count> phases_{};
-  S duration_{};
-  S leg_length_{};
-  S time_{};
-  S wait_{};
+  BasicSpot<S> at_;  // where the leg started, seen from the block the machine is in; at rest, where that is
+  BasicLeg<S> leg_;
   std::size_t gate_count_ = 0;
   std::size_t spare_count_ = 0;
   std::size_t next_gate_ = no_gate;
-  int direction_ = 1;
-  int wanted_direction_ = 1;
-  S feed_share_ = S(1);
-  S rapid_share_ = S(1);
-  int pause_line_ = 0;
-  std::int64_t passed_pause_ = -1;
-  bool held_ = false;
-  bool single_step_ = false;
-  bool optional_stops_ = false;
+  S wait_{};                  // s of a dwell that are left
+  S rested_{};                // s
   bool pending_ = false;      // a request has not been met yet
-  bool extended_ = false;     // blocks have come that the plan does not know
+  bool more_ = false;         // there are blocks that the plan does not know
+  bool spare_whole_ = false;  // the plan in the spare gates knows all
   bool leg_settled_ = false;  // what comes cannot change where the leg ends
   bool idle_ = true;
 };

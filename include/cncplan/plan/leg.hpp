@@ -1,0 +1,68 @@
+// A stretch of motion that is being driven: where it is now, at the cost of one phase.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <span>
+
+#include "cncplan/core/phase.hpp"
+#include "cncplan/profile/profile.hpp"
+
+namespace cncplan::plan {
+
+/// Phases that follow each other, and a time within them that only grows. Phases of no duration are left out.
+template <std::floating_point S>
+class BasicLeg {
+ public:
+  static constexpr std::size_t most_phases = profile::BasicProfile<S>::phase_count;
+
+  BasicLeg() = default;
+  explicit BasicLeg(const profile::BasicProfile<S>& profile)
+      : duration_(profile.duration()), length_(profile.length()) {
+    const auto phases = profile.phases();
+    turn_ = phases[4].time;
+    for (const BasicPhase<S>& phase : phases) append(phase);
+  }
+  /// At most `most_phases`, each with the time at which it starts, and the length of them all.
+  BasicLeg(std::span<const BasicPhase<S>> phases, S length) : length_(length) {
+    for (const BasicPhase<S>& phase : phases) append(phase);
+    if (count_ > 0) duration_ = phases_[count_ - 1].time + phases_[count_ - 1].duration;
+  }
+
+  [[nodiscard]] S length() const { return length_; }
+  /// Seconds to its end.
+  [[nodiscard]] S left() const { return duration_ - time_; }
+  /// Seconds until a profile leaves its top speed; negative behind that.
+  [[nodiscard]] S to_turn() const { return turn_ - time_; }
+  /// Seconds to the end of the phase.
+  [[nodiscard]] S to_edge() const { return phase_ + 1 < count_ ? phases_[phase_ + 1].time - time_ : left(); }
+
+  void advance(S seconds) {
+    time_ += seconds;
+    while (phase_ + 1 < count_ && time_ >= phases_[phase_ + 1].time) ++phase_;
+  }
+
+  [[nodiscard]] BasicState<S> state() const {
+    const BasicPhase<S>& phase = phases_[phase_];
+    BasicState<S> now = phase.at(std::clamp(time_ - phase.time, S(0), phase.duration));
+    now.velocity = std::max(now.velocity, S(0));  // rounding, where it comes to rest
+    return now;
+  }
+
+ private:
+  void append(const BasicPhase<S>& phase) {
+    if (phase.duration > S(0)) phases_[count_++] = phase;
+  }
+
+  std::array<BasicPhase<S>, most_phases> phases_{};
+  std::size_t count_ = 0;
+  std::size_t phase_ = 0;
+  S time_{};
+  S duration_{};
+  S turn_{};
+  S length_{};
+};
+
+}  // namespace cncplan::plan

@@ -1,0 +1,79 @@
+// From any state of motion to a speed, over the blocks that lie ahead.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <optional>
+
+#include "cncplan/plan/road.hpp"
+#include "cncplan/profile/from_state.hpp"
+
+namespace cncplan::plan {
+
+namespace detail {
+
+// The profile of a ramp alone.
+template <std::floating_point S>
+[[nodiscard]] profile::BasicProfile<S> ramp_profile(const profile::BasicStartState<S>& start, S target,
+                                                    const BasicLimits<S>& limits) {
+  const profile::BasicRamp<S> ramp = profile::ramp_from(start, target, limits);
+  return profile::BasicProfile<S>({.length = profile::distance(start, ramp),
+                                   .start_velocity = start.velocity,
+                                   .start_acceleration = start.acceleration,
+                                   .top_velocity = target,
+                                   .end_velocity = target,
+                                   .cruise = S(0),
+                                   .up = ramp,
+                                   .down = {}});
+}
+
+}  // namespace detail
+
+/// The ramp from the state at a spot to a speed with zero acceleration, under the lowest limits of all blocks
+/// that it touches. Nothing where a cap ahead forbids it, or the state is beyond these limits.
+template <std::floating_point S>
+[[nodiscard]] std::optional<profile::BasicProfile<S>> ramp_ahead(const BasicRoad<S>& road,
+                                                                 const BasicSpot<S>& from,
+                                                                 const BasicState<S>& now, S target) {
+  const profile::BasicStartState<S> start{now.velocity, now.acceleration};
+  BasicLimits<S> limits = road.ring[from.block].caps.limits;
+  constexpr int rounds = 4;
+  for (int round = 0; round < rounds; ++round) {
+    if (std::abs(now.acceleration) > limits.acceleration * (S(1) + S(1e-9))) return {};
+    const S settled = profile::settled_speed(start, limits);
+    if (settled < -S(1e-9)) return {};
+    const profile::BasicProfile<S> ramp = detail::ramp_profile(start, target, limits);
+    const S whole = ramp.length();
+    const bool crests = now.acceleration > S(0) && target < settled;  // goes above both speeds
+    const BasicState<S> crest = crests ? ramp.at(now.acceleration / limits.jerk) : BasicState<S>{S(-1)};
+    const S fastest = std::max({now.velocity, target, crest.velocity});
+    constexpr S tolerance = S(1) + S(1e-12);
+    BasicLimits<S> touched = limits;
+    BasicSpot<S> at = from;
+    S position = S(0);
+    S speed = now.velocity;
+    for (S until = road.ring.length(at.block) - at.along;; until += road.ring.length(at.block)) {
+      const BasicLimits<S>& there = road.ring[at.block].caps.limits;
+      touched.acceleration = std::min(touched.acceleration, there.acceleration);
+      touched.jerk = std::min(touched.jerk, there.jerk);
+      const bool last = !(until < whole);
+      const S next_speed = last ? target : ramp.at(ramp.time_at(until)).velocity;
+      const bool crest_here = crest.position >= position && crest.position <= until;
+      const S highest = crest_here ? crest.velocity : std::max(speed, next_speed);
+      const S allowed = std::max(there.velocity, at.block == from.block ? now.velocity : S(0));
+      if (fastest > allowed * tolerance && highest > allowed * tolerance) return {};
+      if (last) break;
+      if (!road.ring.holds(at.block + road.direction) || road.stops_behind(at.block, from.block)) return {};
+      at.block += road.direction;
+      if (next_speed > road.joint_cap(at.block) * tolerance) return {};
+      position = until;
+      speed = next_speed;
+    }
+    if (touched == limits) return ramp;
+    limits = touched;
+  }
+  return {};
+}
+
+}  // namespace cncplan::plan

@@ -1,0 +1,144 @@
+// The path ahead of a machine as it is asked to run it: in which direction, how fast, with which stops.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "cncplan/plan/course.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+
+namespace cncplan::plan {
+
+/// What is asked of a machine that runs, and stands until something else is asked.
+template <std::floating_point S>
+struct BasicRequests {
+  S feed_share = S(1);
+  S rapid_share = S(1);
+  int direction = 1;  ///< -1 backwards
+  int pause_line{};   ///< 0: none
+  bool held{};
+  bool stopped{};  ///< for good
+  bool single_step{};
+  bool optional_stops{};
+};
+
+/// Blocks ahead of a spot, for planning.
+struct Course {
+  std::size_t blocks{};
+  bool whole{};  ///< up to where the motion has to rest, or the blocks end
+};
+
+/// Blocks in memory, seen in the direction of travel.
+template <std::floating_point S>
+class BasicRoad {
+ public:
+  using Block = BasicPlayedBlock<S>;
+  using Spot = BasicSpot<S>;
+
+  explicit BasicRoad(std::span<Block> memory) : ring(memory) {}
+
+  BlockRing<S> ring;
+  BasicRequests<S> asked;
+  int direction = 1;
+  std::int64_t passed_pause = -1;  ///< the block before which a pause has been made already
+
+  /// The speed that a block is asked to run at; 0 where it is held.
+  [[nodiscard]] S wanted_speed(std::int64_t block) const {
+    const Block& b = ring[block];
+    return std::min((b.rapid ? asked.rapid_share : asked.feed_share) * b.feed, b.caps.limits.velocity);
+  }
+
+  /// Whether it has to be at rest in this block of its own accord.
+  [[nodiscard]] bool must_rest(std::int64_t block) const {
+    return asked.held || asked.stopped || asked.direction != direction || !(wanted_speed(block) > S(0));
+  }
+
+  /// Whether the motion that begins in block `first` rests behind a block.
+  [[nodiscard]] bool stops_behind(std::int64_t block, std::int64_t first) const {
+    const Block& b = ring[block];
+    return b.caps.pause > S(0) || (asked.single_step && block >= first) ||
+           (asked.optional_stops && b.optional_stop) || pauses_before(block + 1, b.line);
+  }
+
+  /// Whether a pause at its line is to be made before a block, which lies behind one of the given line.
+  [[nodiscard]] bool pauses_before(std::int64_t block, int line_before) const {
+    return direction > 0 && asked.pause_line > 0 && ring.holds(block) &&
+           ring[block].line == asked.pause_line && line_before != asked.pause_line && block != passed_pause;
+  }
+
+  /// Highest speed at the joint between a block and the one behind it.
+  [[nodiscard]] S joint_cap(std::int64_t block) const {
+    return direction > 0 ? ring[block].caps.entry : ring[block + 1].caps.entry;
+  }
+
+  /// A spot so much farther on; `along` is below the block's length but where no block follows.
+  [[nodiscard]] Spot advance(Spot from, S distance) const {
+    from.along += distance;
+    while (ring.holds(from.block) && from.along >= ring.length(from.block) &&
+           ring.holds(from.block + direction)) {
+      from.along -= ring.length(from.block);
+      from.block += direction;
+    }
+    return from;
+  }
+
+  /// A spot that is a joint but for rounding, at the joint.
+  [[nodiscard]] Spot snapped(Spot spot) const {
+    constexpr S near = S(1e-9);
+    if (!ring.holds(spot.block)) return spot;
+    if (spot.along > ring.length(spot.block) - near) return {spot.block + direction, S(0)};
+    return {spot.block, spot.along < near ? S(0) : spot.along};
+  }
+
+  /// The same spot with the direction that is asked for.
+  [[nodiscard]] Spot turned_round(Spot spot) {
+    if (asked.direction == direction) return spot;
+    direction = asked.direction;
+    if (!ring.holds(spot.block)) return {spot.block + direction, S(0)};
+    return {spot.block, ring.length(spot.block) - spot.along};
+  }
+
+  /// The blocks from a spot on that is passed at `speed`, as far as they matter.
+  Course course(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
+    Course course{0, true};
+    Horizon<S> horizon;
+    for (Spot at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
+      if (course.blocks == out.size() || horizon.reached()) return {course.blocks, false};
+      const bool first = course.blocks == 0;
+      BasicBlockCaps<S> caps = ring[at.block].caps;
+      caps.length = std::max(caps.length - at.along, S(0));
+      caps.limits.velocity = std::max(wanted_speed(at.block), first ? speed : S(0));
+      if (!(caps.limits.velocity > S(0))) return course;
+      caps.entry = first ? speed : joint_cap(at.block);
+      out[course.blocks++] = caps;
+      if (stops_behind(at.block, from.block)) return course;
+      horizon.take(caps.limits, caps.length);
+    }
+    return course;
+  }
+
+  /// The stretches of equal limits from a spot on, as far as it takes to come to rest from `speed`; how many.
+  std::size_t stretches(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
+    std::size_t count = 0;
+    Horizon<S> horizon;
+    for (Spot at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
+      BasicLimits<S> limits = ring[at.block].caps.limits;
+      const S length = std::max(ring.length(at.block) - at.along, S(0));
+      horizon.take({speed, limits.acceleration, limits.jerk}, length);
+      limits.velocity = S(1);  // plays no part
+      if (count > 0 && out[count - 1].limits == limits)
+        out[count - 1].length += length;
+      else if (count < out.size())
+        out[count++] = {length, S(0), limits, S(0)};
+      else
+        break;
+    }
+    return count;
+  }
+};
+
+}  // namespace cncplan::plan
