@@ -29,6 +29,7 @@ class Samples {
   using Sample = BasicSample<Scalar, typename P::Vector>;
   using Points = PointsN<Scalar, P::Vector::RowsAtCompileTime>;
 
+  /// Yields the sample of one grid time after the other.
   class Iterator {
    public:
     using iterator_concept = std::input_iterator_tag;

@@ -7,6 +7,7 @@
 
 namespace cncplan::interpolate {
 
+/// Where the motion is at one time, along the path and in space.
 template <std::floating_point S, class Vector>
 struct BasicSample {
   S time{};             ///< s

@@ -24,6 +24,7 @@ class Stepped {
   using Scalar = typename P::Scalar;
   using Sample = BasicSample<Scalar, typename P::Vector>;
 
+  /// Yields one point after the other; each rests on the one before it.
   class Iterator {
    public:
     using iterator_concept = std::input_iterator_tag;

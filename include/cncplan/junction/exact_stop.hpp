@@ -5,6 +5,7 @@
 
 namespace cncplan::junction {
 
+/// The policy that stops at every joint.
 struct ExactStop {
   template <std::floating_point S>
   [[nodiscard]] constexpr S speed_sq(const BasicGeometry<S>&) const {

@@ -19,12 +19,14 @@
 
 namespace cncplan::kinematics {
 
+/// A straight line of a drawing, mm.
 template <std::floating_point S>
 struct BasicDrawnLine {
   BasicVector2<S> start = BasicVector2<S>::Zero();
   BasicVector2<S> end = BasicVector2<S>::Zero();
 };
 
+/// A circular arc of a drawing, mm.
 template <std::floating_point S>
 struct BasicDrawnArc {
   BasicVector2<S> center = BasicVector2<S>::Zero();
@@ -62,6 +64,7 @@ struct BasicProfileChain {
 
 using ProfileChain = BasicProfileChain<double>;
 
+/// How a chain is put together.
 struct ChainOptions {
   double tolerance = 0.001;  ///< mm, >= 0: ends as near as this are one point
   bool reverse = false;      ///< from the last point to the first
