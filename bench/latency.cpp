@@ -1,21 +1,19 @@
 // The time of single calls, not of many at once: median, 99.9 % and maximum over ten million random inputs.
 //   cncplan_latency [COUNT]
-#include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/from_state.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "latencies.hpp"
 #include "support/profile_oracle.hpp"
 
 namespace {
 
 using namespace cncplan;
-using Clock = std::chrono::steady_clock;
+using bench::keep;
 
 // Calls `work` with one random case after another, and prints how long the calls took.
 template <class Work>
@@ -24,26 +22,15 @@ void measure(const char* name, std::size_t count, const Work& work) {
   test::Random random;
   std::vector<test::ProfileCase> drawn;
   while (drawn.size() < cases) drawn.push_back(test::draw(random));
-  std::vector<float> times(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto start = Clock::now();
-    work(drawn[(i * 2654435761U) % cases]);
-    times[i] = std::chrono::duration<float, std::nano>(Clock::now() - start).count();
-  }
-  const auto at = [&](double share) {
-    const auto nth = times.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count - 1));
-    std::nth_element(times.begin(), nth, times.end());
-    return static_cast<double>(*nth);
-  };
-  std::printf("%-24s median %6.0f ns   99.9 %% %6.0f ns   maximum %8.0f ns\n", name, at(0.5), at(0.999),
-              at(1.0));
+  bench::Latencies latencies(count);
+  for (std::size_t i = 0; i < count; ++i) latencies.time([&] { work(drawn[(i * 2654435761U) % cases]); });
+  latencies.print(name);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 10'000'000;
-  const auto keep = [](const auto& value) { asm volatile("" : : "r"(&value) : "memory"); };
   measure("nothing (the clock)", count, [&](const test::ProfileCase& c) { keep(c); });
   measure("five_phase", count,
           [&](const test::ProfileCase& c) { keep(profile::five_phase(c.length, c.speeds, c.limits)); });

@@ -1,19 +1,13 @@
 // Planning whole programs, and all of the way from a program's text to its samples.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "../examples/generate/programs.hpp"
+#include "ball.hpp"
 #include "buffer.hpp"
-#include "cncplan/gcode/program.hpp"
 #include "cncplan/junction/deviation.hpp"
-#include "cncplan/plan/program.hpp"
 #include "cncplan/plan/sampler.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/plan/stream_planner.hpp"
@@ -22,21 +16,7 @@
 namespace {
 
 using namespace cncplan;
-
-constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
-
-// The program that CNCPLAN_BALL names; else a sphere finished in 35000 short moves.
-const std::string& ball() {
-  static const std::string text = [] {
-    std::ostringstream stream;
-    if (const char* name = std::getenv("CNCPLAN_BALL"); name != nullptr && *name != '\0')
-      stream << std::ifstream(name).rdbuf();
-    else
-      generate::write(stream, generate::Kind::finishing);
-    return stream.str();
-  }();
-  return text;
-}
+using bench::ball;
 
 // Everything between text and samples; cleared and filled again, so that only the first round asks for
 // memory.
@@ -47,20 +27,7 @@ struct Job {
   std::vector<plan::Gate> gates;
   std::vector<plan::Span> spans;
 
-  bool read(const std::string& text) {
-    blocks.clear();
-    gcode::Reader reader;
-    bool made = true;
-    const auto done = gcode::read_program(gcode::TextLines(text), reader, [&](const gcode::Item& item) {
-      if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
-        const auto block = plan::block(*motion, limits, limits.velocity);
-        if (block) blocks.push_back(*block);
-        made = block.has_value();
-      }
-      return made;
-    });
-    return done && made && !blocks.empty();
-  }
+  bool read(const std::string& text) { return bench::read_blocks(text, blocks); }
 
   bool plan() {
     caps.clear();
