@@ -87,6 +87,7 @@
 #include "cncplan/plan/player.hpp"
 #include "cncplan/plan/polar_guide.hpp"
 #include "cncplan/plan/program.hpp"
+#include "cncplan/plan/queue.hpp"
 #include "cncplan/plan/radius.hpp"
 #include "cncplan/plan/ramp_ahead.hpp"
 #include "cncplan/plan/road.hpp"
