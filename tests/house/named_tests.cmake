@@ -1,0 +1,28 @@
+# That the tests a page names are there: each "Name" that follows `tests/ROOM/FILE.cpp` in PAGE is a test case of that file.
+#   cmake -DPAGE=docs/mathematics.md -DROOT=. -P named_tests.cmake
+cmake_minimum_required(VERSION 3.22)
+
+file(READ ${PAGE} text)
+string(REPLACE ";" "," text "${text}")
+string(REGEX REPLACE "[ \n]+" " " text "${text}")
+string(REGEX MATCHALL "`tests/[a-z0-9_/]+\\.cpp`( \"[^\"]+\",?)+" references "${text}")
+set(count 0)
+foreach(reference IN LISTS references)
+  string(REGEX MATCH "tests/[a-z0-9_/]+\\.cpp" file "${reference}")
+  file(READ ${ROOT}/${file} source)
+  string(REPLACE ";" "," source "${source}")
+  string(REGEX REPLACE "\"[ \n]+\"" "" source "${source}")  # a name on two lines
+  string(REGEX REPLACE "\\([ \n]+\"" "(\"" source "${source}")
+  string(REGEX MATCHALL "\"[^\"]+\"" names "${reference}")
+  foreach(name IN LISTS names)
+    string(FIND "${source}" "(${name}" place)
+    if(place EQUAL -1)
+      message(FATAL_ERROR "${PAGE} names a test that ${file} does not have: ${name}")
+    endif()
+    math(EXPR count "${count} + 1")
+  endforeach()
+endforeach()
+if(count EQUAL 0)
+  message(FATAL_ERROR "${PAGE} names no test")
+endif()
+message(STATUS "${PAGE}: ${count} tests, all there")
