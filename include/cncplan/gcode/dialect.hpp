@@ -1,6 +1,7 @@
 // What a machine brings to the reading of a program: its axes, tables and words of its own (set-up).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -86,9 +87,7 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
     if (passed.letter < 'A' || passed.letter > 'Z')
       return fail(ErrorCode::unknown_character, "word to pass through");
   const auto finite = [](const Position& position) {
-    for (const double coordinate : position)
-      if (!std::isfinite(coordinate)) return false;
-    return true;
+    return std::all_of(position.begin(), position.end(), [](double x) { return std::isfinite(x); });
   };
   if (!finite(dialect.home_g28)) return fail(ErrorCode::not_finite, "home position of G28");
   if (!finite(dialect.home_g30)) return fail(ErrorCode::not_finite, "home position of G30");

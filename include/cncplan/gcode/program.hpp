@@ -26,9 +26,9 @@ concept ItemSink = std::invocable<F&, const Item&> &&
 ///     gcode::read_program(gcode::TextLines(text), reader, [&](const gcode::Item& item) {
 ///     items.push_back(item); });
 template <class Lines, ItemSink Sink>
-  requires LineSource<std::remove_cvref_t<Lines>> Expected<void, Diagnostic> read_program(Lines&& lines,
-                                                                                          Reader& reader,
-                                                                                          Sink&& sink) {
+  requires LineSource<std::remove_reference_t<Lines>> Expected<void, Diagnostic> read_program(Lines&& lines,
+                                                                                              Reader& reader,
+                                                                                              Sink&& sink) {
     std::array<Item, max_items_per_line> items;
     while (!reader.finished()) {
       const auto line = lines.next();

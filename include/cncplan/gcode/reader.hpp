@@ -299,7 +299,8 @@ class Reader {
   /// G54 to G59 are 540, 550 ... 590; G59.1 to G59.3 are 591 to 593.
   void select_work_system() {
     const int tenths = block_.code(Group::coordinates);
-    work_system_ = static_cast<std::size_t>((tenths - code(54)) / 10 + tenths % 10);
+    const int place = (tenths - code(54)) / 10 + tenths % 10;
+    work_system_ = static_cast<std::size_t>(place);
     update_offset();
   }
 

@@ -179,12 +179,9 @@ using Check = Expected<void, Diagnostic>;
       return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
                       block.code(taker) / 10.0);
     if (!homes && axis_words == 0) return missing("axis", block.column(taker));
-  } else if (requested != no_code) {
-    motion = modal.motion;
-  } else if (axis_words != 0) {
-    if (modal.motion == no_code) return missing("G0, G1, G2 or G3", block.first_column(axis_words));
-    motion = modal.motion;
-  } else if (center_words != 0 && is_arc(modal.motion)) {
+  } else if (requested == no_code && axis_words != 0 && modal.motion == no_code) {
+    return missing("G0, G1, G2 or G3", block.first_column(axis_words));
+  } else if (requested != no_code || axis_words != 0 || (center_words != 0 && is_arc(modal.motion))) {
     motion = modal.motion;
   }
   const int column =

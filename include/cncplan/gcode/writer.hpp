@@ -61,7 +61,7 @@ template <std::invocable<double> Read>
 class Writer {
  public:
   /// For readers of the same dialect.
-  explicit Writer(const Dialect& dialect = {}) : dialect_(dialect) {
+  explicit Writer(Dialect dialect = {}) : dialect_(std::move(dialect)) {
     // A system with its origin at the machine's leaves the offset to G43.1 alone, and so exact.
     const auto& systems = dialect_.work_offsets;
     const auto zero = std::find(systems.begin(), systems.end(), Position{});

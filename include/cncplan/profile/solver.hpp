@@ -82,8 +82,8 @@ class BasicSolver {
  private:
   // The rest of the length is a cruise, reckoned with the ramps as they are rounded, so that all phases
   // together end where they should.
-  Expected<BasicProfile<S>> assemble(S length, const BasicBoundarySpeeds<S>& speeds,
-                                     const detail::Peak<S>& peak) const {
+  [[nodiscard]] Expected<BasicProfile<S>> assemble(S length, const BasicBoundarySpeeds<S>& speeds,
+                                                   const detail::Peak<S>& peak) const {
     const bool rising = speeds.start <= speeds.end;
     const S top = std::max(speeds.start, speeds.end) + peak.from_high * peak.from_high;
     const BasicRamp<S> up = law_.ramp(rising ? peak.from_low : peak.from_high, top - speeds.start);

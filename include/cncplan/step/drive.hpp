@@ -40,8 +40,8 @@ template <std::floating_point S>
   struct Field {
     std::string_view name;
     S value;
-    bool positive;
-    bool finite;
+    bool positive{};
+    bool finite{};
   };
   const std::array<Field, 7> fields{{{"steps per unit", drive.steps_per_unit, true, true},
                                      {"pulse high time", drive.high_time, false, true},
