@@ -1,7 +1,5 @@
 #include "machine.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -25,14 +23,6 @@ Limits limits_along(const Machine& machine, const plan::Block& block) {
     limits.jerk = std::min(limits.jerk, axis.jerk / share);
   }
   return limits;
-}
-
-std::string beyond_travel(const Machine& machine, std::size_t axis, double place) {
-  // where a mill has no Z, it has no travel
-  const MachineAxis it =
-      axis < machine.axes.size() ? machine.axes[axis] : MachineAxis{.letter = 'Z', .low = 0.0, .high = 0.0};
-  return fmt::format("axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}", it.letter,
-                     place / it.unit(), it.low, it.high);
 }
 
 }  // namespace simulate

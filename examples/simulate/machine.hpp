@@ -1,8 +1,6 @@
 // What the machine asks of a program's motions.
 #pragma once
 
-#include <string>
-
 #include "cncplan/cncplan.hpp"
 #include "support/machine_file.hpp"
 
@@ -14,8 +12,5 @@ using support::MachineAxis;
 
 /// A block's limits on a mill, lowered so that no axis breaks its own.
 [[nodiscard]] cncplan::Limits limits_along(const Machine& machine, const cncplan::plan::Block& block);
-
-/// Says that an axis would leave its travel; its place in mm or rad.
-[[nodiscard]] std::string beyond_travel(const Machine& machine, std::size_t axis, double place);
 
 }  // namespace simulate

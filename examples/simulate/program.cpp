@@ -120,15 +120,16 @@ class Builder {
   template <int N>
   void check_travel(const gcode::Motion& motion, const VectorN<double, N>& low,
                     const VectorN<double, N>& high) const {
-    const auto limits = machine_.joint_limits<N>();
     for (std::size_t i = 0; i < N; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      const bool there = i < machine_.axes.size();
-      const double lowest = there ? limits.low[k] : 0.0, highest = there ? limits.high[k] : 0.0;
+      const MachineAxis axis = i < machine_.axes.size()
+                                   ? machine_.axes[i]
+                                   : MachineAxis{.letter = "XYZ"[i], .low = 0.0, .high = 0.0};
+      const double lowest = axis.low * axis.unit(), highest = axis.high * axis.unit();
       if (low[k] >= lowest && high[k] <= highest) continue;
       const double beyond = low[k] < lowest ? low[k] : high[k];
       throw Failure(Exit::bad_input, fmt::format("{}:{}:{}: error: {}", program_.file, motion.line,
-                                                 motion.column, beyond_travel(machine_, i, beyond)));
+                                                 motion.column, support::beyond_travel(axis, beyond)));
     }
   }
 

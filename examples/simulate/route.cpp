@@ -27,7 +27,8 @@ void check_travel(const Program& program, const Machine& machine, const Piece<Po
     for (double u = 0.0;; u = traced.next_turning(axis, u)) {
       const double place = piece.path.position(u)[axis];
       if (!(place >= limits.low[axis] && place <= limits.high[axis]))
-        refuse(program, piece.block, beyond_travel(machine, static_cast<std::size_t>(axis), place));
+        refuse(program, piece.block,
+               support::beyond_travel(machine.axes[static_cast<std::size_t>(axis)], place));
       if (!(u < piece.path.parameter_end())) break;
     }
 }

@@ -267,6 +267,11 @@ Machine interpret(const std::string& file, const toml::table& root) {
 
 }  // namespace
 
+std::string beyond_travel(const MachineAxis& axis, double place) {
+  return fmt::format("axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}", axis.letter,
+                     place / axis.unit(), axis.low, axis.high);
+}
+
 Machine read_machine(const std::string& file) {
   if (std::filesystem::is_directory(file))
     throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));

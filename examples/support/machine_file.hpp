@@ -26,6 +26,9 @@ struct MachineAxis {
   [[nodiscard]] double unit() const { return rotary ? std::numbers::pi / 180.0 : 1.0; }
 };
 
+/// Says that an axis would leave its travel; its place in mm or rad.
+[[nodiscard]] std::string beyond_travel(const MachineAxis& axis, double place);
+
 /// What moves the tool.
 enum class Kinematics {
   cartesian,  ///< X, Y and maybe Z

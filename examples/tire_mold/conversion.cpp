@@ -52,7 +52,8 @@ class Converter {
         sidewall_(sidewall),
         machine_(machine),
         options_(options),
-        guide_(sidewall, machine.smallest_radius) {}
+        guide_(sidewall, smallest_radius(machine)),
+        limits_(machine.joint_limits<4>()) {}
 
   Conversion run() {
     for (index_ = 0; index_ < artwork_.lines.size(); ++index_) write(artwork_.lines[index_]);
@@ -152,7 +153,7 @@ class Converter {
 
   void add(const Move& move, const Joints& joints, std::vector<Joints>& rows) {
     static constexpr std::string_view names[4] = {"radial", "vertical", "tilting", "table"};
-    if (const auto ok = within_travel(joints, machine_.limits, names); !ok) refuse_travel(move, joints);
+    if (const auto ok = within_travel(joints, limits_, names); !ok) refuse_travel(move, joints);
     rows.push_back(joints);
     here_ = joints;
   }
@@ -160,13 +161,11 @@ class Converter {
   [[noreturn]] void refuse_travel(const Move& move, const Joints& joints) const {
     for (std::size_t i = 0; i < 4; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      if (joints[k] >= machine_.limits.low[k] && joints[k] <= machine_.limits.high[k]) continue;
-      throw support::Failure(
-          support::Exit::bad_input,
-          fmt::format("{}:{}:{}: error: axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}",
-                      artwork_.file, index_ + 1, move.column, machine_.letters[i],
-                      machine_.shown(i, joints[k]), machine_.shown(i, machine_.limits.low[k]),
-                      machine_.shown(i, machine_.limits.high[k])));
+      if (joints[k] >= limits_.low[k] && joints[k] <= limits_.high[k]) continue;
+      const support::MachineAxis& axis = machine_.axes[i];
+      throw support::Failure(support::Exit::bad_input,
+                             fmt::format("{}:{}:{}: error: {}", artwork_.file, index_ + 1, move.column,
+                                         support::beyond_travel(axis, joints[k])));
     }
     throw support::Failure(support::Exit::bad_input, "a joint is not a number");
   }
@@ -178,7 +177,7 @@ class Converter {
           fmt::format("{:.{}f}", machine_.shown(i, joints[static_cast<Eigen::Index>(i)]), options_.decimals);
       if (number.starts_with('-') && number.find_first_of("123456789") == std::string::npos)
         number.erase(0, 1);
-      text += fmt::format("{}{}{}", i == 0 ? "" : " ", machine_.letters[i], number);
+      text += fmt::format("{}{}{}", i == 0 ? "" : " ", machine_.axes[i].letter, number);
     }
     return text;
   }
@@ -241,6 +240,7 @@ class Converter {
   const Machine& machine_;
   const Options& options_;
   plan::SidewallGuide guide_;
+  BasicJointLimits<double, 4> limits_;
   std::size_t index_ = 0;
   std::optional<Joints> here_;
   bool inches_ = false;

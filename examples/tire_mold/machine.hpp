@@ -1,7 +1,6 @@
-// The 4-axis machine: what its file says, in the units of the library.
+// The four-axis machine that runs the program.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 
@@ -9,20 +8,15 @@
 
 namespace tire_mold {
 
-/// Axes in the order of the joints R, Z, A, C.
-struct Machine {
-  std::array<char, 4> letters{'R', 'Z', 'A', 'C'};
-  std::array<bool, 4> rotary{false, false, true, true};
-  cncplan::BasicJointLimits<double, 4> limits;  ///< mm, rad, s
-  std::array<double, 4> steps_per_unit{};       ///< per mm and per rad
-  std::array<double, 4> pulse_width{};          ///< s
-  double rapid_rate = 1000.0;                   ///< mm/s of the tool's tip
-  double smallest_radius = 1.0;                 ///< mm
-  cncplan::gcode::Dialect artwork;              ///< X, Y, Z, and the words that pass through
+using support::Machine;
 
-  /// In mm or degrees.
-  [[nodiscard]] double shown(std::size_t axis, double joint) const;
-};
+/// The fastest that the tool's tip goes, mm/s.
+[[nodiscard]] double rapid_rate(const Machine& machine);
+/// Nothing nearer to the table's axis is driven, mm.
+[[nodiscard]] double smallest_radius(const Machine& machine);
+
+/// Flat programs name X, Y and Z, and the words that pass through.
+[[nodiscard]] cncplan::gcode::Dialect artwork_dialect(const Machine& machine);
 
 /// Reads a machine file, or gives the machine of the thesis. Throws `Failure`.
 [[nodiscard]] Machine machine_of(const std::optional<std::string>& file);

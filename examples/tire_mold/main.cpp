@@ -33,10 +33,11 @@ int run(const Options& options) {
   const Machine machine = machine_of(options.machine);
   const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse});
   const cncplan::kinematics::Sidewall sidewall(chain.pieces, options.start_radius, options.tool_length);
-  const Artwork artwork = read_artwork(options.artwork, machine.artwork);
+  const Artwork artwork = read_artwork(options.artwork, artwork_dialect(machine));
   const Conversion conversion = convert(artwork, sidewall, machine, options);
   const Motion motion = plan_motion(artwork, sidewall, machine, options);
-  Measures measures{chain.length(), chain.pieces.size(), axis_peaks(motion), {}, 0};
+  Measures measures{chain.length(), chain.pieces.size(), axis_peaks(motion),
+                    support::StepReports(machine.axes.size()), 0};
 
   if (options.plot) support::make_folder(*options.plot);
 
@@ -48,11 +49,11 @@ int run(const Options& options) {
   std::vector<Sample> drawn;
   if (samples != nullptr) {
     *samples << 't';
-    for (const char letter : machine.letters) *samples << ',' << letter;
+    for (const support::MachineAxis& axis : machine.axes) *samples << ',' << axis.letter;
     *samples << ",s,v,a,j,x,y,z\n";
   }
   if (samples != nullptr || options.plot) {
-    const auto every = static_cast<std::size_t>(motion.duration / options.period) / drawn_points + 1;
+    const auto every = static_cast<std::size_t>(motion.plan.duration / options.period) / drawn_points + 1;
     make_samples(motion, options.period, [&](const Sample& sample) {
       if (samples != nullptr) write_sample(*samples, machine, sample);
       if (options.plot && measures.samples % every == 0) drawn.push_back(sample);
@@ -60,14 +61,11 @@ int run(const Options& options) {
     });
   }
   if (steps != nullptr) {
-    std::vector<cncplan::step::Trace> traces;
-    for (std::size_t i = 0; i < 4; ++i)
-      traces.push_back({std::string(1, machine.letters[i]), machine.pulse_width[i], 0.0});
-    auto vcd = cncplan::step::vcd_writer(*steps, traces);
-    make_steps(motion, machine, [&](const cncplan::step::Edge& edge) {
-      if (!vcd.accept(edge)) throw support::Failure(support::Exit::other, "an edge came out of order");
-      ++measures.steps[static_cast<std::size_t>(edge.axis)];
-    });
+    auto vcd = cncplan::step::vcd_writer(*steps, support::traces_of(machine));
+    measures.steps =
+        make_steps(motion, machine, artwork, options.period, [&](const cncplan::step::Edge& edge) {
+          if (!vcd.accept(edge)) throw support::Failure(support::Exit::other, "an edge came out of order");
+        });
     vcd.finish();
   }
   files.finish();

@@ -10,16 +10,22 @@
 #include "cncplan/cncplan.hpp"
 #include "machine.hpp"
 #include "options.hpp"
+#include "support/axis_motion.hpp"
+#include "support/plan.hpp"
+#include "support/stepping.hpp"
 
 namespace tire_mold {
 
 using Joints = cncplan::VectorN<double, 4>;
 
+using Path = cncplan::plan::MappedPath<cncplan::kinematics::SidewallChart>;
+
+/// None where there is nothing over the mold.
 struct Motion {
-  std::vector<cncplan::plan::MappedBlock<cncplan::kinematics::SidewallChart>> blocks;
-  std::vector<double> lengths;  ///< of each block
-  std::vector<cncplan::plan::Span> spans;
-  double duration = 0.0;
+  std::vector<cncplan::plan::JointBlock<Path>> blocks;
+  support::Plan plan;
+
+  [[nodiscard]] const Path& path(std::size_t block) const { return blocks[block].path; }
 };
 
 struct Sample {
@@ -38,16 +44,13 @@ struct Sample {
 /// Calls `take` at every period, and at the end.
 void make_samples(const Motion& motion, double period, const std::function<void(const Sample&)>& take);
 
-/// Largest speeds and accelerations of the axes, from the path itself at the ends and middles of all phases
-/// in all blocks.
-struct AxisPeaks {
-  Joints velocity = Joints::Zero();
-  Joints acceleration = Joints::Zero();
-};
+/// Largest speeds and accelerations of the axes.
+using AxisPeaks = support::AxisPeaks<Path>;
 [[nodiscard]] AxisPeaks axis_peaks(const Motion& motion);
 
-/// Calls `take` with every step edge, in order of time.
-void make_steps(const Motion& motion, const Machine& machine,
-                const std::function<void(const cncplan::step::Edge&)>& take);
+/// Calls `take` with every step edge, in order of time. Throws `Failure` for a plan that breaks a rule of a
+/// drive.
+support::StepReports make_steps(const Motion& motion, const Machine& machine, const Artwork& artwork,
+                                double period, const std::function<void(const cncplan::step::Edge&)>& take);
 
 }  // namespace tire_mold

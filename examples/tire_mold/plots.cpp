@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "support/gnuplot.hpp"
+#include "support/axes_plot.hpp"
 
 namespace tire_mold {
 
@@ -44,10 +44,7 @@ void write_samples(Gnuplot& plot, const Machine& machine, double tool_length,
     const Vector3 tip = forward.forward(s.joints).position;
     plot("{:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f}", s.time, s.flat[0], s.flat[1], s.flat[2], tip.x(),
          tip.y(), tip.z());
-    for (Eigen::Index i = 0; i < 4; ++i)
-      plot(" {:.6f} {:.6f}", s.velocity[i] / machine.limits.velocity[i],
-           s.acceleration[i] / machine.limits.acceleration[i]);
-    plot("\n");
+    support::put_axis_shares(plot, machine, s.velocity, s.acceleration);
   }
   plot("EOD\n");
 }
@@ -76,18 +73,7 @@ void draw(const std::string& folder, const kinematics::Sidewall& sidewall, const
       "set output 'top.svg'\nset size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
       "plot $samples using ($4>0 ? $5 : NaN):6 with lines linecolor '#cccccc', "
       "$samples using ($4>0 ? NaN : $5):6 with lines linewidth 2 linecolor '#d73027'\n");
-  (*plot)(
-      "set output 'axes.svg'\nset size noratio\nset multiplot layout 4,2\nset ylabel ''\n"
-      "set yrange [-1.1:1.1]\nset arrow 1 from graph 0,first 1 to graph 1,first 1 nohead linecolor "
-      "'#d73027'\nset arrow 2 from graph 0,first -1 to graph 1,first -1 nohead linecolor '#d73027'\n");
-  for (int i = 0; i < 4; ++i)
-    for (int what = 0; what < 2; ++what)
-      (*plot)(
-          "set xlabel '{}'\nset title '{} {} / limit'\nplot $samples using 1:{} with lines linecolor "
-          "'#2166ac'\n",
-          i == 3 ? "t s" : "", machine.letters[static_cast<std::size_t>(i)],
-          what == 0 ? "speed" : "acceleration", 8 + 2 * i + what);
-  (*plot)("unset multiplot\n");
+  support::draw_axes(*plot, machine, 8);
   plot->finish();
 }
 

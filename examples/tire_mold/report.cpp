@@ -29,7 +29,7 @@ Range range(const Conversion& conversion, const Machine& machine, std::size_t ax
 template <class F>
 Json per_axis(const Machine& machine, F&& value) {
   Json object = Json::object();
-  for (std::size_t i = 0; i < 4; ++i) object[std::string(1, machine.letters[i])] = value(i);
+  for (std::size_t i = 0; i < 4; ++i) object[std::string(1, machine.axes[i].letter)] = value(i);
   return object;
 }
 
@@ -47,15 +47,14 @@ std::string json_summary(const Conversion& conversion, const Motion& motion, con
     return Json::array({low, high});
   });
   json["max_chord_error_mm"] = conversion.chord_error;
-  json["time_s"] = motion.duration;
-  const auto peak = [&](const Joints& of) {
-    return per_axis(machine,
-                    [&](std::size_t i) { return machine.shown(i, of[static_cast<Eigen::Index>(i)]); });
-  };
-  json["axis_peak"] = {{"velocity", peak(measures.peaks.velocity)},
-                       {"acceleration", peak(measures.peaks.acceleration)}};
+  json["time_s"] = motion.plan.duration;
+  const AxisPeaks& peaks = measures.peaks;
+  json["axis_peak"] = {
+      {"velocity", per_axis(machine, [&](std::size_t i) { return machine.shown(i, peaks.velocity(i)); })},
+      {"acceleration",
+       per_axis(machine, [&](std::size_t i) { return machine.shown(i, peaks.acceleration(i)); })}};
   json["samples"] = measures.samples;
-  json["steps"] = per_axis(machine, [&](std::size_t i) { return measures.steps[i]; });
+  json["steps"] = per_axis(machine, [&](std::size_t i) { return measures.steps[i].total_steps; });
   return json.dump(2) + "\n";
 }
 
@@ -68,17 +67,16 @@ std::string table_summary(const Conversion& conversion, const Motion& motion, co
   row("points, rows", fmt::format("{}, {}", conversion.points, conversion.rows.size()));
   row("profile", fmt::format("{} entities, {:.4f} mm", measures.entities, measures.profile_length));
   row("largest chord error", fmt::format("{:.4g} mm", conversion.chord_error));
-  row("time", fmt::format("{:.3f} s", motion.duration));
+  row("time", fmt::format("{:.3f} s", motion.plan.duration));
   text += fmt::format("\n{:<6}{:>12}{:>12}{:>12}{:>12}{:>16}{:>12}\n", "axis", "from", "to", "peak /s",
                       "limit /s", "peak /s^2", "limit /s^2");
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
     const auto [low, high] = range(conversion, machine, i);
-    text += fmt::format("{:<6}{:>12.3f}{:>12.3f}{:>12.4g}{:>12.4g}{:>16.4g}{:>12.4g}  {}\n",
-                        machine.letters[i], low, high, machine.shown(i, measures.peaks.velocity[k]),
-                        machine.shown(i, machine.limits.velocity[k]),
-                        machine.shown(i, measures.peaks.acceleration[k]),
-                        machine.shown(i, machine.limits.acceleration[k]), machine.rotary[i] ? "deg" : "mm");
+    const support::MachineAxis& axis = machine.axes[i];
+    text += fmt::format("{:<6}{:>12.3f}{:>12.3f}{:>12.4g}{:>12.4g}{:>16.4g}{:>12.4g}  {}\n", axis.letter, low,
+                        high, machine.shown(i, measures.peaks.velocity(i)), axis.limits.velocity,
+                        machine.shown(i, measures.peaks.acceleration(i)), axis.limits.acceleration,
+                        axis.rotary ? "deg" : "mm");
   }
   return text;
 }

@@ -1,8 +1,6 @@
 // The summary, for people and for programs.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string>
 
 #include "conversion.hpp"
@@ -15,7 +13,7 @@ struct Measures {
   double profile_length = 0.0;
   std::size_t entities = 0;
   AxisPeaks peaks;
-  std::array<std::int64_t, 4> steps{};
+  support::StepReports steps;
   std::size_t samples = 0;
 };
 
