@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <span>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/step/bracket.hpp"
@@ -64,15 +65,32 @@ class TracedPath {
   /// The parameter in [low, high] at which the axis stands at `value`; no turning lies between, and value
   /// lies between the axis' values there.
   [[nodiscard]] Scalar crossing(int axis, Scalar value, Scalar low, Scalar high) const {
+    crossings(axis, std::span(&value, 1), low, high);
+    return value;
+  }
+  /// The same for many values, in the order in which the axis meets them, in place. Each is looked for where
+  /// the two before it lead.
+  void crossings(int axis, std::span<Scalar> values, Scalar low, Scalar high) const {
     const Scalar first = position(low)(axis);
     const Scalar last = position(high)(axis);
     const Scalar sense = last < first ? Scalar(-1) : Scalar(1);
-    if (sense * (value - first) <= Scalar(0)) return low;
-    if (sense * (value - last) >= Scalar(0)) return high;
-    const auto ahead = [&](Scalar x) {
-      return Slope<Scalar>{sense * (position(x)(axis) - value), sense * rate(axis, x)};
-    };
-    return bracketed_root(ahead, low, high, low);
+    constexpr Scalar rounding = 2 * std::numeric_limits<Scalar>::epsilon();
+    Scalar guess = low;
+    for (Scalar& value : values) {
+      Scalar root = low;
+      if (sense * (value - last) >= Scalar(0)) {
+        root = high;
+      } else if (sense * (value - first) > Scalar(0)) {
+        const auto ahead = [&](Scalar x) {
+          const Scalar gap = position(x)(axis) - value;
+          const bool met = std::abs(gap) <= rounding * std::abs(value);
+          return Slope<Scalar>{met ? Scalar(0) : sense * gap, sense * rate(axis, x)};
+        };
+        root = bracketed_root(ahead, low, high, std::min(guess, high));
+      }
+      guess = root + (root - low);
+      value = low = root;
+    }
   }
 
   [[nodiscard]] Scalar length_at(Scalar u) const {
