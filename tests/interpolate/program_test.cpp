@@ -8,9 +8,8 @@
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/plan/program.hpp"
 #include "cncplan/plan/sampler.hpp"
-#include "cncplan/plan/span_planner.hpp"
 #include "cncplan/plan/timeline.hpp"
-#include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/plan/whole_plan.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
@@ -41,16 +40,10 @@ Planned planned(generate::Kind kind, std::size_t moves) {
   REQUIRE(read);
   for (std::size_t i = 17; i < result.blocks.size(); i += 50) result.blocks[i].pause = 0.0123;
   result.blocks.back().pause = kind == generate::Kind::pocket ? 0.5 : 0.0;
-  std::vector<plan::BlockCaps> caps;
-  for (std::size_t i = 0; i < result.blocks.size(); ++i) {
-    caps.push_back(i == 0 ? plan::caps_from_rest(result.blocks[i], plan::ShareLimits{})
-                          : plan::caps(result.blocks[i - 1], result.blocks[i], junction::Deviation{0.01},
-                                       plan::ShareLimits{}));
-    result.lengths.push_back(caps.back().length);
-  }
-  std::vector<plan::Gate> gates(caps.size() + 1);
-  REQUIRE(plan::plan_spans(std::span<const plan::BlockCaps>(caps), &profile::seven_phase_solver<double>,
-                           std::span(gates), std::back_inserter(result.spans)));
+  const auto plan = plan::whole_plan(result.blocks, junction::Deviation{0.01});
+  REQUIRE(plan);
+  result.lengths = plan->lengths;
+  result.spans = plan->spans;
   return result;
 }
 

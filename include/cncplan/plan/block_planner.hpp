@@ -8,22 +8,17 @@
 #include <span>
 
 #include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/span.hpp"
 #include "cncplan/profile/solver.hpp"
 
 namespace cncplan::plan {
 
-/// Makes the solver for given limits: the five- or the seven-phase law.
-template <class F, class S>
-concept SolverFactory = requires(const F& factory, const BasicLimits<S>& limits) {
-  { factory(limits) } -> std::same_as<profile::BasicSolver<S>>;
-};
-
 /// The same solver again while the limits stay the same, as they mostly do from block to block.
 template <std::floating_point S, SolverFactory<S> Factory>
 class SolverCache {
  public:
-  explicit SolverCache(const Factory& factory) : factory_(factory), solver_(factory({S(1), S(1), S(1)})) {}
+  explicit SolverCache(const Factory& factory) : factory_(factory), solver_(factory(limits_)) {}
 
   const profile::BasicSolver<S>& operator()(const BasicLimits<S>& limits) {
     if (limits != limits_) {

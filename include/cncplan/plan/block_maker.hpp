@@ -1,0 +1,56 @@
+// From the items of a G-code program to its blocks, one behind the other.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/motion.hpp"
+#include "cncplan/plan/program.hpp"
+
+namespace cncplan::plan {
+
+/// Makes blocks under limits along the path. What comes after a motion may still make it stop there (a dwell,
+/// M0, M1, M2, M30, M6, a T word), so a block is given out when the next one begins. Other words are passed
+/// over: they are the caller's.
+class BlockMaker {
+ public:
+  BlockMaker(const Limits& limits, double rapid_rate, const path::ArcTolerance<double>& tolerance = {})
+      : limits_(limits), rapid_rate_(rapid_rate), tolerance_(tolerance) {}
+
+  /// Takes the next item; gives the block before, if the item begins a new one. Errors, at their place: those
+  /// of arcs.
+  Expected<std::optional<Block>, gcode::Diagnostic> take(const gcode::Item& item) {
+    if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
+      const auto made = block(*motion, limits_, rapid_rate_, tolerance_);
+      if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion->line, motion->column, {}});
+      return std::exchange(open_, *made);
+    }
+    const auto* word = std::get_if<gcode::Word>(&item);
+    if (const auto* dwell = std::get_if<gcode::Dwell>(&item))
+      rest(dwell->seconds);
+    else if (std::holds_alternative<gcode::Stop>(item) || (word != nullptr && word->letter == 'T'))
+      rest(0.0);
+    return std::nullopt;
+  }
+
+  /// The last block, once.
+  [[nodiscard]] std::optional<Block> finish() { return std::exchange(open_, std::nullopt); }
+
+ private:
+  // A pause before any motion stands on a block of length zero.
+  void rest(double seconds) {
+    if (!open_ && seconds > 0.0) open_ = Block{{}, limits_, junction::Kind::rapid, true, 0.0};
+    if (!open_) return;
+    open_->stop_at_end = true;
+    open_->pause += seconds;
+  }
+
+  Limits limits_;
+  double rapid_rate_;
+  path::ArcTolerance<double> tolerance_;
+  std::optional<Block> open_;
+};
+
+}  // namespace cncplan::plan
