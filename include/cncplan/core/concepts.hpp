@@ -59,20 +59,24 @@ concept Kinematics = requires(const K& machine, const typename K::Joints& joints
 };
 
 /// A smooth map from the points of a program to a machine's joints, on the part of space for which it was
-/// made. Evaluated with jets it yields the joints' derivatives along any path. `measured` is the point whose
-/// travel counts as the length of the motion, the tool's tip as a rule. `keeps_length`: that length is the
-/// one of the programmed path. `reach`: the length of programmed path, mm, over which the map changes its
-/// shape.
+/// made. Evaluated with jets it yields the joints' derivatives along any path. `reach`: the length of
+/// programmed path, mm, over which the map changes its shape; infinity for one that is linear.
 template <class C>
 concept Chart = requires(const C& chart, const std::array<typename C::Scalar, 3>& point,
                          const std::array<BasicJet<typename C::Scalar>, 3>& moving) {
   requires std::floating_point<typename C::Scalar>;
   requires C::joint_count >
   0;
-  { C::keeps_length } -> std::convertible_to<bool>;
   { chart.reach(point) } -> std::same_as<typename C::Scalar>;
   { chart.joints(point) } -> std::same_as<std::array<typename C::Scalar, C::joint_count>>;
   { chart.joints(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, C::joint_count>>;
+};
+
+/// A chart under which the length of the motion is not the one of the programmed path: `measured` is the
+/// point whose travel counts, the tool's tip as a rule.
+template <class C>
+concept MeasuringChart = Chart<C> && requires(const C& chart, const std::array<typename C::Scalar, 3>& point,
+                                              const std::array<BasicJet<typename C::Scalar>, 3>& moving) {
   { chart.measured(point) } -> std::same_as<std::array<typename C::Scalar, 3>>;
   { chart.measured(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, 3>>;
 };

@@ -43,16 +43,11 @@ template <std::floating_point S>
 struct BasicCartesianChart {
   using Scalar = S;
   static constexpr std::size_t joint_count = 3;
-  static constexpr bool keeps_length = true;
 
   [[nodiscard]] S reach(const std::array<S, 3>&) const { return std::numeric_limits<S>::infinity(); }
 
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
-    return point;
-  }
-  template <NumberOver<S> T>
-  [[nodiscard]] std::array<T, 3> measured(const std::array<T, 3>& point) const {
     return point;
   }
 };

@@ -62,7 +62,6 @@ template <std::floating_point S>
 struct BasicPolarChart {
   using Scalar = S;
   static constexpr std::size_t joint_count = 3;
-  static constexpr bool keeps_length = true;
 
   BasicAzimuth<S> azimuth;
 
@@ -73,10 +72,6 @@ struct BasicPolarChart {
     using std::hypot;
     const auto& [x, y, z] = point;
     return {hypot(x, y), z, azimuth.of(x, y)};
-  }
-  template <NumberOver<S> T>
-  [[nodiscard]] std::array<T, 3> measured(const std::array<T, 3>& point) const {
-    return point;
   }
 };
 

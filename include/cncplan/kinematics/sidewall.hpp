@@ -26,7 +26,6 @@ template <std::floating_point S>
 struct BasicSidewallChart {
   using Scalar = S;
   static constexpr std::size_t joint_count = 4;
-  static constexpr bool keeps_length = false;
 
   BasicProfilePiece<S> piece;
   S begins{};       ///< mm, the flat radius that falls on the piece's start

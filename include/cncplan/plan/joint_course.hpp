@@ -20,6 +20,25 @@ concept Guide = Chart<typename G::Chart> &&
   { guide.follow(segment, out) } -> std::same_as<Expected<void>>;
 };
 
+/// The guide of a machine with one chart for everything.
+template <cncplan::Chart C>
+class OneChart {
+ public:
+  using Chart = C;
+
+  explicit OneChart(const C& chart) : chart_(chart) {}
+
+  Expected<void> follow(const path::BasicSegment<typename C::Scalar>& segment,
+                        std::vector<Stretch<C>>& out) const {
+    using S = typename C::Scalar;
+    if (segment.length() > S(0)) out.push_back({segment, chart_, S(0), segment.parameter_end(), false});
+    return {};
+  }
+
+ private:
+  C chart_;
+};
+
 /// Collects the pieces of a program. The table's angle goes on without a jump from one segment to the next.
 template <Guide G>
 class JointCourse {
@@ -33,9 +52,10 @@ class JointCourse {
 
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
 
-  /// Appends a segment that begins where the last one ended, driven at `feed` mm/s. A kink is a stop before
-  /// it and one behind it. Errors, with nothing appended: the guide's.
-  Expected<void> append(const path::BasicSegment<Scalar>& segment, Scalar feed, std::size_t motion) {
+  /// Appends a segment that begins where the last one ended, driven at `feed` mm/s; `motion` is its number
+  /// for the caller. A kink is a stop before it and one behind it. Errors, with nothing appended: the
+  /// guide's.
+  Expected<void> append(const path::BasicSegment<Scalar>& segment, Scalar feed, std::size_t motion = 0) {
     stretches_.clear();
     if (auto ok = guide_.follow(segment, stretches_); !ok) return ok;
     for (const Stretch<Chart>& stretch : stretches_) {

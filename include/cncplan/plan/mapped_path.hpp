@@ -13,9 +13,21 @@
 
 namespace cncplan::plan {
 
+/// The point whose travel is the length of the motion, as numbers or jets: the programmed one unless the
+/// chart has another.
+template <Chart C, NumberOver<typename C::Scalar> T>
+[[nodiscard]] std::array<T, 3> measured_point(const C& chart, const std::array<T, 3>& point) {
+  if constexpr (requires { chart.measured(point); }) {
+    static_assert(MeasuringChart<C>, "a chart measures numbers and jets");
+    return chart.measured(point);
+  } else {
+    return point;
+  }
+}
+
 /// A segment between two of its parameters, seen through a chart; a path in the space of the joints. Its
-/// length is that of the chart's measured point, by five-point Gauss integration: exact to rounding for the
-/// short pieces into which a program is cut.
+/// length is that of the measured point, by five-point Gauss integration where that is not the programmed
+/// one: exact to rounding for the short pieces into which a program is cut.
 template <Chart C>
 class MappedPath {
  public:
@@ -51,7 +63,7 @@ class MappedPath {
   }
 
   [[nodiscard]] Scalar length_at(Scalar u) const {
-    if constexpr (C::keeps_length) {
+    if constexpr (!MeasuringChart<C>) {
       return segment_.length_at(from_ + u) - segment_.length_at(from_);
     } else {
       constexpr std::array<Scalar, 3> node{Scalar(0), Scalar(0.538469310105683091),
@@ -70,7 +82,7 @@ class MappedPath {
   [[nodiscard]] Scalar parameter_at(Scalar s) const {
     if (!(s > Scalar(0))) return Scalar(0);
     if (!(s < length_)) return parameter_end();
-    if constexpr (C::keeps_length) {
+    if constexpr (!MeasuringChart<C>) {
       const Scalar u = segment_.parameter_at(segment_.length_at(from_) + s) - from_;
       return std::clamp(u, Scalar(0), parameter_end());
     } else {
@@ -87,7 +99,7 @@ class MappedPath {
   /// The joints' derivatives by length at u.
   [[nodiscard]] Rates rates(Scalar u) const {
     const auto point = moving_point(segment_, segment_parameter(u));
-    const auto measured = chart_.measured(point);
+    const auto measured = measured_point(chart_, point);
     Jet speed_sq(Scalar(0));
     for (const Jet& coordinate : measured) speed_sq = speed_sq + coordinate.rate() * coordinate.rate();
     const Jet speed = sqrt(speed_sq);
@@ -118,7 +130,7 @@ class MappedPath {
   }
   [[nodiscard]] Scalar speed(Scalar u) const {
     Scalar sum(0);
-    for (const Jet& x : chart_.measured(moving_point(segment_, from_ + u))) sum += x.first * x.first;
+    for (const Jet& x : measured_point(chart_, moving_point(segment_, from_ + u))) sum += x.first * x.first;
     return std::sqrt(sum);
   }
 

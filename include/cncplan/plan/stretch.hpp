@@ -37,7 +37,7 @@ void cut(const Stretch<C>& stretch, typename C::Scalar longest, typename C::Scal
   S u = stretch.from;
   while (u < stretch.to) {
     const auto moving = moving_point(segment, u);
-    const auto measured = stretch.chart.measured(moving);
+    const auto measured = measured_point(stretch.chart, moving);
     const auto speed = [](const auto& p) { return std::hypot(p[0].first, p[1].first, p[2].first); };
     S step = std::min(longest / speed(measured),
                       stretch.chart.reach(point_at(segment, u)) / (S(10) * speed(moving)));
