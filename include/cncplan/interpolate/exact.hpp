@@ -111,10 +111,11 @@ class Samples {
   BasicGrid<Scalar> grid_;
 };
 
-/// The samples of a profile along a path; see `Samples`.
+/// The samples of a profile along a path: a `Samples`. (A deduced type, as clang++ 14 would otherwise not say
+/// why a path is none.)
 template <Path P, Profile F>
-[[nodiscard]] Samples<P, F> samples(const P& path, const F& profile, typename P::Scalar period) {
-  return {path, profile, period};
+[[nodiscard]] auto samples(const P& path, const F& profile, typename P::Scalar period) {
+  return Samples<P, F>(path, profile, period);
 }
 
 }  // namespace cncplan::interpolate

@@ -99,11 +99,11 @@ class Stepped {
   R rule_;
 };
 
-/// Eq. 16 along a curve; see `Stepped`.
+/// Eq. 16 along a curve: a `Stepped`.
 template <ParametricPath P, Profile F>
-[[nodiscard]] Stepped<P, F> taylor_samples(const P& path, const F& profile, typename P::Scalar period,
-                                           typename P::Scalar offset = {}) {
-  return {path, profile, period, offset};
+[[nodiscard]] auto taylor_samples(const P& path, const F& profile, typename P::Scalar period,
+                                  typename P::Scalar offset = {}) {
+  return Stepped<P, F>(path, profile, period, offset);
 }
 
 }  // namespace cncplan::interpolate

@@ -70,9 +70,9 @@ class Merge {
 ///     counts = step::counts(edges);
 template <SteppablePath P, Clock C, std::size_t N>
   requires std::same_as<typename P::Scalar, typename C::Scalar>
-[[nodiscard]] Merge<StepCursor<P, C>, N> block_edges(
+[[nodiscard]] auto block_edges(
     const P& path, const C& clock, const std::array<typename P::Scalar, N>& steps_per_unit,
-    const std::array<std::int64_t, N>& counts,
+    const std::array<std::int64_t, N>& counts = {},
     typename P::Scalar earliest = -std::numeric_limits<typename P::Scalar>::infinity()) {
   static_assert(static_cast<int>(N) <= P::Vector::RowsAtCompileTime, "more axes than the path has");
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
