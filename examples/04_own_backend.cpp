@@ -1,6 +1,5 @@
 // A backend of one's own: where the step pulses go. This one prints the first of them; a driver would load a
 // timer.
-#include <array>
 #include <cncplan/path/arc_from_radius.hpp>
 #include <cncplan/profile/seven_phase.hpp>
 #include <cncplan/step/backend.hpp>
@@ -22,16 +21,15 @@ struct Printer {
 static_assert(step::Backend<Printer>);
 
 int main() {
-  const auto arc = path::arc_from_radius<double>({0, 0, 0}, {5, 5, 0}, 5.0, Turn::clockwise, Plane::xy);
+  const auto arc = path::arc_from_radius({0, 0, 0}, {5, 5, 0}, 5.0, Turn::clockwise, Plane::xy);
   const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
   const auto profile = profile::seven_phase(arc->length(), {.start = 0.0, .end = 0.0}, limits);
 
-  const std::array steps_per_mm{400.0, 400.0, 400.0};
   const auto phases = profile->phases();
-  auto edges = step::block_edges(*arc, step::PhaseClock(phases), steps_per_mm, std::array<std::int64_t, 3>{});
+  const std::array steps_per_mm{400.0, 400.0, 400.0};
+  auto edges = step::block_edges(*arc, step::PhaseClock(phases), steps_per_mm);
 
   Printer printer;
-  while (const auto edge = edges.next())
-    if (!printer.accept(*edge)) return 1;
+  if (!step::send(edges, printer)) return 1;
   std::printf("%d steps in %.6f s\n", printer.count, profile->duration());
 }

@@ -87,3 +87,26 @@ TEST_CASE("exact stepping stays within half a step and has the error of rounding
   }
   CHECK(backend.report(0).peak_rate <= 7.3 * 200.0 * (1 + 1e-9));
 }
+
+TEST_CASE("sending edges ends with the source, or with the first that the backend refuses") {
+  const test::SineAxis<double> path{7.3, 1.1, 1.0, 0.0};
+  const auto phases = test::steady(1.0, 1.0);
+  const auto edges = [&] {
+    return step::block_edges(path, step::PhaseClock(phases), std::array{200.0, 125.0});
+  };
+  std::int64_t all = 0;
+  for (auto source = edges(); source.next();) ++all;
+  REQUIRE(all > 0);
+
+  auto first = edges();
+  step::SimulatedBackend<double, 2> backend({200.0, 125.0});
+  CHECK(step::send(first, backend));
+  CHECK(backend.report(0).total_steps + backend.report(1).total_steps == all);
+
+  auto second = edges();
+  step::SimulatedBackend<double, 1> narrow(VectorN<double, 1>(200.0));
+  const auto sent = step::send(second, narrow);
+  REQUIRE_FALSE(sent);
+  CHECK(sent.error().field == "edge axis");
+  CHECK(second.next());
+}
