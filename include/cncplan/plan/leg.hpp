@@ -22,7 +22,10 @@ class BasicLeg {
   explicit BasicLeg(const profile::BasicProfile<S>& profile)
       : duration_(profile.duration()), length_(profile.length()) {
     const auto phases = profile.phases();
-    turn_ = phases[4].time;
+    // Still within the cruise, where it can be planned anew: a ramp that ends at speed can be 9 % longer than
+    // one to rest, which is 5 % of its duration at the speed it begins with.
+    constexpr S early = S(0.05);
+    turn_ = std::max(phases[3].time, phases[4].time - early * (duration_ - phases[4].time));
     for (const BasicPhase<S>& phase : phases) append(phase);
   }
   /// At most `most_phases`, each with the time at which it starts, and the length of them all.
@@ -34,7 +37,7 @@ class BasicLeg {
   [[nodiscard]] S length() const { return length_; }
   /// Seconds to its end.
   [[nodiscard]] S left() const { return duration_ - time_; }
-  /// Seconds until a profile leaves its top speed; negative behind that.
+  /// Seconds until a profile has to be better, or it leaves its top speed; negative behind that.
   [[nodiscard]] S to_turn() const { return turn_ - time_; }
   /// Seconds to the end of the phase.
   [[nodiscard]] S to_edge() const { return phase_ + 1 < count_ ? phases_[phase_ + 1].time - time_ : left(); }

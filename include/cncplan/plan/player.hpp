@@ -167,7 +167,9 @@ class BasicPlayer {
   /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
   [[nodiscard]] S until_change() const {
     if (wait_ > S(0)) return wait_;
-    return idle_ ? std::numeric_limits<S>::infinity() : leg_.to_edge();
+    if (idle_) return std::numeric_limits<S>::infinity();
+    const S turn = leg_.to_turn();
+    return could_better() && turn > S(0) ? std::min(turn, leg_.to_edge()) : leg_.to_edge();
   }
 
   /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
@@ -226,6 +228,7 @@ class BasicPlayer {
 
   // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
   void renew() {
+    if (wait_ > S(0)) return;
     pending_ = false;
     if (idle_)
       start();
