@@ -11,6 +11,7 @@
 
 #include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
+#include "route.hpp"
 #include "support/failure.hpp"
 
 namespace simulate {
@@ -29,9 +30,10 @@ using support::Failure;
 class Builder {
  public:
   Builder(const Options& options, const Machine& machine, Program& program)
-      : machine_(machine), limits_(options.limits), program_(program) {
-    tool_.tool_length = options.tool_length.value_or(0.0);
-  }
+      : machine_(machine),
+        limits_(options.limits),
+        tool_length_(options.tool_length.value_or(0.0)),
+        program_(program) {}
 
   void operator()(const gcode::Motion& motion) {
     const double rapid_rate = machine_.rapid_rate.value_or(limits_.velocity);
@@ -65,9 +67,9 @@ class Builder {
   /// A pause before any motion stands on a block of its own, of length zero.
   plan::Block& last_block(int line) {
     if (program_.blocks.empty()) {
-      const RowPath row(tool_, Joints::Zero(), Joints::Zero());
+      const TireMoldRow row{.tool_length = tool_length_};
       const Vector3 start =
-          rows() ? row.tip(0.0) : Vector3(-machine_.table_center[0], -machine_.table_center[1], 0.0);
+          rows() ? tip(row, 0.0) : Vector3(-machine_.table_center[0], -machine_.table_center[1], 0.0);
       if (rows()) program_.rows.push_back(row);
       add({path::Line(start, start), limits_, junction::Kind::rapid, true, 0.0},
           {line, 1, Plane::xy, Vector3::Zero(), 0.0, 0.0});
@@ -76,7 +78,7 @@ class Builder {
   }
 
  private:
-  using Joints = RowPath::Vector;
+  using Joints = TireMoldRow::Joints;
 
   static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
@@ -107,13 +109,15 @@ class Builder {
     };
     const Joints start = joints(motion.start), end = joints(motion.end);
     check_travel<4>(motion, start.cwiseMin(end), start.cwiseMax(end));
-    const RowPath row(tool_, start, end);
-    limits.velocity = plan::feed(motion, row.length(), limits.velocity, rapid_rate);
+    const TireMoldRow row = kinematics::tire_mold_row(tool_length_, start, end);
+    double length = 0.0;
+    cut_row(row, [&](const RowPath& path) { length += path.length(); });
+    limits.velocity = plan::feed(motion, length, limits.velocity, rapid_rate);
     program_.rows.push_back(row);
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
-    add({path::Line(row.tip(0.0), row.tip(row.length())), limits,
+    add({path::Line(tip(row, 0.0), tip(row, 1.0)), limits,
          rapid ? junction::Kind::rapid : junction::Kind::line, motion.exact_stop, 0.0},
-        {motion.line, motion.column, motion.plane, Vector3::Zero(), 0.0, row.length()});
+        {motion.line, motion.column, motion.plane, Vector3::Zero(), 0.0, length});
   }
 
   // Against the lowest and the highest place of each axis; a mill that lacks an axis does not move it.
@@ -135,7 +139,7 @@ class Builder {
 
   const Machine& machine_;
   const Limits& limits_;
-  kinematics::TireMold tool_;
+  double tool_length_;
   Program& program_;
 };
 

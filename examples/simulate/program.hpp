@@ -11,8 +11,7 @@
 
 namespace simulate {
 
-/// A row of the four-axis machine.
-using RowPath = cncplan::plan::JointRow<cncplan::kinematics::TireMold>;
+using cncplan::kinematics::TireMoldRow;
 
 /// What a motion was in the text.
 struct Origin {
@@ -29,7 +28,7 @@ struct Origin {
 struct Program {
   std::string file;
   std::vector<cncplan::plan::Block> blocks;  ///< where rows are, straight between their ends
-  std::vector<RowPath> rows;                 ///< of the four-axis machine, one a block; else none
+  std::vector<TireMoldRow> rows;             ///< of the four-axis machine, one a block; else none
   std::vector<Origin> origins;               ///< one a block
   std::size_t lines = 0;
   std::size_t warnings = 0;

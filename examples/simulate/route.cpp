@@ -44,8 +44,15 @@ Route<MillPath> mill_route(const Program& program) {
 
 Route<RowPath> row_route(const Program& program) {
   Route<RowPath> route;
-  route.reserve(program.rows.size());
-  for (std::size_t i = 0; i < program.rows.size(); ++i) route.push_back({program.rows[i], i});
+  for (std::size_t i = 0; i < program.rows.size(); ++i)
+    if (program.origins[i].length > 0.0)
+      cut_row(program.rows[i], [&](const RowPath& path) { route.push_back({path, i}); });
+  if (!route.empty() && route.front().block == 0) return route;
+  // a wait before the first motion: no way, on any row
+  TireMoldRow standing = program.rows.front();
+  standing.even_length = 1.0;
+  const RowPath path(path::Line(Vector3::Zero(), Vector3::UnitX()), standing, 0.0, 0.0);
+  route.insert(route.begin(), {path, 0});
   return route;
 }
 

@@ -1,6 +1,8 @@
 // A program as paths of the machine's axes, end to end: what is planned, sampled and stepped.
 #pragma once
 
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <vector>
 
@@ -12,6 +14,7 @@ namespace simulate {
 
 using MillPath = cncplan::path::Segment;
 using PolarPath = cncplan::plan::MappedPath<cncplan::kinematics::PolarChart>;
+using RowPath = cncplan::plan::MappedPath<TireMoldRow>;
 
 template <class P>
 struct Piece {
@@ -33,12 +36,31 @@ using Route = std::vector<Piece<P>>;
 /// The rows of a program that names the machine's own axes.
 [[nodiscard]] Route<RowPath> row_route(const Program& program);
 
+/// Calls `add` with the short paths into which a row is cut.
+template <std::invocable<const RowPath&> Add>
+void cut_row(const TireMoldRow& row, Add&& add) {
+  constexpr double longest = 2.0;  // mm
+  const cncplan::path::Segment whole(
+      cncplan::path::Line(cncplan::Vector3::Zero(), cncplan::Vector3::UnitX()));
+  double no_table = 0.0;
+  cncplan::plan::cut(cncplan::plan::Stretch<TireMoldRow>{whole, row, 0.0, whole.parameter_end(), false},
+                     longest, no_table, add);
+}
+
+/// The tool's tip on a row, at its start (0) or its end (1).
+[[nodiscard]] inline cncplan::Vector3 tip(const TireMoldRow& row, double part) {
+  const auto [x, y, z] = row.tip(std::array{part, 0.0, 0.0});
+  return {x, y, z};
+}
+
 /// Where the tool is.
 [[nodiscard]] inline cncplan::Vector3 tool(const MillPath& path, double u) { return path.position(u); }
 [[nodiscard]] inline cncplan::Vector3 tool(const PolarPath& path, double u) {
   return cncplan::kinematics::Polar{}.forward(path.position(u)).position;
 }
-[[nodiscard]] inline cncplan::Vector3 tool(const RowPath& path, double u) { return path.tip(u); }
+[[nodiscard]] inline cncplan::Vector3 tool(const RowPath& path, double u) {
+  return tip(path.chart(), path.segment_parameter(u));
+}
 
 /// The path of the program beneath a piece, and its parameter there: what the tool should follow.
 struct Programmed {

@@ -43,10 +43,6 @@ inline double parts_of(const cncplan::path::Segment& path, double travelled) {
   const double angle = arc == nullptr ? 0.0 : std::abs(arc->sweep()) * std::abs(travelled) / path.length();
   return 1.0 + std::ceil(angle / most_angle);
 }
-template <class K>
-double parts_of(const cncplan::plan::JointRow<K>&, double) {
-  return 1.0;
-}
 /// Pieces of mapped paths are short already.
 template <class C>
 double parts_of(const cncplan::plan::MappedPath<C>&, double) {

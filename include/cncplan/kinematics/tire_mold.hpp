@@ -33,12 +33,21 @@ struct BasicTireMold {
   S smallest_radius = S(1);  ///< mm, > 0; no tip nearer to the table's axis is reached
   BasicJointLimits<S, 4> limits{};
 
+  /// The tip's place, of joints that are numbers or jets.
+  template <NumberOver<S> T>
+  [[nodiscard]] std::array<T, 3> tip(const std::array<T, 4>& joints) const {
+    using std::cos, std::sin;
+    const auto& [r, z, a, c] = joints;
+    const T radial = r + T(tool_length) * sin(a);
+    const T sc = sin(c), cc = cos(c);
+    return {radial * cc + T(side_offset) * sc, radial * sc - T(side_offset) * cc,
+            z - T(tool_length) * cos(a)};
+  }
+
   [[nodiscard]] BasicPose<S> forward(const Joints& joints) const {
     const S sa = std::sin(joints[2]), ca = std::cos(joints[2]);
-    const S sc = std::sin(joints[3]), cc = std::cos(joints[3]);
-    const S radial = joints[0] + tool_length * sa;
-    return {{radial * cc + side_offset * sc, radial * sc - side_offset * cc, joints[1] - tool_length * ca},
-            {-sa * cc, -sa * sc, ca}};
+    const auto [x, y, z] = tip(std::array{joints[0], joints[1], joints[2], joints[3]});
+    return {{x, y, z}, {-sa * std::cos(joints[3]), -sa * std::sin(joints[3]), ca}};
   }
 
   /// C comes in (-pi, pi], and the tip on the slide's side of the axis. Errors: `below_limit` for a tip
