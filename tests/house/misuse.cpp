@@ -1,0 +1,149 @@
+// Each concept misused once, as a user would: what the compiler has to say of it stands in the line above, the
+// type, then the concept, then the requirement that is not met. Not to be compiled but by misuse.cmake.
+#include <cncplan/cncplan.hpp>
+
+using namespace cncplan;
+
+profile::Profile travel;
+path::Line line;
+plan::Block block;
+gcode::Reader reader;
+std::array<Phase, 7> phases;
+std::array<double, 3> steps_per_mm;
+
+// expect NoScalar, taylor_samples: no type named 'Scalar'
+struct NoScalar {
+  double length() const;
+};
+auto no_scalar = interpolate::taylor_samples(NoScalar{}, travel, 1e-3);
+
+// expect NoBend, ParametricPath: path.second_derivative(u)
+struct NoBend {
+  using Scalar = double;
+  using Vector = Vector3;
+  double length() const;
+  double parameter_end() const;
+  Vector position(double) const;
+  Vector derivative(double) const;
+};
+auto parametric_path = interpolate::taylor_samples(NoBend{}, travel, 1e-3);
+
+// expect NoInverse, Path: path.parameter_at(s)
+struct NoInverse : NoBend {
+  Vector second_derivative(double) const;
+};
+auto path_without_inverse = interpolate::samples(NoInverse{}, travel, 1e-3);
+
+// expect WholeSeconds, Profile: profile.duration()
+struct WholeSeconds {
+  using Scalar = double;
+  int duration() const;
+  double length() const;
+  State at(double) const;
+  double time_at(double) const;
+};
+auto profile_of_int = interpolate::samples(line, WholeSeconds{}, 1e-3);
+
+// expect NoDerivative, DifferentiableCurve: curve.derivative(u)
+struct NoDerivative {
+  using Scalar = double;
+  using Vector = Vector3;
+};
+auto curve_length = path::arc_length(NoDerivative{}, 0.0, 1.0);
+
+// expect ForwardOnly, Kinematics: machine.inverse(pose)
+struct ForwardOnly {
+  using Scalar = double;
+  using Joints = Vector3;
+  Pose forward(const Joints&) const;
+};
+auto tip = kinematics::tip_velocity(ForwardOnly{}, Vector3{}, Vector3{});
+
+// expect NumbersOnly, Chart: chart.joints(moving)
+struct NumbersOnly {
+  using Scalar = double;
+  static constexpr std::size_t joint_count = 3;
+  double reach(const std::array<double, 3>&) const;
+  std::array<double, 3> joints(const std::array<double, 3>&) const;
+};
+auto chart = plan::OneChart<NumbersOnly>({});
+
+// expect int, NumberOver: same_as
+auto joints_of_int = kinematics::PolarChart{}.joints(std::array<int, 3>{});
+
+// expect NoFollow, Guide: guide.follow(segment, out)
+struct NoFollow {
+  using Chart = kinematics::PolarChart;
+};
+plan::JointCourse<NoFollow>* course;
+
+// expect NoRates, JointPath: path.rates(u)
+struct NoRates : NoInverse {
+  double parameter_at(double) const;
+};
+plan::JointBlock<NoRates>* joint_block;
+
+// expect SpeedNotSquared, JunctionPolicy: policy.speed_sq(joint)
+struct SpeedNotSquared {
+  double speed(const junction::Geometry&) const;
+};
+auto policy = plan::caps(block, block, SpeedNotSquared{}, plan::ShareLimits{});
+
+// expect SpeedAlone, CurveRule: rule(curvature, limits)
+struct SpeedAlone {
+  double operator()(double, const Limits&) const;
+};
+auto rule = plan::caps(block, block, junction::ExactStop{}, SpeedAlone{});
+
+// expect ProfileAtOnce, SolverFactory: factory(limits)
+struct ProfileAtOnce {
+  Expected<profile::Profile> operator()(const Limits&) const;
+};
+auto law = plan::whole_plan(std::vector<plan::BlockCaps>{}, ProfileAtOnce{});
+
+// expect NoState, StepRule: rule(point, x, along, x, x)
+struct NoState {
+  double operator()(double, double) const;
+};
+interpolate::Stepped<path::Line, profile::Profile, NoState>* stepped;
+
+// expect Strings, LineSource: lines.next()
+struct Strings {
+  std::string next();
+};
+auto lines = gcode::read_program(Strings{}, reader, [](const gcode::Item&) {});
+
+// expect MotionsOnly, ItemSink: invocable
+struct MotionsOnly {
+  void operator()(const gcode::Motion&);
+};
+auto sink = gcode::read_program(gcode::TextLines(""), reader, MotionsOnly{});
+
+// expect NoTurning, SteppablePath: path.next_turning(axis, x)
+struct NoTurning : NoInverse {};
+auto steppable = step::block_edges(NoTurning{}, step::PhaseClock(phases), steps_per_mm);
+
+// expect BasicProfile, Clock: clock.lengths_to_times(lengths)
+auto clock_of_profile = step::block_edges(line, travel, steps_per_mm);
+
+// expect NoLength, MeasuredPath: path.length_at(u)
+struct NoLength : NoInverse {};
+step::TracedPath<NoLength>* traced;
+
+// expect NoNext, EdgeSource: source.next()
+struct NoNext {
+  using Scalar = double;
+};
+step::Merge<NoNext, 1>* merge;
+
+// expect Silent, Backend: backend.accept(edge)
+struct Silent {
+  using Scalar = double;
+  void accept(const step::Edge&);
+};
+auto edges = step::block_edges(line, step::PhaseClock(phases), steps_per_mm);
+Silent silent;
+auto backend = step::send(edges, silent);
+
+// expect int, BasicArc: floating_point
+path::BasicArc<int>* arc;
