@@ -1,0 +1,11 @@
+# The headers once more, in the newest standard that CMake knows for the compiler.
+foreach(standard cxx_std_26 cxx_std_23)
+  if(standard IN_LIST CMAKE_CXX_COMPILE_FEATURES)
+    add_library(newest OBJECT ../other.cpp)
+    target_link_libraries(newest PRIVATE cncplan::cncplan)
+    target_compile_features(newest PRIVATE ${standard})
+    target_compile_options(newest PRIVATE -fsyntax-only)
+    return()
+  endif()
+endforeach()
+message(FATAL_ERROR "CMake knows no standard beyond C++20 for ${CMAKE_CXX_COMPILER}")
