@@ -1,5 +1,5 @@
-// Each concept misused once, as a user would: what the compiler has to say of it stands in the line above, the
-// type, then the concept, then the requirement that is not met. Not to be compiled but by misuse.cmake.
+// Each concept misused once, as a user would: what the compiler has to say of it stands in the line above,
+// the type, then the concept, then the requirement that is not met. Not to be compiled but by misuse.cmake.
 #include <cncplan/cncplan.hpp>
 
 using namespace cncplan;
