@@ -137,7 +137,7 @@ class BasicPlayer {
     S left = period;
     int plans = most_plans;
     const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: legs end blocks
-    for (std::size_t hops = 0; left > S(0) && hops < most_hops; ++hops) {
+    for (std::size_t hops = 0; (left > S(0) || leg_over()) && hops < most_hops; ++hops) {
       if (wait_ > S(0)) {
         const S waited = std::min(wait_, left);
         wait_ -= waited;
@@ -199,6 +199,8 @@ class BasicPlayer {
 
   // Whether blocks that the plan does not know could spare the way down that this leg ends with.
   [[nodiscard]] bool could_better() const { return more_ && !leg_settled_; }
+
+  [[nodiscard]] bool leg_over() const { return !idle_ && !(leg_.left() > S(0)); }
 
   // Where it is now. The block goes along, the leg's start then lies before it.
   BasicSpot<S> locate() {

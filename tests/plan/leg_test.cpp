@@ -1,0 +1,60 @@
+#include "cncplan/plan/leg.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "cncplan/profile/seven_phase.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+
+TEST_CASE("a leg says what its profile says, whatever the steps") {
+  test::Random random;
+  double worst = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    const Limits limits{30.0, random.log_uniform(100, 2000), random.log_uniform(1000, 50000)};
+    const auto profile = profile::seven_phase(random.log_uniform(0.01, 20), {0.0, 0.0}, limits);
+    REQUIRE(profile);
+    plan::BasicLeg<double> leg(*profile);
+    CHECK(leg.length() == profile->length());
+    CHECK(leg.left() == profile->duration());
+    double time = 0.0;
+    while (leg.left() > 1e-9) {
+      const double step = std::min(leg.left() * random.uniform(0, 1), random.log_uniform(1e-5, 1e-1));
+      leg.advance(step);
+      time += step;
+      const State is = leg.state(), should = profile->at(time);
+      worst = std::max({worst, std::abs(is.position - should.position) / profile->length(),
+                        std::abs(is.velocity - should.velocity) / limits.velocity});
+    }
+  }
+  CHECK(worst < 1e-9);
+}
+
+TEST_CASE("edges are where the jerk changes; the turn lies in the cruise, before the way down") {
+  const Limits limits{30.0, 1000.0, 10000.0};
+  const auto profile = profile::seven_phase(20.0, {0.0, 0.0}, limits);
+  const auto phases = profile->phases();
+  plan::BasicLeg<double> leg(*profile);
+  const double down = profile->duration() - phases[4].time;
+  CHECK(leg.to_turn() == Approx(phases[4].time - 0.05 * down));
+  for (const double jerk : {10000.0, -10000.0, 0.0, -10000.0, 10000.0}) {
+    CHECK(leg.state().jerk == jerk);
+    const double edge = leg.to_edge();
+    leg.advance(edge / 2);
+    CHECK(leg.state().jerk == jerk);
+    CHECK(leg.to_edge() == Approx(edge / 2));
+    leg.advance(leg.to_edge());
+  }
+  CHECK(leg.to_turn() < 0.0);
+  CHECK(leg.left() == Approx(0.0).margin(1e-15));
+}
+
+TEST_CASE("without a cruise the turn is at the top; no phases are rest") {
+  const auto profile = profile::seven_phase(0.5, {0.0, 0.0}, Limits{30.0, 1000.0, 10000.0});
+  CHECK(plan::BasicLeg<double>(*profile).to_turn() == Approx(profile->duration() / 2));
+  const plan::BasicLeg<double> none;
+  CHECK(none.state() == State{});
+  CHECK(none.left() == 0.0);
+}
