@@ -5,7 +5,7 @@
 using namespace cncplan;
 
 int main() {
-  const auto arc = path::arc_from_radius<double>({0, 0, 0}, {5, 5, 0}, 5.0, Turn::clockwise, Plane::xy);
+  const auto arc = path::arc_from_radius({0, 0, 0}, {5, 5, 0}, 5.0, Turn::clockwise, Plane::xy);
   if (!arc) return 1;
 
   const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};

@@ -1,19 +1,14 @@
 // Interpolators compared: exact samples, Taylor steps of second and first order, the form that is often
-// copied without its A term, and the classical constant increment. Prints the tables of
-// docs/interpolation.md; with a folder as argument also draws KK22's Figs. 8 and 11 there, by gnuplot.
+// copied without its A term, and the classical constant increment. Prints the table of docs/interpolation.md.
 //
 // Model: rest to rest, Vmax 30 mm/s, Amax 1000 mm/s^2, J 10000 mm/s^3, the speed capped by curvature; samples
 // at k T and at the end.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cncplan/cncplan.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
-#include <string>
 #include <vector>
 
 using namespace cncplan;
@@ -163,82 +158,9 @@ double largest_curvature(const P& path) {
   return largest;
 }
 
-/// Points on two consecutive arcs of R 5, as KK22's Fig. 7 starts, every `degrees`; and their distance from
-/// them.
-std::vector<Vector3> points_on_arcs(double degrees) {
-  std::vector<Vector3> points;
-  for (int i = -1; i * degrees <= 180.0 + degrees; ++i) {
-    const double angle = (180.0 - i * degrees) / 180.0 * std::numbers::pi;
-    points.emplace_back(5.0 + 5.0 * std::cos(angle), 5.0 * std::sin(angle), 0.0);
-  }
-  return points;
-}
-double off_circle(const Vector3& point) { return (point - Vector3(5, 0, 0)).norm() - 5.0; }
-
-std::FILE* gnuplot(const std::string& folder) {
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return nullptr;
-  if (::chdir(folder.c_str()) != 0) return nullptr;
-  return ::popen("gnuplot", "w");
-}
-
-void curve(std::FILE* pipe, const char* block, const std::vector<Vector3>& rows) {
-  std::fprintf(pipe, "$%s << EOD\n", block);
-  for (const Vector3& row : rows) std::fprintf(pipe, "%.9g %.9g %.9g\n", row.x(), row.y(), row.z());
-  std::fprintf(pipe, "EOD\n");
-}
-
-std::vector<Vector3> figure8(double degrees) {
-  const std::vector<Vector3> controls = points_on_arcs(degrees);
-  const path::BSpline<3> spline(controls);
-  std::vector<Vector3> rows;
-  for (int i = 0; i <= 600; ++i) {
-    const double u = spline.parameter_end() * i / 600;
-    rows.emplace_back(180.0 * i / 600, 1e3 * off_circle(spline.position(u)), 0.0);
-  }
-  return rows;
-}
-
-std::vector<Vector3> figure11(Method method, const path::Arc& path) {
-  const profile::Profile profile = profile_for(method, path, path.max_curvature());
-  const auto axes = accelerations(positions(path, walk(method, path, profile, 1e-3)), 1e-3);
-  std::vector<Vector3> rows;
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    rows.emplace_back(1e-3 * (static_cast<double>(i) - 1.0), axes[i].x(), axes[i].y());
-  return rows;
-}
-
-/// The largest axis acceleration where motion enters and leaves at Vmax/2, as the joints of Fig. 7 are
-/// driven.
-double between_joints(const path::Arc& path) {
-  const auto profile = profile::seven_phase(path.length(), {.start = 15.0, .end = 15.0}, limits).value();
-  double largest = 0.0;
-  for (const auto& sample : interpolate::samples(path, profile, 1e-3))
-    largest = std::max(largest, sample.acceleration.cwiseAbs().maxCoeff());
-  return largest;
-}
-
-void draw(std::FILE* pipe) {
-  std::fprintf(pipe, "set terminal svg size 800,420 background 'white'\nset grid\n");
-  curve(pipe, "wide", figure8(30.0));
-  curve(pipe, "narrow", figure8(15.0));
-  std::fprintf(
-      pipe,
-      "set output 'arc_against_b_spline.svg'\nset xlabel 'angle, degrees'\nset ylabel 'contour error, um'\n"
-      "plot $wide using 1:2 with lines lw 2 title 'B-spline, points every 30 deg', $narrow using 1:2 with "
-      "lines lw 2 title 'every 15 deg', 0 with lines lw 2 title 'arc'\n");
-  curve(pipe, "profile", figure11(Method::exact, circle(5.0)));
-  curve(pipe, "constant", figure11(Method::constant, circle(5.0)));
-  std::fprintf(
-      pipe,
-      "set output 'axis_accelerations.svg'\nset multiplot layout 2,1\nset xlabel 't, s'\n"
-      "set ylabel 'mm/s^2'\nset title 'profile'\nplot $profile using 1:2 with lines title 'X', $profile "
-      "using 1:3 with lines title 'Y'\nset title 'constant increment'\nplot $constant using 1:2 with "
-      "lines title 'X', $constant using 1:3 with lines title 'Y'\nunset multiplot\n");
-}
-
 }  // namespace
 
-int main(int argc, char** argv) {
+int main() {
   std::printf(
       "| curve | T ms | method | end error mm | chord error mm | feed error, peak | RMS | axis acceleration "
       "mm/s^2 | ns a sample |\n|---|---|---|---|---|---|---|---|---|\n");
@@ -253,37 +175,4 @@ int main(int argc, char** argv) {
                             Vector3(16, -2, 3), Vector3(25, 0, 0), Vector3(30, 8, -1)};
   const path::ArcLengthTable<path::BSpline<3>, 48> spline{path::BSpline<3>(controls)};
   compare("B-spline", spline, largest_curvature(spline));
-
-  std::printf("\nFig. 8, two arcs of R 5: largest contour error, mm\n");
-  const path::Arc half =
-      path::arc_from_radius<double>({0, 0, 0}, {10, 0, 0}, 5.0, Turn::clockwise, Plane::xy).value();
-  double arc_error = 0.0;
-  for (int i = 0; i <= 600; ++i)
-    arc_error = std::max(arc_error, std::abs(off_circle(half.position(std::numbers::pi * i / 600))));
-  std::printf("arc %.1e", arc_error);
-  for (const double degrees : {45.0, 30.0, 15.0, 5.0}) {
-    double worst = 0.0;
-    for (const Vector3& row : figure8(degrees)) worst = std::max(worst, 1e-3 * std::abs(row.y()));
-    std::printf("; B-spline, points every %.0f deg: %.1e", degrees, worst);
-  }
-  std::printf("\n\nFig. 11, T 1 ms: largest axis acceleration, mm/s^2\n");
-  for (const double rise : {0.0, 10.0})
-    for (const Method method : {Method::exact, Method::taylor2, Method::constant}) {
-      const path::Arc path = circle(5.0, rise);
-      std::printf("%s, %s: %.0f\n", rise > 0.0 ? "helix" : "circle", name(method),
-                  measure(method, path, path.max_curvature(), 1e-3).acceleration);
-    }
-
-  for (const double rise : {0.0, 10.0})
-    std::printf("%s, exact, between joints at Vmax/2: %.0f\n", rise > 0.0 ? "helix" : "circle",
-                between_joints(circle(5.0, rise)));
-
-  if (argc < 2) return 0;
-  std::FILE* const pipe = gnuplot(argv[1]);
-  if (pipe == nullptr) {
-    std::fprintf(stderr, "no pictures: gnuplot or the folder is missing\n");
-    return 0;
-  }
-  draw(pipe);
-  return ::pclose(pipe) == 0 ? 0 : 1;
 }

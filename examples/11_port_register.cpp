@@ -12,7 +12,7 @@ using namespace cncplan;
 
 int main() {
   const auto circle =
-      path::arc_from_center<double>({5, 0, 0}, {5, 0, 0}, {0, 0, 0}, Turn::counterclockwise, Plane::xy);
+      path::arc_from_center({5, 0, 0}, {5, 0, 0}, {0, 0, 0}, Turn::counterclockwise, Plane::xy);
   const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
   const auto profile = profile::seven_phase(circle->length(), {.start = 0.0, .end = 0.0}, limits);
 

@@ -1,0 +1,68 @@
+// A controller without heap, exceptions and run-time type information: lines of G-code come in, set points
+// go out at every millisecond, and a hold takes effect at once. Compiled with -fno-exceptions -fno-rtti.
+#include <array>
+#include <cncplan/gcode/reader.hpp>
+#include <cncplan/junction/deviation.hpp>
+#include <cncplan/plan/block_maker.hpp>
+#include <cncplan/plan/player.hpp>
+#include <cstdio>
+
+using namespace cncplan;
+
+namespace {
+
+constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+constexpr std::array<std::string_view, 5> lines{"G21 G90 G17 F1200", "G1 X20", "G3 X25 Y5 R5", "G1 Y15",
+                                                "M30"};
+
+// All memory there is.
+constexpr std::size_t room = 16;
+std::array<plan::Block, room> blocks;
+std::array<plan::PlayedBlock, room> played;
+std::array<plan::BlockCaps, room> course;
+std::array<plan::Gate, room + 1> gates, spare_gates;
+gcode::Reader reader;
+plan::BlockMaker maker(limits, 50.0);
+plan::Player player({played, course, gates, spare_gates});
+std::size_t pushed = 0;
+int ticks = 0;
+
+// The timer's interrupt.
+void tick() {
+  if (ticks == 300) player.hold();
+  if (ticks == 500) player.resume();
+  const plan::Played now = player.tick(0.001);
+  if (now.block >= 0 && ticks % 50 == 0) {
+    const path::Segment& path = blocks[static_cast<std::size_t>(now.block) % room].segment;
+    const Vector3 point = path.position(path.parameter_at(now.along));
+    std::printf("%5d ms %9.4f %9.4f mm %8.3f mm/s\n", ticks, point.x(), point.y(), now.velocity);
+  }
+  ++ticks;
+}
+
+// Waits for room, while the machine runs.
+void run(const plan::Block& block) {
+  const plan::Block& before = blocks[(pushed + room - 1) % room];
+  const auto caps = pushed == 0 ? plan::caps_from_rest(block, plan::ShareLimits{})
+                                : plan::caps(before, block, junction::Deviation{0.01}, plan::ShareLimits{});
+  while (!player.push({.caps = caps, .feed = block.limits.velocity})) tick();
+  blocks[pushed++ % room] = block;
+}
+
+}  // namespace
+
+int main() {
+  std::array<gcode::Item, gcode::max_items_per_line> items;
+  for (const std::string_view line : lines) {
+    const auto end = reader.read_line(line, items.begin());
+    if (!end) return 1;
+    for (auto item = items.begin(); item != *end; ++item) {
+      const auto block = maker.take(*item);
+      if (!block) return 1;
+      if (*block) run(**block);
+    }
+  }
+  if (const auto last = maker.finish()) run(*last);
+  while (!player.finished()) tick();
+  std::printf("done after %d ms\n", ticks);
+}
