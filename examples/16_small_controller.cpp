@@ -1,5 +1,6 @@
-// A controller without heap, exceptions and run-time type information: lines of G-code come in, set points
-// go out at every millisecond, and a hold takes effect at once. Compiled with -fno-exceptions -fno-rtti.
+// A small controller: lines of G-code come in, set points go out at every millisecond, and a hold takes
+// effect at once. Compiled with -fno-exceptions -fno-rtti; once it runs (the reader's tables are made before
+// main) there is no allocation.
 #include <array>
 #include <cncplan/gcode/reader.hpp>
 #include <cncplan/junction/deviation.hpp>
@@ -15,7 +16,7 @@ constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.
 constexpr std::array<std::string_view, 5> lines{"G21 G90 G17 F1200", "G1 X20", "G3 X25 Y5 R5", "G1 Y15",
                                                 "M30"};
 
-// All memory there is.
+// All memory that it needs.
 constexpr std::size_t room = 16;
 std::array<plan::Block, room> blocks;
 std::array<plan::PlayedBlock, room> played;

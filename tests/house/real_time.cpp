@@ -16,6 +16,10 @@
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
+#include "cncplan/plan/block_maker.hpp"
+#include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/player.hpp"
+#include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/step/backend.hpp"
@@ -34,8 +38,8 @@ path::Arc helix() {
   return *path::arc_from_radius<double>({0, 0, 0}, {5, 5, 2}, 5.0, Turn::clockwise, Plane::xy);
 }
 
-// A reader is set up before the machine moves; what it reads then costs nothing.
-gcode::Reader reader;
+// Readers are set up before the machine moves; what they read then costs nothing.
+gcode::Reader reader, reader_of_stream, reader_of_player;
 
 void read_lines() {
   std::array<gcode::Item, gcode::max_items_per_line> items;
@@ -102,6 +106,51 @@ void step_a_block() {
   sink = static_cast<double>(step::counts(edges)[0]);
 }
 
+// G-code to blocks, and each block with its caps to `take`.
+template <class Take>
+void make_blocks(gcode::Reader& program, const Take& take) {
+  std::array<gcode::Item, gcode::max_items_per_line> items;
+  plan::BlockMaker maker(limits, 50.0);
+  plan::Block before;
+  bool first = true;
+  const auto push = [&](const plan::Block& block) {
+    take(block, first ? plan::caps_from_rest(block, plan::ShareLimits{})
+                      : plan::caps(before, block, junction::Deviation{0.01}, plan::ShareLimits{}));
+    before = block;
+    first = false;
+  };
+  for (const std::string_view line : {"G21 G90 F1200", "G1 X10", "G3 X15 Y5 R5", "G4 P0.01", "G1 Y10", "X0",
+                                      "Y0", "X5", "Y5", "X0", "Y0"}) {
+    const auto end = program.read_line(line, items.begin());
+    for (const gcode::Item* item = items.begin(); item != *end; ++item)
+      if (const auto block = maker.take(*item); *block) push(**block);
+  }
+  push(*maker.finish());
+}
+
+void stream_a_program() {
+  std::array<plan::BlockCaps, 4> window;
+  std::array<plan::Gate, 5> window_gates, held_gates;
+  std::array<plan::Span, 8> spans;
+  plan::StreamPlanner planner(plan::StreamMemory{window, window_gates, held_gates}, plan::SevenPhase{});
+  make_blocks(reader_of_stream, [&](const plan::Block&, const plan::BlockCaps& caps) {
+    sink = planner.push(caps, spans.begin()).has_value() ? 1.0 : 0.0;
+  });
+  sink = planner.finish(spans.begin()).has_value() ? 1.0 : 0.0;
+}
+
+void play_a_program() {
+  std::array<plan::PlayedBlock, 4> played;
+  std::array<plan::BlockCaps, 4> course;
+  std::array<plan::Gate, 5> gates, spare_gates;
+  plan::Player player({played, course, gates, spare_gates});
+  make_blocks(reader_of_player, [&](const plan::Block& block, const plan::BlockCaps& caps) {
+    while (!player.push({.caps = caps, .feed = block.limits.velocity})) sink = player.tick(1e-3).along;
+    player.feed_override(0.5);
+  });
+  while (!player.finished()) sink = player.tick(1e-3).velocity;
+}
+
 struct Job {
   const char* name;
   void (*run)();
@@ -114,6 +163,8 @@ constexpr std::array jobs{
     Job{"junction: a corner, by the lowest of all policies", judge_a_joint},
     Job{"profile: five and seven phases, possible or not", plan_profiles},
     Job{"interpolate: the samples of a helix", sample_a_block},
+    Job{"plan: G-code through look-ahead over a window", stream_a_program},
+    Job{"plan: G-code played, tick by tick", play_a_program},
     Job{"step: the edges of a helix, simulated", step_a_block},
 };
 
