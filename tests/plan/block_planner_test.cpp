@@ -17,7 +17,7 @@ namespace {
 
 std::vector<double> speeds_of(const std::vector<plan::BlockCaps>& blocks) {
   std::vector<double> speeds(blocks.size() + 1);
-  plan::joint_speeds(std::span<const plan::BlockCaps>(blocks), test::SevenPhase<double>{}, std::span(speeds));
+  plan::joint_speeds(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(speeds));
   return speeds;
 }
 
@@ -95,8 +95,8 @@ TEST_CASE("plans block by block break nothing, under both laws") {
   test::PlanErrors worst;
   for (int draws = 0; draws < 2000; ++draws) {
     const auto blocks = test::random_program(random, LimitSpread::wide);
-    const auto spans = draws % 2 == 0 ? test::single_blocks_of(blocks)
-                                      : test::single_blocks_of(blocks, test::FivePhase<double>{});
+    const auto spans =
+        draws % 2 == 0 ? test::single_blocks_of(blocks) : test::single_blocks_of(blocks, plan::FivePhase{});
     worst.worst_of(test::examine_plan<double>(blocks, spans));
     for (const auto& span : spans) REQUIRE(span.count <= 1);
   }

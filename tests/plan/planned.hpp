@@ -5,28 +5,14 @@
 #include <vector>
 
 #include "cncplan/plan/block_planner.hpp"
+#include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/span_planner.hpp"
-#include "cncplan/profile/five_phase.hpp"
-#include "cncplan/profile/seven_phase.hpp"
 #include "support/catch.hpp"
 
 namespace cncplan::test {
 
-template <std::floating_point S>
-struct SevenPhase {
-  profile::BasicSolver<S> operator()(const BasicLimits<S>& limits) const {
-    return profile::seven_phase_solver(limits);
-  }
-};
-template <std::floating_point S>
-struct FivePhase {
-  profile::BasicSolver<S> operator()(const BasicLimits<S>& limits) const {
-    return profile::five_phase_solver(limits);
-  }
-};
-
 /// Fails the test where there is no plan.
-template <std::floating_point S, class Factory = SevenPhase<S>>
+template <std::floating_point S, class Factory = plan::SevenPhase>
 std::vector<plan::BasicSpan<S>> spans_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
                                          const Factory& factory = {}) {
   std::vector<plan::BasicSpan<S>> spans;
@@ -37,7 +23,7 @@ std::vector<plan::BasicSpan<S>> spans_of(const std::vector<plan::BasicBlockCaps<
 }
 
 /// The same, block by block.
-template <std::floating_point S, class Factory = SevenPhase<S>>
+template <std::floating_point S, class Factory = plan::SevenPhase>
 std::vector<plan::BasicSpan<S>> single_blocks_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
                                                  const Factory& factory = {}) {
   std::vector<plan::BasicSpan<S>> spans;

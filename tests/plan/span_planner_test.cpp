@@ -34,7 +34,7 @@ TEST_CASE("random programs break no cap, no feed and no limit, and join without 
   for (int draws = 0; draws < 4000; ++draws) {
     const auto blocks = draw(random);
     for (const bool seven : {true, false}) {
-      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, test::FivePhase<double>{});
+      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, plan::FivePhase{});
       const auto errors = test::examine_plan<double>(blocks, spans);
       if (errors.worst() > worst_one) worst_one = errors.worst(), where = blocks;
       worst.worst_of(errors);
@@ -151,8 +151,8 @@ TEST_CASE("the same blocks give the same bits, without heap") {
     std::vector<plan::Gate> gates(blocks.size() + 1);
     std::vector<plan::Span> first(2 * blocks.size()), second(2 * blocks.size());
     const auto plan = [&](std::vector<plan::Span>& out) {
-      (void)plan::plan_spans(std::span<const plan::BlockCaps>(blocks), test::SevenPhase<double>{},
-                             std::span(gates), out.begin());
+      (void)plan::plan_spans(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(gates),
+                             out.begin());
     };
     plan(first);
     CHECK(test::heap_allocations_of([&] { plan(second); }) == 0);
