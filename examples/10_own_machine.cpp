@@ -1,6 +1,5 @@
 // A machine of one's own: a SCARA arm of two links. Its inverse is written once, for numbers and for jets;
 // the library then plans a line within the limits of both elbows and the slide.
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cncplan/cncplan.hpp>
@@ -56,7 +55,8 @@ int main() {
     const plan::Place place = cursor.at(time);
     const auto& path = course.blocks()[place.block].path;
     const Vector3 q = path.position(path.parameter_at(place.along));
-    const double off = (machine.tip(q) - line.start()).cross(line.start_tangent()).norm();
+    const Vector3 gap = machine.tip(q) - line.start();
+    const double off = (gap - line.start_tangent().dot(gap) * line.start_tangent()).norm();
     std::printf("%8.4f %10.6f %10.6f %10.6f %18.1e\n", time, q[0], q[1], q[2], off);
     worst = std::max(worst, off);
   }
