@@ -24,7 +24,8 @@ void examine(const K& machine, const typename K::Joints& joints, const typename 
     return;
   }
   for (int i = 0; i < joints.size(); ++i)
-    worst.round_trip = std::max(worst.round_trip, std::abs(((*back)[i] - joints[i]) / scale[i]));
+    worst.round_trip =
+        std::max(worst.round_trip, static_cast<double>(std::abs(((*back)[i] - joints[i]) / scale[i])));
 }
 
 template <Kinematics K>

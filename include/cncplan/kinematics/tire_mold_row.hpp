@@ -60,9 +60,9 @@ using TireMoldRow = BasicTireMoldRow<double>;
 template <std::floating_point S>
 [[nodiscard]] BasicTireMoldRow<S> tire_mold_row(S tool_length, const VectorN<S, 4>& start,
                                                 const VectorN<S, 4>& end) {
-  constexpr S least_share(0.1);
-  constexpr S places_per_turn(16);  // looked at in each rad
-  constexpr S most_places(10000);
+  constexpr S least_share = S(0.1);
+  constexpr S places_per_turn = S(16);  // looked at in each rad
+  constexpr S most_places = S(10000);
   BasicTireMoldRow<S> row{start, end - start, tool_length, S(0)};
   const S least = least_share * row.way.cwiseAbs().maxCoeff();
   const S places = std::min(places_per_turn * (S(1) + S(1) / row.reach({})), most_places);

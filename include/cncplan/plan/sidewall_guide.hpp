@@ -1,9 +1,11 @@
 // Guides flat artwork over the pieces and kinks of a sidewall (set-up).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,9 +24,9 @@ class BasicSidewallGuide {
   using Chart = kinematics::BasicSidewallChart<S>;
 
   /// Normals that jump by less are as good as one: what rounding leaves of a tangent joint.
-  static constexpr S smooth_angle = S(1e-8);
+  static constexpr S smooth_angle = std::max(S(1e-8), 64 * std::numeric_limits<S>::epsilon());
   /// Radii that pass a piece's end by less have not left it, mm.
-  static constexpr S margin = S(1e-9);
+  static constexpr S margin = std::max(S(1e-9), 4096 * std::numeric_limits<S>::epsilon());
 
   /// Nothing nearer to the artwork's origin than `smallest_radius` (mm, > 0) is mapped.
   BasicSidewallGuide(const kinematics::BasicSidewall<S>& sidewall, S smallest_radius)

@@ -1,0 +1,111 @@
+// Rows of the four-axis machine: the tip's way along them, and rows about a standing tip.
+#include "cncplan/kinematics/tire_mold_row.hpp"
+
+#include "cncplan/path/line.hpp"
+#include "cncplan/plan/joint_caps.hpp"
+#include "cncplan/plan/stretch.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::kinematics;
+
+static_assert(Chart<TireMoldRow> && Chart<BasicTireMoldRow<float>>);
+
+namespace {
+
+template <class S>
+using Paths = std::vector<plan::MappedPath<BasicTireMoldRow<S>>>;
+
+template <class S>
+Paths<S> paths_of(const BasicTireMoldRow<S>& row) {
+  const path::BasicSegment<S> whole(path::BasicLine<S>({S(0), S(0), S(0)}, {S(1), S(0), S(0)}));
+  Paths<S> paths;
+  S table{};
+  plan::cut(plan::Stretch<BasicTireMoldRow<S>>{whole, row, S(0), S(1), false}, S(2), table,
+            [&](const auto& path) { paths.push_back(path); });
+  return paths;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("rows: as long as the polygon of the tip's places", "[rows]", float, double) {
+  using S = TestType;
+  using Joints = typename BasicTireMoldRow<S>::Joints;
+  test::Random random;
+  const double rounding = std::is_same_v<S, float> ? 1e-4 : 1e-6;
+  double length = 0, joined = 0, off = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto any = [&](double low, double high) { return static_cast<S>(random.uniform(low, high)); };
+    const Joints from(any(50, 300), any(0, 300), any(-1, 1), any(-6, 6));
+    const Joints to(any(50, 300), any(0, 300), any(-1, 1), any(-6, 6));
+    const auto row = tire_mold_row(S(20), from, to);
+    const auto paths = paths_of(row);
+    // the machine written out, in double
+    const auto tip = [&](double part) {
+      const Eigen::Vector4d q = from.template cast<double>() + part * (to - from).template cast<double>();
+      const double r = q[0] + 20 * std::sin(q[2]);
+      return Vector3(r * std::cos(q[3]), r * std::sin(q[3]), q[1] - 20 * std::cos(q[2]));
+    };
+    const auto polygon = [&](int n) {
+      double sum = 0;
+      for (int k = 0; k < n; ++k) sum += (tip((k + 1.0) / n) - tip(k * 1.0 / n)).norm();
+      return sum;
+    };
+    const double exact = polygon(4000) + (polygon(4000) - polygon(2000)) / 3;
+    double sum = 0;
+    for (const auto& path : paths) sum += static_cast<double>(path.length());
+    if (row.even_length == S(0)) length = std::max(length, std::abs(sum - exact) / exact);
+    joined = std::max(joined, static_cast<double>((paths.front().position(S(0)) - from).norm()));
+    joined = std::max(joined,
+                      static_cast<double>((paths.back().position(paths.back().parameter_end()) - to).norm()));
+    // at its middle by length, the tip is on the row, and so fast as the length says
+    const auto& path = paths[paths.size() / 2];
+    const S u = path.parameter_at(path.length() / S(2));
+    const auto place = row.tip(path.point(u));
+    const double part = static_cast<double>(path.point(u)[0]);
+    off = std::max(off, (tip(part) - Vector3(place[0], place[1], place[2])).norm() / 300);
+  }
+  CHECK(length < rounding);
+  CHECK(joined < 300 * rounding);
+  CHECK(off < rounding);
+}
+
+TEST_CASE("rows: speed along them is the tip's", "[rows]") {
+  const TireMold machine{.tool_length = 20};
+  const auto row = tire_mold_row<double>(20, {0, 0, 0, 0}, {244, 150, -0.3, 1.2});
+  double worst = 0;
+  for (const auto& path : paths_of(row))
+    for (const double part : {0.0, 0.3, 1.0}) {
+      const double u = part * path.parameter_end();
+      worst =
+          std::max(worst, std::abs(tip_velocity(machine, path.position(u), path.rates(u).first).norm() - 1));
+    }
+  CHECK(worst < 1e-12);
+  const auto paths = paths_of(row);
+  CHECK(test::heap_allocations_of([&] { (void)plan::rate_bounds(paths.front()); }) == 0);
+}
+
+TEST_CASE("rows: a tool that turns about its tip shares the row evenly", "[rows]") {
+  // round the tip at (100, 0): R and Z follow A
+  const auto holder = [](double a) {
+    return TireMold::Joints(100 - 20 * std::sin(a), 20 * std::cos(a), a, 0.5);
+  };
+  const auto row = tire_mold_row<double>(20, holder(-0.2), holder(-0.1));
+  CHECK(row.even_length == Approx(0.1 * 20 * (std::sin(0.2) - std::sin(0.1))));
+  const auto paths = paths_of(row);
+  double sum = 0;
+  for (const auto& path : paths) {
+    sum += path.length();
+    const auto rates = path.rates(path.parameter_end() / 2);
+    CHECK((rates.first - row.way / row.even_length).norm() < 1e-12);
+    CHECK(rates.second.norm() < 1e-12);
+  }
+  CHECK(sum == Approx(row.even_length));
+  // with no tool, only A
+  CHECK(tire_mold_row<double>(0, {100, 0, 0, 0}, {100, 0, 1, 0}).even_length == Approx(0.1));
+  // and where R turns round on the way of the tip
+  CHECK(tire_mold_row<double>(20, {100, 0, -1, 0}, {100, 0, 1, 0}).even_length == 0.0);
+  CHECK(tire_mold_row<double>(20, {100, 0, 0, 0}, {70, 0, 1.5, 0}).even_length > 0.0);
+}
