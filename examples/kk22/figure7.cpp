@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
 
@@ -20,8 +21,9 @@ std::vector<double> joint_speeds(const plan::Plan& plan) {
   std::vector<plan::BlockTiming> timings;
   plan::block_timings(std::span<const plan::Span>(plan.spans), std::span<const double>(plan.lengths),
                       std::back_inserter(timings));
-  std::vector<double> speeds;
-  for (const auto& block : timings) speeds.push_back(block.exit.velocity);
+  std::vector<double> speeds(timings.size());
+  std::transform(timings.begin(), timings.end(), speeds.begin(),
+                 [](const auto& block) { return block.exit.velocity; });
   return speeds;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/path/segment.hpp"
@@ -37,8 +38,8 @@ class MappedPath {
   using Rates = BasicJointRates<Scalar, joint_count>;
 
   /// From parameter `from` to a higher one, where the measured point does not stand still.
-  MappedPath(const path::BasicSegment<Scalar>& segment, const C& chart, Scalar from, Scalar to)
-      : segment_(segment), chart_(chart), from_(from), to_(to), length_(length_at(to - from)) {}
+  MappedPath(path::BasicSegment<Scalar> segment, const C& chart, Scalar from, Scalar to)
+      : segment_(std::move(segment)), chart_(chart), from_(from), to_(to), length_(length_at(to - from)) {}
 
   [[nodiscard]] const path::BasicSegment<Scalar>& segment() const { return segment_; }
   [[nodiscard]] const C& chart() const { return chart_; }
