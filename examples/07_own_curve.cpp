@@ -1,10 +1,13 @@
 // A curve of one's own: an ellipse, driven at a planned feed. Prints how well two interpolators keep it.
 #include <algorithm>
+#include <cmath>
 #include <cncplan/interpolate/exact.hpp>
 #include <cncplan/interpolate/stepped.hpp>
 #include <cncplan/path/arc_length_table.hpp>
 #include <cncplan/profile/seven_phase.hpp>
+#include <cstdint>
 #include <cstdio>
+#include <numbers>
 
 using namespace cncplan;
 
@@ -29,11 +32,9 @@ int main() {
 
   double worst = 0.0;
   const auto exact = interpolate::samples(ellipse, *profile, 1e-3);
-  auto it = exact.begin();
-  for (const auto& sample : interpolate::taylor_samples(Ellipse{}, *profile, 1e-3)) {
-    worst = std::max(worst, (sample.position - (*it).position).norm());
-    ++it;
-  }
+  std::int64_t k = 0;
+  for (const auto& sample : interpolate::taylor_samples(Ellipse{}, *profile, 1e-3))
+    worst = std::max(worst, (sample.position - exact[k++].position).norm());
   std::printf("ellipse of %.6f mm in %.3f s: %ld samples\n", ellipse.length(), profile->duration(),
               static_cast<long>(exact.size()));
   std::printf("Taylor steps are never more than %.2g mm from the exact samples\n", worst);
