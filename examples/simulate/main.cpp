@@ -81,6 +81,10 @@ void check_options(const Options& options, const Machine& machine) {
   if (options.corner_time && mill) refuse("--corner-time is for machines with a rotary table");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
     refuse("--tool-length is for machines with a tilting axis");
+  const bool as_planned = options.law == Law::seven && options.planning == Planning::span &&
+                          options.interpolator == Interpolator::exact;
+  if (options.events && !as_planned)
+    refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
   if (options.interpolator == Interpolator::taylor && !mill)
     refuse("--interpolator taylor is for machines without a rotary table");
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -58,6 +59,9 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--tool-length", options.tool_length,
                  "with a tilting axis: from there to the tool's tip, mm; 0 if not given")
       ->check(support::not_negative());
+  app.add_option("--events", options.events, "holds, overrides and stops on the way, CSV");
+  app.add_option("--from-line", options.from_line, "begin at the first motion of this line or behind it")
+      ->check(CLI::Range(1, std::numeric_limits<int>::max()));
   app.add_option("--motions", options.motions, "write the program's motions, CSV");
   app.add_option("--blocks", options.blocks, "write the planned blocks, CSV");
   support::add_run_options(app, options);
@@ -65,6 +69,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   options.junction = junction_choice(junction);
   support::refuse_shared_files({{"PROGRAM", options.program},
                                 {"--machine", options.machine},
+                                {"--events", options.events},
                                 {"--motions", options.motions},
                                 {"--blocks", options.blocks},
                                 {"--samples", options.samples},

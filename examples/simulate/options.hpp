@@ -23,6 +23,8 @@ struct Options : support::RunOptions {
   Interpolator interpolator = Interpolator::exact;
   std::optional<double> corner_time;  ///< s
   std::optional<double> tool_length;  ///< mm
+  std::optional<std::string> events;
+  std::optional<int> from_line;
   std::optional<std::string> motions;
   std::optional<std::string> blocks;
 };

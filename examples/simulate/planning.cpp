@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "playing.hpp"
 #include "run.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
@@ -97,25 +99,68 @@ std::vector<plan::Span> spans_of(const Caps& caps, const Options& options) {
   return spans;
 }
 
+// The program as the highest override would have it: each block at its feed times `share`, within what the
+// machine bears.
+Program raised(Program program, const Options& options, const Machine& machine, double share) {
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
+    plan::Block& block = program.blocks[i];
+    if (block.kind == junction::Kind::rapid) continue;
+    block.limits.velocity =
+        std::min({share * program.origins[i].feed, options.limits.velocity, machine.feed_limit});
+    if (machine.kinematics == Kinematics::cartesian) block.limits = limits_along(machine, block);
+  }
+  return program;
+}
+
+// The program played: nothing is known of the events before they come, but how far the feed goes.
+template <class P>
+Plan played(const Program& program, const Route<P>& route, const Options& options, const Machine& machine) {
+  const auto events = read_events(*options.events);
+  const Caps caps =
+      route_caps(raised(program, options, machine, highest_feed(events)), route, options, machine);
+  std::vector<plan::PlayedBlock> pieces;
+  for (std::size_t i = 0; i < route.size(); ++i) {
+    const std::size_t block = route[i].block;
+    const Origin& origin = program.origins[block];
+    pieces.push_back({.caps = caps[i],
+                      .feed = origin.length > 0.0 ? origin.feed : caps[i].limits.velocity,
+                      .rapid = program.blocks[block].kind == junction::Kind::rapid,
+                      .line = origin.line});
+  }
+  return play(pieces, events, options.period);
+}
+
+State peak_of(const Plan& plan) {
+  State peak;
+  const auto grow = [&](const State& state) {
+    peak.velocity = std::max(peak.velocity, std::abs(state.velocity));
+    peak.acceleration = std::max(peak.acceleration, std::abs(state.acceleration));
+    peak.jerk = std::max(peak.jerk, std::abs(state.jerk));
+  };
+  for (const auto& span : plan.spans) grow(span.profile.peak());
+  for (const auto& phase : plan.phases)
+    for (const double tau : {0.0, phase.duration}) grow(phase.at(tau));
+  for (const auto& timing : plan.timings) peak.velocity = std::max(peak.velocity, timing.peak_velocity);
+  return peak;
+}
+
 }  // namespace
 
 template <class P>
 Plan make_plan(const Program& program, const Route<P>& route, const Options& options, const Machine& machine,
                Measures& measures) {
-  Caps caps;
-  std::vector<plan::Span> spans;
+  Plan plan;
   {
     const Stopwatch watch(measures.plan_seconds);
-    caps = route_caps(program, route, options, machine);
-    spans = spans_of(caps, options);
+    if (options.events) {
+      plan = played(program, route, options, machine);
+    } else {
+      Caps caps = route_caps(program, route, options, machine);
+      std::vector<plan::Span> spans = spans_of(caps, options);
+      plan = support::plan_of(std::move(caps), std::move(spans));
+    }
   }
-  Plan plan = support::plan_of(std::move(caps), std::move(spans));
-  for (const auto& span : plan.spans) {
-    const State peak = span.profile.peak();
-    measures.peak.velocity = std::max(measures.peak.velocity, peak.velocity);
-    measures.peak.acceleration = std::max(measures.peak.acceleration, peak.acceleration);
-    measures.peak.jerk = std::max(measures.peak.jerk, peak.jerk);
-  }
+  measures.peak = peak_of(plan);
   for (std::size_t i = 1; i < plan.caps.size(); ++i) {
     const std::size_t before = route[i - 1].block, after = route[i].block;
     const double slower =

@@ -143,6 +143,19 @@ class Builder {
   Program& program_;
 };
 
+// Leaves out what comes before a line: the machine stands where its first motion begins.
+void begin_at(Program& program, int line) {
+  const auto first = std::find_if(program.origins.begin(), program.origins.end(),
+                                  [&](const Origin& origin) { return origin.line >= line; });
+  if (first == program.origins.end())
+    throw Failure(Exit::bad_input,
+                  fmt::format("--from-line {}: {} has no motion there or behind", line, program.file));
+  const auto count = first - program.origins.begin();
+  program.origins.erase(program.origins.begin(), first);
+  program.blocks.erase(program.blocks.begin(), program.blocks.begin() + count);
+  if (!program.rows.empty()) program.rows.erase(program.rows.begin(), program.rows.begin() + count);
+}
+
 }  // namespace
 
 std::string Program::place(std::size_t block) const {
@@ -162,6 +175,7 @@ Program read_program(const Options& options, const Machine& machine) {
                                         [&](const gcode::Item& item) { std::visit(build, item); });
   if (!read) refuse(file, read.error());
   (void)build.last_block(1);
+  if (options.from_line) begin_at(program, *options.from_line);
   program.lines = static_cast<std::size_t>(reader.line());
   return program;
 }

@@ -68,6 +68,7 @@ std::string json_summary(const Program& program, const Plan& plan, const Options
                     {"acceleration", options.limits.acceleration},
                     {"jerk", options.limits.jerk},
                     {"period", options.period}};
+  json["completed"] = plan.completed;
   json["warnings"] = program.warnings;
   return json.dump(2) + "\n";
 }
@@ -81,7 +82,8 @@ std::string table_summary(const Program& program, const Plan& plan, const Machin
   };
   row("lines, motions, arcs", fmt::format("{}, {}, {}", program.lines, motions, arcs));
   row("path length", fmt::format("{:.4f} mm", plan.length));
-  row("time", fmt::format("{:.4f} s, {} samples", plan.duration, m.samples));
+  row("time", fmt::format("{:.4f} s, {} samples{}", plan.duration, m.samples,
+                          plan.completed ? "" : ", not to the end"));
   row("peak along the path", fmt::format("{:.4g} mm/s, {:.4g} mm/s^2, {:.4g} mm/s^3", m.peak.velocity,
                                          m.peak.acceleration, m.peak.jerk));
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));

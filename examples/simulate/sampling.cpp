@@ -68,7 +68,7 @@ template <class P>
 void make_samples(const Program& program, const Route<P>& route, const Plan& plan, const Options& options,
                   Measures& measures, const std::function<void(const Sample&)>& take) {
   constexpr bool mill = std::is_same_v<P, MillPath>;
-  plan::Cursor cursor(plan.spans, plan.lengths);
+  support::PlanCursor cursor(plan);
   std::optional<TaylorFollower> follow;
   if constexpr (mill)
     if (options.interpolator == Interpolator::taylor) follow.emplace(route, plan);
@@ -76,10 +76,11 @@ void make_samples(const Program& program, const Route<P>& route, const Plan& pla
   const auto sample = [&](double time, const plan::Place& place) {
     const auto& [path, block] = route[place.block];
     const bool last = !(time < plan.duration);
+    const bool at_end = last && !(place.along < plan.lengths[place.block]);  // whatever rounding says
     double u = 0.0;
     {
       const Stopwatch watch(measures.interpolate_seconds);
-      u = last ? path.parameter_end() : path.parameter_at(place.along);
+      u = at_end ? path.parameter_end() : path.parameter_at(place.along);
       row.position = follow && !last ? (*follow)(place, time) : tool(path, u);
     }
     measures.contour_error = std::max(measures.contour_error, distance(programmed(path, u), row.position));
@@ -101,8 +102,7 @@ void make_samples(const Program& program, const Route<P>& route, const Plan& pla
     const double time = static_cast<double>(k) * options.period;
     sample(time, cursor.at(time));
   }
-  // At rest on the end point, whatever rounding left of the last phase.
-  sample(plan.duration, {route.size() - 1, plan.lengths.back(), {plan.length, 0.0, 0.0, 0.0}});
+  sample(plan.duration, plan.end);  // whatever rounding left of the last phase
   measures.end_error = (row.position - program.blocks.back().segment.end()).norm();
 }
 

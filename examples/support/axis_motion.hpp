@@ -124,22 +124,16 @@ class AxisPeaks {
 template <class P, class Paths>
 [[nodiscard]] AxisPeaks<P> axis_peaks(const Plan& plan, const Paths& path) {
   AxisPeaks<P> peaks;
-  double start = 0.0;
-  for (const cncplan::plan::Span& span : plan.spans) {
-    const auto phases = span.profile.phases();
-    double origin = 0.0;
-    for (std::size_t i = span.first; i < span.first + span.count; ++i) {
-      const double begin = plan.timings[i].start - start;
-      const double end = begin + plan.timings[i].duration;
-      for (const cncplan::Phase& phase : phases) {
-        const double first = std::max(begin - phase.time, 0.0);
-        const double last = std::min(end - phase.time, phase.duration);
-        if (first < last && plan.lengths[i] > 0.0) peaks.grow(path(i), phase, origin, first, last);
-      }
-      origin += plan.lengths[i];
+  plan.each_piece([&](std::size_t i, std::span<const cncplan::Phase> phases, double start, double origin) {
+    if (!(plan.lengths[i] > 0.0)) return;
+    const double begin = plan.timings[i].start - start;
+    const double end = begin + plan.timings[i].duration;
+    for (const cncplan::Phase& phase : phases) {
+      const double first = std::max(begin - phase.time, 0.0);
+      const double last = std::min(end - phase.time, phase.duration);
+      if (first < last) peaks.grow(path(i), phase, origin, first, last);
     }
-    start += span.profile.duration();
-  }
+  });
   return peaks;
 }
 

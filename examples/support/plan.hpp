@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -16,10 +18,65 @@ namespace support {
 struct Plan {
   std::vector<double> lengths;  ///< of each piece
   std::vector<cncplan::plan::BlockCaps> caps;
-  std::vector<cncplan::plan::Span> spans;
+  std::vector<cncplan::plan::Span> spans;  ///< none of a program that was played
+  std::vector<cncplan::Phase> phases;      ///< of a program that was played: time from the program's start,
+                                           ///< position from the piece's
+  std::vector<std::size_t> piece_phases;   ///< where the phases of each piece begin, and the end of them all
   std::vector<cncplan::plan::BlockTiming> timings;
   double duration = 0.0;
   double length = 0.0;
+  cncplan::plan::Place end;  ///< where it comes to rest
+  bool completed = true;     ///< that is the program's end
+
+  [[nodiscard]] bool played() const { return !piece_phases.empty(); }
+  [[nodiscard]] std::span<const cncplan::Phase> phases_of(std::size_t piece) const {
+    return std::span(phases).subspan(piece_phases[piece], piece_phases[piece + 1] - piece_phases[piece]);
+  }
+
+  /// Calls `take(piece, phases, start, origin)` for each piece that is driven, in order. Times of the phases
+  /// count from `start`; the piece begins where their position is `origin`.
+  template <class Take>
+  void each_piece(const Take& take) const {
+    if (played()) {
+      for (std::size_t i = 0; i <= end.block; ++i) take(i, phases_of(i), 0.0, 0.0);
+      return;
+    }
+    double start = 0.0;
+    for (const cncplan::plan::Span& span : spans) {
+      const auto all = span.profile.phases();
+      double origin = 0.0;
+      for (std::size_t i = span.first; i < span.first + span.count; ++i) {
+        take(i, std::span<const cncplan::Phase>(all), start, origin);
+        origin += lengths[i];
+      }
+      start += span.profile.duration();
+    }
+  }
+};
+
+/// Where the motion is, at times that do not decrease.
+class PlanCursor {
+ public:
+  explicit PlanCursor(const Plan& plan) : plan_(plan), spans_(plan.spans, plan.lengths) {}
+
+  [[nodiscard]] cncplan::plan::Place at(double time) {
+    if (!plan_.played()) return spans_.at(time);
+    if (!(time < plan_.duration)) return plan_.end;
+    while (phase_ + 1 < plan_.phases.size() && time >= plan_.phases[phase_ + 1].time) ++phase_;
+    while (plan_.piece_phases[piece_ + 1] <= phase_) piece_start_ += plan_.lengths[piece_++];
+    const cncplan::Phase& phase = plan_.phases[phase_];
+    cncplan::State state = phase.at(std::clamp(time - phase.time, 0.0, phase.duration));
+    const double along = std::min(state.position, plan_.lengths[piece_]);
+    state.position = piece_start_ + along;
+    return {piece_, along, state};
+  }
+
+ private:
+  const Plan& plan_;
+  cncplan::plan::Cursor spans_;
+  std::size_t phase_ = 0;
+  std::size_t piece_ = 0;
+  double piece_start_ = 0.0;
 };
 
 /// Adds up what follows from caps and spans.
@@ -34,6 +91,7 @@ inline Plan plan_of(std::vector<cncplan::plan::BlockCaps> caps, std::vector<cncp
     plan.length += span.profile.length();
     plan.duration += span.profile.duration();
   }
+  plan.end = {plan.lengths.size() - 1, plan.lengths.back(), {plan.length, 0.0, 0.0, 0.0}};
   return plan;
 }
 

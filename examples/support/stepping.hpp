@@ -37,7 +37,7 @@ class StepObserver {
   using Backend = cncplan::step::SimulatedBackend<double, count>;
 
   StepObserver(const Plan& plan, const Paths& path, double period, Backend& backend)
-      : path_(path), cursor_(plan.spans, plan.lengths), period_(period), backend_(backend) {}
+      : path_(path), cursor_(plan), period_(period), backend_(backend) {}
 
   void until(double time) {
     while (static_cast<double>(next_) * period_ < time) observe(static_cast<double>(next_++) * period_);
@@ -50,7 +50,7 @@ class StepObserver {
 
  private:
   const Paths& path_;
-  cncplan::plan::Cursor cursor_;
+  PlanCursor cursor_;
   double period_;
   Backend& backend_;
   std::size_t next_ = 0;
@@ -87,44 +87,42 @@ StepReports make_steps(const Plan& plan, const Machine& machine, double period, 
   step::DriveCheck check(drives);
   StepObserver<P, Paths> observer(plan, path, period, backend);
   std::array<step::BacklashState<double>, axes> slack{};
-  double start = 0.0, last = 0.0;
-  for (const cncplan::plan::Span& span : plan.spans) {
-    const auto phases = span.profile.phases();
-    double origin = 0.0;
-    for (std::size_t i = span.first; i < span.first + span.count; ++i) {
-      const Traced& traced = steppable(path(i));
-      const step::PhaseClock<double> clock(phases, start, origin);
-      const auto axis_edges = [&](std::size_t axis) {
-        return AxisEdges({traced, clock, static_cast<int>(axis), scale[static_cast<int>(axis)], counts[axis]},
-                         backlash[axis], plan.timings[i].start, slack[axis]);
-      };
-      Merged edges = [&]<std::size_t... Axis>(std::index_sequence<Axis...>) {
-        return Merged({axis_edges(Axis)...}, last);
-      }
-      (std::make_index_sequence<axes>());
-      while (const auto edge = edges.next()) {
-        last = edge->time;
-        observer.until(last);
-        if (const auto kept = check.accept(*edge); !kept) {
-          const step::Violation& broken = kept.error();
-          throw Failure(Exit::bad_input,
-                        fmt::format("{}: error: axis {} at {:.9f} s: {} of {:.6g} {} of {:.6g}", where(i),
-                                    machine.axes[static_cast<std::size_t>(broken.axis)].letter, broken.time,
-                                    broken.error.field, broken.error.value, message(broken.error.code),
-                                    broken.error.bound));
-        }
-        if (const auto taken = backend.accept(*edge); !taken)
-          throw Failure(Exit::other, "steps out of order: " + std::string(taken.error().field));
-        take(*edge);
-      }
-      for (std::size_t axis = 0; axis < axes; ++axis) {
-        counts[axis] = edges.sources()[axis].source().count();
-        slack[axis] = edges.sources()[axis].state();
-      }
-      origin += plan.lengths[i];
+  double last = 0.0;
+  plan.each_piece([&](std::size_t i, std::span<const cncplan::Phase> phases, double start, double origin) {
+    const Traced& traced = steppable(path(i));
+    const step::PhaseClock<double> clock(phases, start, origin);
+    // mapped pieces are cut from curves
+    const bool goes_on = cncplan::plan::JointPath<P> && i + 1 < plan.lengths.size();
+    const auto axis_edges = [&](std::size_t axis) {
+      return AxisEdges(
+          {traced, clock, static_cast<int>(axis), scale[static_cast<int>(axis)], counts[axis], goes_on},
+          backlash[axis], plan.timings[i].start, slack[axis]);
+    };
+    Merged edges = [&]<std::size_t... Axis>(std::index_sequence<Axis...>) {
+      return Merged({axis_edges(Axis)...}, last);
     }
-    start += span.profile.duration();
-  }
+    (std::make_index_sequence<axes>());
+    while (const auto edge = edges.next()) {
+      if (!plan.completed && !(edge->time < plan.duration)) break;  // it does not come so far
+      last = edge->time;
+      observer.until(last);
+      if (const auto kept = check.accept(*edge); !kept) {
+        const step::Violation& broken = kept.error();
+        throw Failure(Exit::bad_input,
+                      fmt::format("{}: error: axis {} at {:.9f} s: {} of {:.6g} {} of {:.6g}", where(i),
+                                  machine.axes[static_cast<std::size_t>(broken.axis)].letter, broken.time,
+                                  broken.error.field, broken.error.value, message(broken.error.code),
+                                  broken.error.bound));
+      }
+      if (const auto taken = backend.accept(*edge); !taken)
+        throw Failure(Exit::other, "steps out of order: " + std::string(taken.error().field));
+      take(*edge);
+    }
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      counts[axis] = edges.sources()[axis].source().count();
+      slack[axis] = edges.sources()[axis].state();
+    }
+  });
   observer.until(plan.duration);
   observer.observe(plan.duration);
   StepReports reports;

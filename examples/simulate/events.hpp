@@ -1,0 +1,29 @@
+// What is asked of the machine while a program runs: the rows of an events file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cncplan/cncplan.hpp"
+
+namespace simulate {
+
+enum class Request { hold, resume, feed, rapid, stop, step, pause };
+
+struct Event {
+  double time{};  ///< s from the start of the program
+  Request request{};
+  double value{};  ///< a share of feed or rapid rate, on or off (1 or 0), a line; 0 where there is none
+};
+
+/// Reads a CSV file of `t,event,value`, in order of time. Throws `Failure` for one that cannot be read or has
+/// a wrong row.
+[[nodiscard]] std::vector<Event> read_events(const std::string& file);
+
+/// The largest share of the feed that is asked for, 1 at least.
+[[nodiscard]] double highest_feed(const std::vector<Event>& events);
+
+/// Passes a request on.
+void ask(cncplan::plan::Player& player, const Event& event);
+
+}  // namespace simulate

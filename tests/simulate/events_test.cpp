@@ -1,0 +1,193 @@
+// Holds, overrides and stops on the way, and starts in the middle of a program.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "simulate/laws.hpp"
+#include "simulate/run.hpp"
+#include "simulate/table.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+// From the limits' speed to rest, when jerk alone binds: 30 mm/s, 10000 mm/s^3.
+const double braking = 2.0 * std::sqrt(30.0 / 10000.0);
+
+// A row of a table at a time, to the next period.
+std::size_t row_at(const test::Table& samples, double time) {
+  const auto& t = samples["t"];
+  return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
+}
+
+}  // namespace
+
+TEST_CASE("without events a played program takes the planned time") {
+  const test::Folder folder;
+  folder.write("none.csv", "t,event,value\n");
+  for (const char* program : {"pocket", "kk22_figure7"}) {
+    const auto planned = folder.run(test::example(program) + " --json").json();
+    const auto played = folder.run(test::example(program) + " --json --events none.csv").json();
+    CHECK(played["time_s"].get<double>() == Approx(planned["time_s"].get<double>()).epsilon(1e-3));
+    CHECK(played["net_steps"] == planned["net_steps"]);
+    CHECK(played["steps"] == planned["steps"]);
+    CHECK(played["completed"] == true);
+    CHECK(planned["completed"] == true);
+    CHECK(played["end_error_mm"] == 0.0);
+  }
+}
+
+TEST_CASE("all outputs of a disturbed run agree, and keep the limits") {
+  const test::Folder folder;
+  folder.write("e.csv",
+               "t,event,value\n1.23,hold\n1.9,resume\n2.5,feed,0.3\n3.1,feed,90%\n4.2,rapid,50%\n"
+               "5.0001,feed,0\n5.7,feed,1\n7.5,hold,\n7.51,resume,\n");
+  const auto events = test::quoted((folder / "e.csv").string());
+  const auto json = test::check_run(test::example("pocket"), "--events " + events, {});
+  CHECK(json["completed"] == true);
+  CHECK(json["contour_error_mm"] < 1e-9);
+  CHECK(json["time_s"] > 20.05 + 0.67 + 0.7);
+}
+
+TEST_CASE("the same events give the same bytes") {
+  const test::Folder folder;
+  folder.write("e.csv", "0.5,hold\n0.9,resume\n1.5,feed,1.7\n");
+  const std::string run = test::example("pocket") + " --quiet --events e.csv --samples ";
+  REQUIRE(folder.run(run + "a.csv --steps a.vcd").exit == 0);
+  REQUIRE(folder.run(run + "b.csv --steps b.vcd").exit == 0);
+  CHECK(test::text_of(folder / "a.csv") == test::text_of(folder / "b.csv"));
+  CHECK(test::text_of(folder / "a.vcd") == test::text_of(folder / "b.vcd"));
+}
+
+TEST_CASE("a hold takes the least time, and the way goes on from there") {
+  const test::Folder folder;
+  folder.write("e.csv", "0.50025,hold\n1.5,resume\n");
+  const auto run = folder.run_text("G1 X100\n", "--json --events e.csv --samples s.csv");
+  REQUIRE(run.exit == 0);
+  const test::Table samples(folder / "s.csv");
+  const double rest = 0.50025 + braking;
+  const std::size_t held = row_at(samples, rest);
+  CHECK(samples["v"][held] == 0.0);
+  CHECK(samples["v"][held - 1] > 0.0);
+  CHECK(samples["j"][row_at(samples, 1.0)] == 0.0);
+  CHECK(samples["x"][row_at(samples, 1.499)] == samples["x"][held]);
+  CHECK(samples["x"].back() == 100.0);
+  CHECK(samples["v"].back() == 0.0);
+  const double alone = folder.run_text("G1 X100\n", "--json").json()["time_s"];
+  CHECK(run.json()["time_s"].get<double>() == Approx(alone + (1.5 - rest) + braking).margin(1e-6));
+}
+
+TEST_CASE("feed follows the override up to the speed limit, rapids their own") {
+  const test::Folder folder;
+  folder.write("e.csv", "1,feed,0.5\n2,feed,150%\n3,feed,2\n");
+  REQUIRE(
+      folder.run_text("G1 X60 F1200\nG0 X90\n", "--quiet --events e.csv --samples s.csv --vmax 35").exit ==
+      0);
+  const test::Table feeds(folder / "s.csv");
+  CHECK(feeds["v"][row_at(feeds, 0.9)] == Approx(20.0));
+  CHECK(feeds["v"][row_at(feeds, 1.9)] == Approx(10.0));
+  CHECK(feeds["v"][row_at(feeds, 2.9)] == Approx(30.0));
+  CHECK(*std::max_element(feeds["v"].begin(), feeds["v"].end()) == Approx(35.0));
+  folder.write("e.csv", "0,feed,0.1\n0,rapid,40%\n");
+  REQUIRE(folder.run_text("G0 X30\n", "--quiet --events e.csv --samples s.csv").exit == 0);
+  const test::Table rapids(folder / "s.csv");
+  CHECK(rapids["v"][row_at(rapids, 1.0)] == Approx(12.0));
+}
+
+TEST_CASE("a stop ends the program where it comes to rest") {
+  const test::Folder folder;
+  folder.write("e.csv", "1,stop\n2,resume\n");
+  const auto run = folder.run_text("G1 X100\nY100\n", "--json --events e.csv --samples s.csv --blocks b.csv");
+  REQUIRE(run.exit == 0);
+  const auto json = run.json();
+  CHECK(json["completed"] == false);
+  CHECK(json["time_s"].get<double>() == Approx(1.0 + braking).epsilon(1e-9));
+  const test::Table samples(folder / "s.csv");
+  CHECK(samples["t"].back() == json["time_s"].get<double>());
+  CHECK(samples["v"].back() == 0.0);
+  const double there = samples["x"].back();
+  CHECK(json["net_steps"]["X"] == std::lround(there * 400.0));
+  CHECK(json["net_steps"]["Y"] == 0);
+  CHECK(json["end_error_mm"].get<double>() == Approx(std::hypot(100.0 - there, 100.0)));
+  const test::Table blocks(folder / "b.csv");
+  CHECK(blocks["v_out"][0] == 0.0);
+  CHECK(blocks["duration"][1] == 0.0);
+}
+
+TEST_CASE("a hold that nothing ends is the end") {
+  const test::Folder folder;
+  folder.write("e.csv", "1,feed,0%\n");
+  const auto json = folder.run_text("G1 X100\n", "--json --events e.csv").json();
+  CHECK(json["completed"] == false);
+  CHECK(json["time_s"].get<double>() == Approx(1.0 + braking).epsilon(1e-9));
+}
+
+TEST_CASE("single steps and a pause at a line") {
+  const test::Folder folder;
+  const std::string program = "G1 X10\nX20\nX30\nX40\n";
+  folder.write("e.csv", "0,step,1\n2,resume\n4,step,0\n4,pause,4\n4,resume\n8,resume\n");
+  REQUIRE(folder.run_text(program, "--quiet --events e.csv --samples s.csv").exit == 0);
+  const test::Table samples(folder / "s.csv");
+  const auto x_at = [&](double time) { return samples["x"][row_at(samples, time)]; };
+  CHECK(x_at(1.9) == Approx(10.0).margin(1e-9));
+  CHECK(x_at(3.9) == Approx(20.0).margin(1e-9));
+  CHECK(x_at(7.9) == Approx(30.0).margin(1e-9));
+  CHECK(samples["x"].back() == 40.0);
+}
+
+TEST_CASE("bad events: file, line, column and what is wrong, and no output") {
+  struct Case {
+    const char* events;
+    const char* error;
+  };
+  const test::Folder folder;
+  for (const auto& [events, error] :
+       {Case{"t,event,value\n1,hold\nx,resume\n", "e.csv:3:1: error: 'x' is no time"},
+        {"2,hold\n1,resume\n", "e.csv:2:1: error: a time before that of the row above"},
+        {"-1,hold\n", "e.csv:1:1: error: a time below 0"},
+        {"nan,hold\n", "e.csv:1:1: error: 'nan' is no time"},
+        {"1\n", "e.csv:1:2: error: no event"},
+        {"1,halt\n", "e.csv:1:3: error: 'halt' is no event"},
+        {"1,hold,1\n", "e.csv:1:8: error: hold takes no value"},
+        {"1,feed\n", "e.csv:1:7: error: '' is no share"},
+        {"1,feed,fast\n", "e.csv:1:8: error: 'fast' is no share"},
+        {"1,feed,2.1\n", "e.csv:1:8: error: feed takes 0 to 2"},
+        {"1, feed, 210%\n", "e.csv:1:10: error: feed takes 0 to 2"},
+        {"1,rapid,101%\n", "e.csv:1:9: error: rapid takes 0 to 1"},
+        {"1,pause,1.5\n", "e.csv:1:9: error: '1.5' is no whole number"},
+        {"1,feed,1,2\n", "e.csv:1:9: error: more than three fields"}}) {
+    INFO(events);
+    folder.write("e.csv", events);
+    const auto run = folder.run_text("G1 X1\n", "--events e.csv --samples s.csv");
+    CHECK(run.exit == 2);
+    CHECK(run.err == error + std::string("\n"));
+    CHECK_FALSE(std::filesystem::exists(folder / "s.csv"));
+  }
+  CHECK(folder.run_text("G1 X1\n", "--events none.csv").err == "error: none.csv: cannot be read\n");
+  folder.write("e.csv", "");
+  for (const char* other :
+       {"--profile five", "--plan block", "--interpolator taylor", "--interpolator constant"})
+    CHECK(folder.run_text("G1 X1\n", std::string("--events e.csv ") + other).exit == 2);
+  CHECK(folder.run_text("G1 X1\n", "--events e.csv --samples e.csv").exit == 2);
+}
+
+TEST_CASE("a program is begun at a line, from rest at the start of its first motion") {
+  const test::Folder folder;
+  const std::string program = "G1 X10 F1200\nY10\n(nothing moves here)\nX0\nY0\n";
+  REQUIRE(folder.run_text(program, "--quiet --from-line 3 --samples s.csv --motions m.csv").exit == 0);
+  const test::Table samples(folder / "s.csv"), motions(folder / "m.csv");
+  CHECK(motions["line"] == std::vector<double>{4, 5});
+  CHECK(samples["x"][0] == 10.0);
+  CHECK(samples["y"][0] == 10.0);
+  CHECK(samples["v"][0] == 0.0);
+  CHECK(samples["s"].back() == 20.0);
+  CHECK(motions["feed"][0] == 20.0);  // what stands before the line was read
+  const auto json = folder.run_text(program, "--json --from-line 3").json();
+  CHECK(json["net_steps"]["X"] == -4000);
+  CHECK(json["net_steps"]["Y"] == -4000);
+  const auto beyond = folder.run_text(program, "--from-line 6");
+  CHECK(beyond.exit == 2);
+  CHECK(beyond.err == "error: --from-line 6: program.ngc has no motion there or behind\n");
+  CHECK(folder.run_text(program, "--from-line 0").exit == 2);
+}
