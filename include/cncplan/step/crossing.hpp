@@ -50,13 +50,16 @@ class StepCursor {
   using Scalar = typename P::Scalar;
 
   /// `count` is the axis' count where the block before ended (`count_at` the start for the first),
-  /// `steps_per_unit` > 0. The path must outlive the cursor.
-  StepCursor(const P& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count)
+  /// `steps_per_unit` > 0. The path must outlive the cursor. `goes_on`: a path follows whose start is this
+  /// one's end but for rounding, as where a curve is cut; a boundary within rounding of it is left to that.
+  StepCursor(const P& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count,
+             bool goes_on = false)
       : path_(&path),
         clock_(clock),
         axis_(axis),
         steps_per_unit_(steps_per_unit),
         count_(count),
+        goes_on_(goes_on),
         parameter_end_(path.parameter_end()),
         target_(steps_at(Scalar(0))) {}
 
@@ -111,10 +114,11 @@ class StepCursor {
     origin_ = target_;
     target_ = steps_at(piece_end_);
     direction_ = target_ < origin_ ? -1 : 1;
-    // An extremum within rounding of a boundary touches it. At the block's end nothing is rounded away.
+    // An extremum within rounding of a boundary touches it. At the path's end nothing is rounded away.
     constexpr Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon();
-    const Scalar slack =
-        piece_end_ < parameter_end_ ? rounding * std::max(std::abs(origin_), std::abs(target_)) : Scalar(0);
+    const Scalar slack = goes_on_ || piece_end_ < parameter_end_
+                             ? rounding * std::max(std::abs(origin_), std::abs(target_))
+                             : Scalar(0);
     const Scalar reach = std::ceil(static_cast<Scalar>(direction_) * target_ - Scalar(0.5) - slack);
     left_ = std::max<std::int64_t>(static_cast<std::int64_t>(reach) - direction_ * count_, 0);
     return true;
@@ -140,6 +144,7 @@ class StepCursor {
   int direction_ = 1;
   Scalar steps_per_unit_;
   std::int64_t count_;
+  bool goes_on_;
   std::int64_t left_ = 0;  // edges before the next turning, those in the batch not counted
   Scalar parameter_end_;
   Scalar parameter_{};  // of the last edge, or where the piece starts
