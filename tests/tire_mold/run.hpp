@@ -1,60 +1,19 @@
 // Runs the built cncplan_tire_mold as somebody outside would, in a folder of its own.
 #pragma once
 
-#include <stdlib.h>
-#include <sys/wait.h>
-
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "support/program_run.hpp"
+
 namespace cncplan::test {
 
-struct Outcome {
-  int exit{};
-  std::string out;
-  std::string err;
-};
-
-/// A temporary folder to run in; it goes with the object.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "cncplan-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-  }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream stream(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  [[nodiscard]] bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
-
+struct Folder : TemporaryFolder {
   [[nodiscard]] Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + path_.string() + "' && </dev/null '" CNCPLAN_TIRE_MOLD "' " + arguments + " >.out 2>.err";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(".out"), read(".err")};
+    return run_program(CNCPLAN_TIRE_MOLD, arguments);
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// Numbers of a CSV file without its first line.
