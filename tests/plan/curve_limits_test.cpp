@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Vector sums on a circle, over the limits of the whole motion (spec: junctions).
+// Vector sums on a circle, over the limits of the whole motion.
 struct Sums {
   long double acceleration, jerk;
 };
@@ -86,7 +86,7 @@ TEST_CASE("speed alone: v^2/R and v^3/R^2 reach the limits and no more") {
     REQUIRE(along.jerk == whole.jerk);
   }
   CHECK(worst < 1e-14);
-  // spec: R = 0.5 mm at 30 mm/s would take 1800 mm/s^2 and 108000 mm/s^3
+  // R = 0.5 mm at 30 mm/s would take 1800 mm/s^2 and 108000 mm/s^3
   CHECK(plan::CapSpeed{}(2.0, Limits{30, 1000, 10000}).velocity == Approx(std::cbrt(2500.0)).epsilon(1e-14));
 }
 

@@ -1,4 +1,4 @@
-// Working planes and the sense of rotation in them (KK22 Table 2; spec: arcs).
+// Working planes and the sense of rotation in them (KK22 Table 2).
 #pragma once
 
 #include <array>

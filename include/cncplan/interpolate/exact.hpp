@@ -1,5 +1,5 @@
-// Exact evaluation: the samples of a profile along a path, one by one, by number, or many at once (spec:
-// interpolation).
+// Exact evaluation: the samples of a profile along a path, one by one, by number, or many at once
+// (docs/interpolation.md).
 #pragma once
 
 #include <algorithm>

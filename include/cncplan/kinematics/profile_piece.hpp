@@ -23,7 +23,7 @@ struct InPlane {
 
 /// Begins at `start` in the direction `heading` and turns evenly by `turning` rad/mm: a line where that is
 /// zero, an arc otherwise. The normal is the tangent turned by -90 degrees, so along a chain it stays on one
-/// side (K17 Eqs. 3.7-3.33; spec: tire mold). A kink is a piece too: its radius and length are zero, and only
+/// side (K17 Eqs. 3.7-3.33). A kink is a piece too: its radius and length are zero, and only
 /// the normal turns.
 template <std::floating_point S>
 struct BasicProfilePiece {

@@ -1,4 +1,4 @@
-// Flat artwork on the curved sidewall of a tire mold (K17 Eqs. 3.7-3.33; spec: tire mold).
+// Flat artwork on the curved sidewall of a tire mold (K17 Eqs. 3.7-3.33).
 #pragma once
 
 #include <algorithm>

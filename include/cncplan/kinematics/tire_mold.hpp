@@ -1,5 +1,5 @@
-// The 4-axis tire-mold machine: radial slide, vertical slide, tilting spindle, rotary table (spec: tire
-// mold).
+// The 4-axis tire-mold machine: radial slide, vertical slide, tilting spindle, rotary table
+// (docs/tire-mold.md).
 #pragma once
 
 #include <array>

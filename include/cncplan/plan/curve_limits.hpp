@@ -30,7 +30,7 @@ struct CapSpeed {
 
 /// Shares acceleration and jerk between path and curvature, so that the vector sums stay within the limits.
 /// On a circle of curvature k the acceleration is (a, v^2 k) and the jerk (j - v^3 k^2, 3 v a k), along and
-/// across the path (spec: junctions). The rule:
+/// across the path (docs/planning.md). The rule:
 ///
 /// 1. v is lowered until v^2 k <= 0.8 A and m = v^3 k^2 <= 0.5 J, so that something is left to change speed
 /// with;
