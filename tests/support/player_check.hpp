@@ -102,8 +102,10 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
     if (fed == 0) continue;
     const auto low = static_cast<std::size_t>(std::min(before.block, now.block));
     const auto high = static_cast<std::size_t>(std::max(before.block, now.block));
+    // a machine that turned round within the tick may have been in the block beside
+    const std::size_t beside = before.velocity * now.velocity < 0.0 ? 1 : 0;
     Limits limits{0.0, 0.0, 0.0};
-    for (std::size_t i = low; i <= high; ++i) {
+    for (std::size_t i = low - std::min(low, beside); i <= std::min(high + beside, program.size() - 1); ++i) {
       limits.velocity = std::max(limits.velocity, program[i].caps.limits.velocity);
       limits.acceleration = std::max(limits.acceleration, program[i].caps.limits.acceleration);
       limits.jerk = std::max(limits.jerk, program[i].caps.limits.jerk);

@@ -54,6 +54,13 @@ class BasicLeg {
     return now;
   }
 
+  /// Speed where a length has been travelled.
+  [[nodiscard]] S velocity_at(S position) const {
+    std::size_t phase = 0;
+    while (phase + 1 < count_ && position >= phases_[phase + 1].position) ++phase;
+    return phases_[phase].at(phases_[phase].tau_at(position)).velocity;
+  }
+
  private:
   void append(const BasicPhase<S>& phase) {
     if (phase.duration > S(0)) phases_[count_++] = phase;

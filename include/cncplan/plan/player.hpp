@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -185,6 +186,8 @@ class BasicPlayer {
  private:
   static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
   static constexpr int most_plans = 16;  // in one tick
+  static constexpr S joint_tolerance = S(1) + S(1e-9);
+  static constexpr S negligible = S(1e5) * std::numeric_limits<S>::epsilon();  // mm/s: rest but for rounding
 
   static constexpr auto solver = [](const BasicLimits<S>& limits) {
     return profile::seven_phase_solver(limits);
@@ -248,15 +251,15 @@ class BasicPlayer {
     const BasicState<S> now = leg_.state();
     const BasicSpot<S> at = locate();
     if (!road_.ring.holds(at.block)) return false;
-    if (road_.must_rest(at.block)) return brake(at, now, false);
+    if (road_.must_rest(at.block)) return brake(at, now);
     const S wanted = road_.wanted_speed(at.block);
     if (now.acceleration == S(0) && now.velocity <= wanted && plan_from(at, now.velocity)) {
       adopt(at);
       return true;
     }
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    const S settled = std::max(profile::settled_speed(state, road_.ring[at.block].caps.limits), S(0));
-    for (const S target : {wanted, std::min(settled, wanted)}) {
+    const S settled = profile::settled_speed(state, road_.ring[at.block].caps.limits);
+    for (const S target : {wanted, settled > negligible ? std::min(settled, wanted) : S(0)}) {
       const auto ramp = ramp_ahead(road_, at, now, target);
       if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
       take_spare();
@@ -266,21 +269,56 @@ class BasicPlayer {
     return false;
   }
 
-  // Begins to come to rest, or goes on with it, under the limits of each block; false if it cannot begin
-  // here.
-  bool brake(const BasicSpot<S>& at, const BasicState<S>& now, bool going_on) {
+  // Begins to come to rest; false where no brake from here keeps limits and joints.
+  bool brake(const BasicSpot<S>& at, const BasicState<S>& now) {
+    const auto first = brake_leg(at, now, false);
+    if (!first || !keeps_joints(*first, at, now)) return false;
+    BasicLeg<S> leg = *first;
+    BasicSpot<S> spot = at;
+    for (std::size_t legs = 0; legs < memory_.blocks.size(); ++legs) {
+      const S length = leg.length();
+      leg.advance(leg.left());
+      const BasicState<S> end = leg.state();
+      spot = road_.snapped(road_.advance(spot, length));
+      if (!(end.velocity > negligible)) return follow(*first, at, no_gate), true;
+      if (!road_.ring.holds(spot.block)) return false;
+      if (spot.along == S(0) && end.velocity > road_.joint_cap(spot.block) * joint_tolerance) return false;
+      leg = *brake_leg(spot, end, true);
+      if (!keeps_joints(leg, spot, end)) return false;
+    }
+    return false;
+  }
+
+  // The motion to rest under the limits of each block, up to where they change. Going on with a brake, there
+  // always is one.
+  [[nodiscard]] std::optional<BasicLeg<S>> brake_leg(const BasicSpot<S>& at, const BasicState<S>& now,
+                                                     bool going_on) const {
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
     const S fastest = std::max(now.velocity, profile::settled_speed(state, road_.ring[at.block].caps.limits));
     const auto stretches = memory_.course.first(road_.stretches(at, fastest, memory_.course));
     const auto ramp = profile::stop(state, stretches[0].limits);
     constexpr S rounding = S(1e-9);  // of a plan that rests at the end of the stretch
-    if (ramp && (stretches.size() == 1 || ramp->length() < stretches[0].length + rounding)) {
-      follow(BasicLeg<S>(*ramp), at, no_gate);
-      return true;
-    }
+    if (ramp && (stretches.size() == 1 || ramp->length() < stretches[0].length + rounding))
+      return BasicLeg<S>(*ramp);
     const BasicBrake<S> brake(stretches);
-    if (!going_on && !brake.safe(now)) return false;
-    follow(brake.leg(now), at, no_gate);
+    if (!going_on && !brake.safe(now)) return {};
+    return brake.leg(now);
+  }
+
+  // Whether a leg passes no joint too fast; that at its end is left out.
+  [[nodiscard]] bool keeps_joints(const BasicLeg<S>& leg, const BasicSpot<S>& from,
+                                  const BasicState<S>& start) const {
+    const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
+    const S fastest = start.velocity + rising * rising / (S(2) * road_.ring[from.block].caps.limits.jerk);
+    constexpr S rounding = S(1e-9);  // mm, of a leg that ends at a joint
+    S position = road_.ring.length(from.block) - from.along;
+    for (std::int64_t block = from.block; position < leg.length() - rounding;) {
+      if (!road_.ring.holds(block + road_.direction)) return true;
+      block += road_.direction;
+      const S cap = road_.joint_cap(block);
+      if (cap < fastest && leg.velocity_at(position) > cap * joint_tolerance) return false;
+      position += road_.ring.length(block);
+    }
     return true;
   }
 
@@ -338,8 +376,8 @@ class BasicPlayer {
     const BasicState<S> end = leg_.state();
     at_ = road_.snapped(road_.advance(at_, leg_.length()));
     if (next_gate_ == no_gate) {
-      constexpr S negligible = S(1e5) * std::numeric_limits<S>::epsilon();  // mm/s
-      if (end.velocity > negligible && road_.ring.holds(at_.block)) return brake(at_, end, true);
+      if (end.velocity > negligible && road_.ring.holds(at_.block))
+        return follow(*brake_leg(at_, end, true), at_, no_gate), false;
       return rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
