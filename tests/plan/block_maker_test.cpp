@@ -34,7 +34,7 @@ TEST_CASE("a program's blocks, with the stops that come behind a motion") {
   }
 }
 
-TEST_CASE("a pause before any motion stands on a block of length zero; a stop there is none") {
+TEST_CASE("a pause before any motion stands on a block of length zero, a stop there is none") {
   const auto made = blocks("M6 T1\nG4 P2\nG1 X10\n");
   REQUIRE(made);
   REQUIRE(made->size() == 2);

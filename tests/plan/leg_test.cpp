@@ -32,7 +32,7 @@ TEST_CASE("a leg says what its profile says, whatever the steps") {
   CHECK(worst < 1e-9);
 }
 
-TEST_CASE("edges are where the jerk changes; the turn lies in the cruise, before the way down") {
+TEST_CASE("edges are where the jerk changes, the turn lies in the cruise, before the way down") {
   const Limits limits{30.0, 1000.0, 10000.0};
   const auto profile = profile::seven_phase(20.0, {0.0, 0.0}, limits);
   const auto phases = profile->phases();
@@ -51,7 +51,7 @@ TEST_CASE("edges are where the jerk changes; the turn lies in the cruise, before
   CHECK(leg.left() == Approx(0.0).margin(1e-15));
 }
 
-TEST_CASE("without a cruise the turn is at the top; no phases are rest") {
+TEST_CASE("without a cruise the turn is at the top, no phases are rest") {
   const auto profile = profile::seven_phase(0.5, {0.0, 0.0}, Limits{30.0, 1000.0, 10000.0});
   CHECK(plan::BasicLeg<double>(*profile).to_turn() == Approx(profile->duration() / 2));
   const plan::BasicLeg<double> none;
