@@ -102,8 +102,13 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
     if (fed == 0) continue;
     const auto low = static_cast<std::size_t>(std::min(before.block, now.block));
     const auto high = static_cast<std::size_t>(std::max(before.block, now.block));
-    // a machine that turned round within the tick may have been in the block beside
-    const std::size_t beside = before.velocity * now.velocity < 0.0 ? 1 : 0;
+    // it may have been in the block beside: where it turned round within the tick, or but for rounding
+    const auto at_joint = [&](const plan::Played& at) {
+      const double length = program[static_cast<std::size_t>(at.block)].caps.length;
+      return std::min(at.along, length - at.along) < 1e-9;
+    };
+    const bool turned = before.velocity * now.velocity < 0.0;
+    const std::size_t beside = turned || at_joint(before) || at_joint(now) ? 1 : 0;
     Limits limits{0.0, 0.0, 0.0};
     for (std::size_t i = low - std::min(low, beside); i <= std::min(high + beside, program.size() - 1); ++i) {
       limits.velocity = std::max(limits.velocity, program[i].caps.limits.velocity);
