@@ -108,7 +108,7 @@ TEST_CASE("a player is fed from another thread, with requests from a third") {
   plan::Played before{}, now{};
   double worst = 0.0;
   int fed = 0;
-  for (long tick = 0; tick < 1'000'000 && !(fed == count && player.finished()); ++tick) {
+  for (long tick = 0; tick < 10'000'000 && !(fed == count && player.finished()); ++tick) {
     for (const auto* block = blocks.front(); block != nullptr && player.push(*block);
          block = blocks.front()) {
       blocks.pop();
@@ -116,6 +116,7 @@ TEST_CASE("a player is fed from another thread, with requests from a third") {
     }
     for (int taken = 0; taken < 8 && overrides.front() != nullptr; ++taken, overrides.pop())
       player.feed_override(*overrides.front());
+    if (now.at_rest) std::this_thread::yield();  // starved: the ticks must not run out before blocks come
     now = player.tick(1e-3);
     worst = std::max(worst, std::abs(now.acceleration - before.acceleration) / (limits.jerk * 1e-3));
     before = now;
