@@ -7,9 +7,9 @@ using namespace cncplan;
 
 // Half of the feed where the path turns by 90 degrees, nothing where it turns back.
 struct ByAngle {
-  [[nodiscard]] double speed_sq(const junction::Geometry& joint) const {
-    const double cosine = joint.before.tangent.dot(joint.after.tangent);
-    const double speed = joint.limits.velocity * (1.0 + cosine) / 2.0;
+  [[nodiscard]] double speed_sq(const junction::Geometry& junction) const {
+    const double cosine = junction.before.tangent.dot(junction.after.tangent);
+    const double speed = junction.limits.velocity * (1.0 + cosine) / 2.0;
     return speed * speed;
   }
 };

@@ -39,8 +39,8 @@ double largest(const std::vector<Vector3>& accelerations) {
   return worst;
 }
 
-// Entered and left at Vmax/2, as the joints of Fig. 7 are: there the motion goes on, so no differences.
-double between_joints(const path::Arc& path) {
+// Entered and left at Vmax/2, as the junctions of Fig. 7 are: there the motion goes on, so no differences.
+double between_junctions(const path::Arc& path) {
   const double half = limits.velocity / 2.0;
   const auto profile = profile::seven_phase(path.length(), {.start = half, .end = half}, limits).value();
   double worst = 0.0;
@@ -63,7 +63,8 @@ void figure11(support::Gnuplot* plot) {
   fmt::print(
       "## Fig. 11: accelerations of the axes\n\nCircle and helix of R 5, rise 10, T = 1 ms; largest, "
       "mm/s^2:\n\n"
-      "| | profile, between joints at Vmax/2 | profile, from rest to rest | Taylor 2, from rest | constant "
+      "| | profile, between junctions at Vmax/2 | profile, from rest to rest | Taylor 2, from rest | "
+      "constant "
       "increment |\n|---|---|---|---|---|\n| KK22, both | below 500 | | | peaks at the ends |\n");
   for (const double rise : {0.0, 10.0}) {
     const path::Arc path = turn(rise);
@@ -72,7 +73,7 @@ void figure11(support::Gnuplot* plot) {
     const auto exact = accelerations(interpolate::samples(path, profile, period));
     const auto jumping = accelerations(interpolate::samples(path, constant, period));
     fmt::print("| cncplan, {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} |\n", rise > 0.0 ? "helix" : "circle",
-               between_joints(path), largest(exact),
+               between_junctions(path), largest(exact),
                largest(accelerations(interpolate::taylor_samples(path, profile, period))), largest(jumping));
     if (plot == nullptr || rise > 0.0) continue;
     put(*plot, "profile", exact);

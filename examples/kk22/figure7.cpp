@@ -17,7 +17,7 @@ namespace {
 // No F word: everything runs at the speed limit.
 constexpr const char* program = "G02 X5 Y5 R5\nX10 Y0 R5\nX10 Y-10 R5\nX5 Y-15 R5\nX0 Y-10 R5\nG01 X0 Y0\n";
 
-std::vector<double> joint_speeds(const plan::Plan& plan) {
+std::vector<double> junction_speeds(const plan::Plan& plan) {
   std::vector<plan::BlockTiming> timings;
   plan::block_timings(std::span<const plan::Span>(plan.spans), std::span<const double>(plan.lengths),
                       std::back_inserter(timings));
@@ -28,7 +28,7 @@ std::vector<double> joint_speeds(const plan::Plan& plan) {
 }
 
 void print_row(const char* name, const plan::Plan& plan) {
-  const auto v = joint_speeds(plan);
+  const auto v = junction_speeds(plan);
   fmt::print("| {} | {:.3f} | {:.4g}, {:.4g}, {:.4g}, {:.4g} | {:.4g} | {:.3f} |\n", name,
              std::accumulate(plan.lengths.begin(), plan.lengths.end() - 1, 0.0), v[0], v[1], v[2], v[3],
              v[4] + 0.0, plan.duration);

@@ -9,7 +9,7 @@
 
 namespace kk22 {
 
-/// One profile of five phases a block, at the joint speeds of Table 3.
+/// One profile of five phases a block, at the junction speeds of Table 3.
 inline cncplan::plan::Plan published_plan(const std::vector<cncplan::plan::Block>& blocks) {
   namespace plan = cncplan::plan;
   const auto caps = plan::all_caps(blocks, cncplan::junction::PublishedTable{}, plan::CapSpeed{});

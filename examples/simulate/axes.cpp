@@ -1,4 +1,4 @@
-// What the exact path asks of the axes, inside blocks and at their joints.
+// What the exact path asks of the axes, inside blocks and at their junctions.
 #include <algorithm>
 #include <cmath>
 

@@ -19,10 +19,10 @@ struct JunctionChoice {
   std::optional<cncplan::junction::Deviation> deviation;
   std::optional<cncplan::junction::AccelerationStep> acceleration_step;
 
-  [[nodiscard]] double speed_sq(const cncplan::junction::Geometry& joint) const {
+  [[nodiscard]] double speed_sq(const cncplan::junction::Geometry& junction) const {
     double lowest = std::numeric_limits<double>::infinity();
     const auto consider = [&](const auto& policy) {
-      if (policy) lowest = std::min(lowest, policy->speed_sq(joint));
+      if (policy) lowest = std::min(lowest, policy->speed_sq(junction));
     };
     consider(table);
     consider(stop);

@@ -87,7 +87,7 @@ std::string table_summary(const Program& program, const Plan& plan, const Machin
   row("peak along the path", fmt::format("{:.4g} mm/s, {:.4g} mm/s^2, {:.4g} mm/s^3", m.peak.velocity,
                                          m.peak.acceleration, m.peak.jerk));
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
-  row("joints below their feed", fmt::format("{}", m.junctions_limited));
+  row("junctions below their feed", fmt::format("{}", m.junctions_limited));
   row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
   row("plan, interpolate, step",
       fmt::format("{:.4f} s, {:.4f} s, {:.4f} s", m.plan_seconds, m.interpolate_seconds, m.steps_seconds));

@@ -83,7 +83,7 @@ struct NoRates : NoInverse {
 };
 plan::JointBlock<NoRates>* joint_block;
 
-// expect SpeedNotSquared, JunctionPolicy: policy.speed_sq(joint)
+// expect SpeedNotSquared, JunctionPolicy: policy.speed_sq(junction)
 struct SpeedNotSquared {
   double speed(const junction::Geometry&) const;
 };

@@ -64,14 +64,14 @@ void evaluate_a_segment() {
   sink = sum;
 }
 
-void judge_a_joint() {
+void judge_a_junction() {
   const auto policy =
       junction::minimum(junction::ExactStop{}, junction::Deviation{0.01}, junction::TangentStep{5.0},
                         junction::AccelerationStep{500.0}, junction::PublishedTable{});
-  junction::Geometry joint{.before = {}, .after = {}, .limits = limits};
-  joint.before.tangent = Vector3::UnitX();
-  joint.after.tangent = Vector3::UnitY();
-  sink = policy.speed_sq(joint);
+  junction::Geometry junction{.before = {}, .after = {}, .limits = limits};
+  junction.before.tangent = Vector3::UnitX();
+  junction.after.tangent = Vector3::UnitY();
+  sink = policy.speed_sq(junction);
 }
 
 void plan_profiles() {
@@ -160,7 +160,7 @@ constexpr std::array jobs{
     Job{"gcode: lines, one of them wrong", read_lines},
     Job{"path: arcs from their radius, possible or not", make_arcs},
     Job{"path: a segment evaluated by length", evaluate_a_segment},
-    Job{"junction: a corner, by the lowest of all policies", judge_a_joint},
+    Job{"junction: a corner, by the lowest of all policies", judge_a_junction},
     Job{"profile: five and seven phases, possible or not", plan_profiles},
     Job{"interpolate: the samples of a helix", sample_a_block},
     Job{"plan: G-code through look-ahead over a window", stream_a_program},

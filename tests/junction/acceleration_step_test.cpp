@@ -5,19 +5,19 @@
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/plan/block.hpp"
-#include "junction/joints.hpp"
+#include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
 
 namespace {
 
-// The joint of a path that comes in with one curvature vector and leaves with another.
+// The junction of a path that comes in with one curvature vector and leaves with another.
 junction::Geometry bend(const Vector3& before, const Vector3& after) {
-  auto joint = test::corner(0.0);
-  joint.before.curvature = before;
-  joint.after.curvature = after;
-  return joint;
+  auto junction = test::corner(0.0);
+  junction.before.curvature = before;
+  junction.after.curvature = after;
+  return junction;
 }
 
 path::Arc arc(const Vector3& start, const Vector3& end, const Vector3& center) {
@@ -51,19 +51,19 @@ TEST_CASE("one circle in two arcs, far from the origin, is not slowed") {
   };
   const plan::Block first{arc(at(0.3), at(1.1), center), test::kk22, junction::Kind::arc};
   const plan::Block second{arc(at(1.1), at(2.9), center), test::kk22, junction::Kind::arc};
-  const junction::Geometry joint{plan::side(first, true), plan::side(second, false), test::kk22};
-  CHECK(std::sqrt(junction::AccelerationStep{1.0}.speed_sq(joint)) > 1e4);
+  const junction::Geometry junction{plan::side(first, true), plan::side(second, false), test::kk22};
+  CHECK(std::sqrt(junction::AccelerationStep{1.0}.speed_sq(junction)) > 1e4);
 }
 
 TEST_CASE("a line into an arc runs at the root of step times radius") {
   const plan::Block line{path::Line({-5, 0, 0}, {0, 0, 0}), test::kk22, junction::Kind::line};
   const plan::Block curve{arc({0, 0, 0}, {2, 2, 0}, {0, 2, 0}), test::kk22, junction::Kind::arc};
-  const junction::Geometry joint{plan::side(line, true), plan::side(curve, false), test::kk22};
-  CHECK(junction::AccelerationStep{50.0}.speed_sq(joint) == Approx(100.0).epsilon(1e-14));
+  const junction::Geometry junction{plan::side(line, true), plan::side(curve, false), test::kk22};
+  CHECK(junction::AccelerationStep{50.0}.speed_sq(junction) == Approx(100.0).epsilon(1e-14));
 }
 
 TEST_CASE("acceleration step in float") {
-  junction::BasicGeometry<float> joint;
-  joint.after.curvature = {0.0f, 0.5f, 0.0f};
-  CHECK(junction::BasicAccelerationStep<float>{500.0f}.speed_sq(joint) == 1000.0f);
+  junction::BasicGeometry<float> junction;
+  junction.after.curvature = {0.0f, 0.5f, 0.0f};
+  CHECK(junction::BasicAccelerationStep<float>{500.0f}.speed_sq(junction) == 1000.0f);
 }

@@ -1,6 +1,6 @@
 #include "cncplan/junction/exact_stop.hpp"
 
-#include "junction/joints.hpp"
+#include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

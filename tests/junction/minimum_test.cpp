@@ -6,7 +6,7 @@
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/junction/tangent_step.hpp"
-#include "junction/joints.hpp"
+#include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -17,9 +17,9 @@ TEST_CASE("the minimum is each of its policies where that is the lowest") {
   const auto both = junction::minimum(deviation, tangent);
   int first = 0, second = 0;
   for (double turn = 0.01; turn < 3.1; turn += 0.01) {
-    const auto joint = test::corner(turn);
-    const double a = deviation.speed_sq(joint), b = tangent.speed_sq(joint);
-    REQUIRE(both.speed_sq(joint) == (a < b ? a : b));
+    const auto junction = test::corner(turn);
+    const double a = deviation.speed_sq(junction), b = tangent.speed_sq(junction);
+    REQUIRE(both.speed_sq(junction) == (a < b ? a : b));
     ++(a < b ? first : second);
   }
   CHECK(first > 0);

@@ -6,7 +6,7 @@
 
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/plan/block.hpp"
-#include "junction/joints.hpp"
+#include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -19,8 +19,8 @@ namespace {
 constexpr Turn g02 = Turn::clockwise, g03 = Turn::counterclockwise;
 
 // As a share of Vmax.
-double share(const junction::Geometry& joint, Norm norm = Norm::rotation) {
-  return std::sqrt(PublishedTable{norm}.speed_sq(joint)) / test::kk22.velocity;
+double share(const junction::Geometry& junction, Norm norm = Norm::rotation) {
+  return std::sqrt(PublishedTable{norm}.speed_sq(junction)) / test::kk22.velocity;
 }
 
 // A chord of 7 mm along X, then one of 3 mm turned to the left by `degrees`; beta = 180 - |degrees|.
@@ -29,12 +29,12 @@ junction::Geometry turned(Turn first, Turn second, double degrees) {
   return test::arcs(first, {7.0, 0.0, 0.0}, second, {3.0 * std::cos(angle), 3.0 * std::sin(angle), 0.0});
 }
 
-junction::Geometry mirrored(junction::Geometry joint) {
-  for (junction::Side* side : {&joint.before, &joint.after}) {
+junction::Geometry mirrored(junction::Geometry junction) {
+  for (junction::Side* side : {&junction.before, &junction.after}) {
     side->turn = side->turn == g02 ? g03 : g02;
     side->chord.y() = -side->chord.y();
   }
-  return joint;
+  return junction;
 }
 
 struct Cell {
@@ -68,8 +68,8 @@ TEST_CASE("read by rotation the table is its own mirror image, read absolutely i
   for (const Cell& cell : table_3)
     for (const double turn : {-170.0, -90.0, -45.0, 0.0, 45.0, 90.0, 170.0}) {
       CAPTURE(static_cast<int>(cell.first), static_cast<int>(cell.second), turn);
-      const auto joint = turned(cell.first, cell.second, turn);
-      CHECK(share(joint) == share(mirrored(joint)));
+      const auto junction = turned(cell.first, cell.second, turn);
+      CHECK(share(junction) == share(mirrored(junction)));
     }
   const auto chain = turned(g02, g02, -120.0);
   CHECK(share(chain, Norm::absolute) == 0.0);
@@ -102,23 +102,23 @@ TEST_CASE("what the paper's table does not cover is an exact stop") {
   const auto smooth = turned(g03, g03, 60.0);
   REQUIRE(share(smooth) > 0.0);
   const auto stops = [&](auto change) {
-    auto joint = smooth;
-    change(joint);
-    return share(joint) == 0.0;
+    auto junction = smooth;
+    change(junction);
+    return share(junction) == 0.0;
   };
-  CHECK(stops([](auto& joint) { joint.before.kind = Kind::line; }));
-  CHECK(stops([](auto& joint) { joint.after.kind = Kind::line; }));
-  CHECK(stops([](auto& joint) { joint.before.kind = Kind::rapid; }));
-  CHECK(stops([](auto& joint) { joint.after.kind = Kind::rapid; }));
-  CHECK(stops([](auto& joint) { joint.before.closed = true; }));
-  CHECK(stops([](auto& joint) { joint.after.closed = true; }));
-  CHECK(stops([](auto& joint) { joint.after.plane = Plane::yz; }));
+  CHECK(stops([](auto& junction) { junction.before.kind = Kind::line; }));
+  CHECK(stops([](auto& junction) { junction.after.kind = Kind::line; }));
+  CHECK(stops([](auto& junction) { junction.before.kind = Kind::rapid; }));
+  CHECK(stops([](auto& junction) { junction.after.kind = Kind::rapid; }));
+  CHECK(stops([](auto& junction) { junction.before.closed = true; }));
+  CHECK(stops([](auto& junction) { junction.after.closed = true; }));
+  CHECK(stops([](auto& junction) { junction.after.plane = Plane::yz; }));
 }
 
 TEST_CASE("chords are judged in the plane of the arcs, whatever the third axis does") {
   for (const Plane plane : {Plane::xy, Plane::zx, Plane::yz}) {
     const PlaneAxes a = axes(plane);
-    const auto joint = [&](double rise) {
+    const auto junction = [&](double rise) {
       Vector3 before, after;
       before(a.first) = 4.0, before(a.second) = 0.0, before(a.third) = rise;
       after(a.first) = -1.0, after(a.second) = 2.0, after(a.third) = -rise;
@@ -126,15 +126,15 @@ TEST_CASE("chords are judged in the plane of the arcs, whatever the third axis d
     };
     for (const double rise : {0.0, 10.0, -10.0}) {
       CAPTURE(static_cast<int>(plane), rise);
-      CHECK(share(joint(rise)) == 1.0);
+      CHECK(share(junction(rise)) == 1.0);
     }
   }
 }
 
 TEST_CASE("Vmax is the lower of both feeds") {
-  auto joint = turned(g03, g03, 120.0);
-  joint.limits.velocity = 12.0;
-  CHECK(PublishedTable{}.speed_sq(joint) == 144.0);
+  auto junction = turned(g03, g03, 120.0);
+  junction.limits.velocity = 12.0;
+  CHECK(PublishedTable{}.speed_sq(junction) == 144.0);
 }
 
 TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
@@ -148,19 +148,20 @@ TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
   blocks.push_back({path::Line(points[5], points[0]), test::kk22, Kind::line});
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
     CAPTURE(i);
-    const junction::Geometry joint{plan::side(blocks[i], true), plan::side(blocks[i + 1], false), test::kk22};
-    CHECK(share(joint) == (i < 4 ? 0.5 : 0.0));
+    const junction::Geometry junction{plan::side(blocks[i], true), plan::side(blocks[i + 1], false),
+                                      test::kk22};
+    CHECK(share(junction) == (i < 4 ? 0.5 : 0.0));
   }
 }
 
 TEST_CASE("the table is the same in float") {
-  junction::BasicGeometry<float> joint;
-  joint.limits = {30.0f, 1000.0f, 10000.0f};
-  joint.before.kind = joint.after.kind = Kind::arc;
-  joint.before.turn = joint.after.turn = g03;
-  joint.before.chord = {1.0f, 0.0f, 0.0f};
-  joint.after.chord = {1.0f, 1.0f, 0.0f};
-  CHECK(PublishedTable{}.speed_sq(joint) == 225.0f);
-  joint.after.chord = {-1.0f, 1.0f, 0.0f};
-  CHECK(PublishedTable{}.speed_sq(joint) == 900.0f);
+  junction::BasicGeometry<float> junction;
+  junction.limits = {30.0f, 1000.0f, 10000.0f};
+  junction.before.kind = junction.after.kind = Kind::arc;
+  junction.before.turn = junction.after.turn = g03;
+  junction.before.chord = {1.0f, 0.0f, 0.0f};
+  junction.after.chord = {1.0f, 1.0f, 0.0f};
+  CHECK(PublishedTable{}.speed_sq(junction) == 225.0f);
+  junction.after.chord = {-1.0f, 1.0f, 0.0f};
+  CHECK(PublishedTable{}.speed_sq(junction) == 900.0f);
 }

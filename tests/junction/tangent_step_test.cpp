@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "junction/joints.hpp"
+#include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -13,19 +13,21 @@ TEST_CASE("at the tangent policy's speed the axis that jumps most jumps by the s
   test::Random random;
   double worst = 0.0;
   for (int draw = 0; draw < 10000; ++draw) {
-    const auto joint = test::corner<double>(test::random_direction(random), test::random_direction(random));
+    const auto junction =
+        test::corner<double>(test::random_direction(random), test::random_direction(random));
     const double step = random.log_uniform(0.01, 10.0);
-    const double speed = std::sqrt(junction::TangentStep{step}.speed_sq(joint));
+    const double speed = std::sqrt(junction::TangentStep{step}.speed_sq(junction));
     double jump = 0.0;
     for (int axis = 0; axis < 3; ++axis)
-      jump = std::max(jump, std::abs(speed * joint.after.tangent[axis] - speed * joint.before.tangent[axis]));
+      jump = std::max(jump,
+                      std::abs(speed * junction.after.tangent[axis] - speed * junction.before.tangent[axis]));
     worst = std::max(worst, std::abs(jump / step - 1.0));
   }
   INFO("seed " << test::seed());
   CHECK(worst < 1e-13);
 }
 
-TEST_CASE("a right angle, a reversal and a straight joint by hand") {
+TEST_CASE("a right angle, a reversal and a straight junction by hand") {
   const junction::TangentStep policy{2.0};
   CHECK(policy.speed_sq(test::corner(std::numbers::pi / 2)) == Approx(4.0).epsilon(1e-14));
   CHECK(policy.speed_sq(test::corner(std::numbers::pi)) == Approx(1.0).epsilon(1e-14));

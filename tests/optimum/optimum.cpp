@@ -120,13 +120,13 @@ int main(int argc, char** argv) {
       return std::fprintf(stderr, "no plan\n"), 1;
 
     std::vector<double> highest(nodes, limits.velocity * limits.velocity);
-    double joint = blocks[0].length;
-    for (std::size_t i = 1; i < blocks.size(); joint += blocks[i].length, ++i) {
-      const auto node = static_cast<std::size_t>(std::lround((joint - program.from) / step));
+    double junction = blocks[0].length;
+    for (std::size_t i = 1; i < blocks.size(); junction += blocks[i].length, ++i) {
+      const auto node = static_cast<std::size_t>(std::lround((junction - program.from) / step));
       highest[node] = std::min(highest[node], blocks[i].entry * blocks[i].entry);
     }
     const Stretch planned = stretch(spans, program, step, nodes);
-    // a joint lies up to half a step from its node, where the plan may be a little faster
+    // a junction lies up to half a step from its node, where the plan may be a little faster
     for (std::size_t i = 0; i < nodes; ++i) highest[i] = std::max(highest[i], planned.speeds_sq[i]);
     test::Optimum optimum(limits, step, highest, planned.speeds_sq);
     const double best = optimum.time(optimum.solve());

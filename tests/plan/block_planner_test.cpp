@@ -17,17 +17,18 @@ namespace {
 
 std::vector<double> speeds_of(const std::vector<plan::BlockCaps>& blocks) {
   std::vector<double> speeds(blocks.size() + 1);
-  plan::joint_speeds(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(speeds));
+  plan::junction_speeds(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(speeds));
   return speeds;
 }
 
-// The highest speed of a joint as its own cap and the feeds of its two blocks leave it.
-double cap(const std::vector<plan::BlockCaps>& blocks, std::size_t joint) {
-  if (joint == 0 || joint == blocks.size()) return 0.0;
-  return std::min({blocks[joint].entry, blocks[joint - 1].limits.velocity, blocks[joint].limits.velocity});
+// The highest speed of a junction as its own cap and the feeds of its two blocks leave it.
+double cap(const std::vector<plan::BlockCaps>& blocks, std::size_t junction) {
+  if (junction == 0 || junction == blocks.size()) return 0.0;
+  return std::min(
+      {blocks[junction].entry, blocks[junction - 1].limits.velocity, blocks[junction].limits.velocity});
 }
 
-// Time of a program with the given speeds at its joints, infinite where they do not fit.
+// Time of a program with the given speeds at its junctions, infinite where they do not fit.
 double time_of(const std::vector<plan::BlockCaps>& blocks, const std::vector<double>& speeds) {
   double sum = 0.0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -41,7 +42,7 @@ double time_of(const std::vector<plan::BlockCaps>& blocks, const std::vector<dou
 
 }  // namespace
 
-TEST_CASE("no grid of joint speeds takes less time") {
+TEST_CASE("no grid of junction speeds takes less time") {
   test::Random random;
   double saved = 0.0;
   int feasible = 0;
@@ -67,7 +68,7 @@ TEST_CASE("no grid of joint speeds takes less time") {
   CHECK(feasible > 1000);
 }
 
-TEST_CASE("no joint can be faster while the others stay") {
+TEST_CASE("no junction can be faster while the others stay") {
   test::Random random;
   int raised = 0;
   for (int draws = 0; draws < 300; ++draws) {
@@ -105,7 +106,7 @@ TEST_CASE("plans block by block break nothing, under both laws") {
 }
 
 TEST_CASE("a chain of ramps up and down") {
-  // 1 mm blocks without caps: from each joint the next is just within reach
+  // 1 mm blocks without caps: from each junction the next is just within reach
   const Limits limits{1000.0, 1e6, 10000.0};
   std::vector<plan::BlockCaps> blocks(6, {1.0, 1e9, limits, 0.0});
   blocks.front().entry = 0.0;

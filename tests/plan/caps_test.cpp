@@ -11,11 +11,11 @@ using namespace cncplan;
 
 namespace {
 
-// Gives the joint's limits back, to see what policies are shown.
+// Gives the junction's limits back, to see what policies are shown.
 struct Shown {
   double BasicLimits<double>::*member;
-  double speed_sq(const junction::Geometry& joint) const {
-    return joint.limits.*member * (joint.limits.*member);
+  double speed_sq(const junction::Geometry& junction) const {
+    return junction.limits.*member * (junction.limits.*member);
   }
 };
 
@@ -28,7 +28,7 @@ const plan::Block second = line({10, 0, 0}, {10, 5, 0}, {25, 800, 10000});
 
 }  // namespace
 
-TEST_CASE("a joint is judged under the lower limits of both blocks") {
+TEST_CASE("a junction is judged under the lower limits of both blocks") {
   const plan::CapSpeed rule;
   CHECK(plan::caps(first, second, Shown{&Limits::velocity}, rule).entry == 20.0);
   CHECK(plan::caps(first, second, Shown{&Limits::acceleration}, rule).entry == 500.0);

@@ -15,7 +15,7 @@ namespace cncplan::test {
 /// Worst of one plan. Excesses are relative to the limit they break; jumps between spans relative to the
 /// limits of the blocks there.
 struct PlanErrors {
-  double cap{};           ///< speed at a joint above its cap
+  double cap{};           ///< speed at a junction above its cap
   double velocity{};      ///< speed within a block above its feed
   double acceleration{};  ///< above the limit of the block
   double jerk{};          ///< likewise

@@ -198,7 +198,7 @@ TEST_CASE("random requests break no limit, and the end stays exact") {
     CHECK(faults.jerk < 1e-6);
     CHECK(faults.acceleration < 1e-9);
     CHECK(faults.speed < 1e-9);
-    CHECK(faults.joint < 1e-9);
+    CHECK(faults.junction < 1e-9);
     CHECK(faults.travel < 1e-9);
     CHECK(faults.finished);
     CHECK(faults.end < 1e-9);

@@ -57,7 +57,7 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
   CHECK(excess < 1e-9);
 }
 
-TEST_CASE("a ramp that crests above both its speeds is held to a joint there") {
+TEST_CASE("a ramp that crests above both its speeds is held to a junction there") {
   std::vector<plan::PlayedBlock> memory(4);
   plan::BasicRoad<double> road(memory);
   road.ring.push({{0.2, 0.0, limits, 0.0}, 30.0});

@@ -39,7 +39,7 @@ TEST_CASE("overrides act on feed or rapid rate, up to what a block bears") {
   CHECK(street.road.must_rest(2));
 }
 
-TEST_CASE("spots go on across joints, in both directions") {
+TEST_CASE("spots go on across junctions, in both directions") {
   Street street(4);
   auto& road = street.road;
   using Spot = plan::BasicSpot<double>;
@@ -50,11 +50,11 @@ TEST_CASE("spots go on across joints, in both directions") {
   CHECK(road.snapped(Spot{1, 2.0 - 1e-12}) == Spot{2, 0.0});
   CHECK(road.snapped(Spot{1, 1e-12}) == Spot{1, 0.0});
   CHECK(road.snapped(Spot{1, 1.0}) == Spot{1, 1.0});
-  CHECK(road.joint_cap(2) == 12.0);
+  CHECK(road.junction_cap(2) == 12.0);
   road.asked.direction = -1;
   CHECK(road.turned_round(Spot{1, 0.5}) == Spot{1, 1.5});
   CHECK(road.advance(Spot{1, 1.5}, 1.0) == Spot{0, 0.5});
-  CHECK(road.joint_cap(1) == 12.0);  // it enters block 1 from block 2
+  CHECK(road.junction_cap(1) == 12.0);  // it enters block 1 from block 2
   road.asked.direction = 1;
   CHECK(road.turned_round(Spot{-1, 0.0}) == Spot{0, 0.0});  // it had run back behind the first
 }

@@ -58,7 +58,7 @@ double duration(const std::vector<plan::Span>& spans) {
   return sum;
 }
 
-// What is wrong with a plan, from its phases alone: joints passed too fast, limits broken inside a block,
+// What is wrong with a plan, from its phases alone: junctions passed too fast, limits broken inside a block,
 // jumps of speed between spans, blocks left out. Speeds relative, the worst of all.
 double worst_fault(const std::vector<plan::BlockCaps>& blocks, const std::vector<plan::Span>& spans) {
   double worst = 0.0, speed = 0.0;

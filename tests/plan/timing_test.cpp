@@ -13,7 +13,7 @@ using namespace cncplan;
 
 TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
   test::Random random;
-  double gap = 0.0, travel = 0.0, joint = 0.0, total = 0.0, peak = 0.0, top = 0.0;
+  double gap = 0.0, travel = 0.0, junction = 0.0, total = 0.0, peak = 0.0, top = 0.0;
   std::vector<plan::BlockCaps> where;
   for (int draws = 0; draws < 500; ++draws) {
     const auto blocks = test::random_program(random, test::LimitSpread::wide, 100);
@@ -32,7 +32,7 @@ TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
       const double end = t.start + t.duration + blocks[i].pause;
       if (i + 1 < blocks.size()) gap = std::max(gap, std::abs(timings[i + 1].start - end) / (1e-3 + end));
       if (i + 1 < blocks.size())
-        joint = std::max(joint, std::abs(timings[i + 1].entry.velocity - t.exit.velocity) / fastest);
+        junction = std::max(junction, std::abs(timings[i + 1].entry.velocity - t.exit.velocity) / fastest);
       travel = std::max(travel,
                         std::abs(t.exit.position - t.entry.position - lengths[i]) / (1.0 + t.exit.position));
       peak = std::max(peak, t.peak_velocity / fastest - 1.0);
@@ -55,7 +55,7 @@ TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
   INFO("seed " << test::seed() << ", " << test::literal(where));
   CHECK(gap < 1e-12);
   CHECK(travel < 1e-12);
-  CHECK(joint < 1e-12);
+  CHECK(junction < 1e-12);
   CHECK(total < 1e-12);
   CHECK(peak < 1e-9);
   CHECK(top < 1e-9);

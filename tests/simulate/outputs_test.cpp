@@ -133,7 +133,7 @@ TEST_CASE("axis peaks are those of samples so dense that they miss little") {
   }
 }
 
-TEST_CASE("corner steps and limited joints are counted") {
+TEST_CASE("corner steps and limited junctions are counted") {
   const test::Folder folder;
   const std::string corner = "G1 X10\nY10\nY20\n";
   const auto json = folder.run_text(corner, "--json --plan block --junction tangent=3").json();

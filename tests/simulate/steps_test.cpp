@@ -53,7 +53,7 @@ Misses misses(const test::VcdAxis& axis, const std::vector<double>& times, const
 TEST_CASE("edges are where dense samples cross the boundaries between steps") {
   const double period = 2e-5;
   const test::Folder folder;
-  // stops at the joints: the position has no corner that a cubic would round off
+  // stops at the junctions: the position has no corner that a cubic would round off
   const auto run = folder.run_text("G2 X3 Y1 R2\nG3 X1 Y4.2361 Z-0.5 I-2 J1 P2\nG1 X-2 Y0.3 Z1.01\n",
                                    "--junction stop --period 2e-5 --samples s.csv --steps x.vcd --quiet");
   REQUIRE(run.exit == 0);

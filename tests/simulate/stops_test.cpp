@@ -8,7 +8,7 @@ using namespace cncplan;
 
 namespace {
 
-// Speed at the joint of two straight moves in line, with `between` between them.
+// Speed at the junction of two straight moves in line, with `between` between them.
 double speed_behind(const std::string& between, const std::string& plan = "block") {
   const test::Folder folder;
   const auto run =

@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   using F = test::PlayerFaults;
   Quantity quantities[] = {
       {"jerk (relative)", &F::jerk, 1e-6},   {"acceleration (relative)", &F::acceleration, 1e-9},
-      {"speed (relative)", &F::speed, 1e-9}, {"speed at joints (mm/s)", &F::joint, 1e-9},
+      {"speed (relative)", &F::speed, 1e-9}, {"speed at junctions (mm/s)", &F::junction, 1e-9},
       {"travel (mm)", &F::travel, 1e-9},     {"end (mm)", &F::end, 1e-9}};
   std::uint64_t ticks = 0, blocks = 0, requests = 0, unfinished = 0;
   for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {

@@ -17,7 +17,7 @@ struct PlayerFaults {
   double jerk{};          ///< change of acceleration over a tick, over what the jerk limit allows, relative
   double acceleration{};  ///< above the limit, relative
   double speed{};         ///< above what the block bears, relative
-  double joint{};         ///< mm/s above a joint's cap, beyond what a tick hides
+  double junction{};      ///< mm/s above a junction's cap, beyond what a tick hides
   double travel{};  ///< mm between travelled distance and the integral of the speed, beyond a tick's rounding
   double end{};     ///< mm from the end of the last block
   bool finished{};
@@ -25,7 +25,7 @@ struct PlayerFaults {
   long requests{};
 };
 
-/// Short and long blocks, slow and free joints, curved (lower limits) and straight ones.
+/// Short and long blocks, slow and free junctions, curved (lower limits) and straight ones.
 inline std::vector<plan::PlayedBlock> random_program(Random& random, int count) {
   std::vector<plan::PlayedBlock> program;
   const double longest = random.log_uniform(0.05, 10.0);
@@ -103,12 +103,12 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
     const auto low = static_cast<std::size_t>(std::min(before.block, now.block));
     const auto high = static_cast<std::size_t>(std::max(before.block, now.block));
     // it may have been in the block beside: where it turned round within the tick, or but for rounding
-    const auto at_joint = [&](const plan::Played& at) {
+    const auto at_junction = [&](const plan::Played& at) {
       const double length = program[static_cast<std::size_t>(at.block)].caps.length;
       return std::min(at.along, length - at.along) < 1e-9;
     };
     const bool turned = before.velocity * now.velocity < 0.0;
-    const std::size_t beside = turned || at_joint(before) || at_joint(now) ? 1 : 0;
+    const std::size_t beside = turned || at_junction(before) || at_junction(now) ? 1 : 0;
     Limits limits{0.0, 0.0, 0.0};
     for (std::size_t i = low - std::min(low, beside); i <= std::min(high + beside, program.size() - 1); ++i) {
       limits.velocity = std::max(limits.velocity, program[i].caps.limits.velocity);
@@ -121,7 +121,7 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
     grow(faults.acceleration, std::abs(now.acceleration) / limits.acceleration - 1);
     grow(faults.speed, std::abs(now.velocity) / limits.velocity - 1);
     for (std::size_t i = low + 1; i <= high; ++i)
-      grow(faults.joint,
+      grow(faults.junction,
            std::min(std::abs(now.velocity), std::abs(before.velocity)) - slack - program[i].caps.entry);
     const double moved = start[static_cast<std::size_t>(now.block)] + now.along - position;
     grow(faults.travel,

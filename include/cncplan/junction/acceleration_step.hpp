@@ -9,15 +9,15 @@
 
 namespace cncplan::junction {
 
-/// v^2 |k1 - k0| <= step, k the curvature vectors at the joint (v^2/R for a line into an arc of radius R).
+/// v^2 |k1 - k0| <= step, k the curvature vectors at the junction (v^2/R for a line into an arc of radius R).
 template <std::floating_point S>
 struct BasicAccelerationStep {
   S step{};  ///< mm/s^2, >= 0
 
-  [[nodiscard]] S speed_sq(const BasicGeometry<S>& joint) const {
-    const S jump = (joint.after.curvature - joint.before.curvature).norm();
+  [[nodiscard]] S speed_sq(const BasicGeometry<S>& junction) const {
+    const S jump = (junction.after.curvature - junction.before.curvature).norm();
     constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
-    const S larger = std::max(joint.after.curvature.norm(), joint.before.curvature.norm());
+    const S larger = std::max(junction.after.curvature.norm(), junction.before.curvature.norm());
     if (jump <= rounding * larger) return std::numeric_limits<S>::infinity();
     return step / jump;
   }

@@ -16,12 +16,12 @@ template <std::floating_point S>
 struct BasicDeviation {
   S delta{};  ///< mm, >= 0
 
-  [[nodiscard]] S speed_sq(const BasicGeometry<S>& joint) const {
-    const S sine_sq = (joint.after.tangent - joint.before.tangent).squaredNorm() / S(4);
+  [[nodiscard]] S speed_sq(const BasicGeometry<S>& junction) const {
+    const S sine_sq = (junction.after.tangent - junction.before.tangent).squaredNorm() / S(4);
     constexpr S rounding = S(4) * std::numeric_limits<S>::epsilon();
     if (sine_sq < rounding * rounding) return std::numeric_limits<S>::infinity();
-    const S cosine = (joint.after.tangent + joint.before.tangent).norm() / S(2);
-    return joint.limits.acceleration * delta * cosine * (S(1) + cosine) / sine_sq;
+    const S cosine = (junction.after.tangent + junction.before.tangent).norm() / S(2);
+    return junction.limits.acceleration * delta * cosine * (S(1) + cosine) / sine_sq;
   }
 };
 

@@ -12,7 +12,7 @@ namespace cncplan::junction {
 
 enum class Kind : std::uint8_t { rapid, line, arc };
 
-/// One block, seen from the joint.
+/// One block, seen from the junction.
 template <std::floating_point S>
 struct BasicSide {
   using Vector = BasicVector3<S>;
@@ -21,12 +21,12 @@ struct BasicSide {
   Plane plane{};                      ///< arcs only
   Turn turn{};                        ///< arcs only
   bool closed{};                      ///< a full circle: its chord has no direction
-  Vector tangent = Vector::Zero();    ///< unit, in the direction of travel, at the joint
+  Vector tangent = Vector::Zero();    ///< unit, in the direction of travel, at the junction
   Vector chord = Vector::Zero();      ///< end - start of the block, mm
-  Vector curvature = Vector::Zero();  ///< d tangent / d length at the joint, 1/mm; towards the centre
+  Vector curvature = Vector::Zero();  ///< d tangent / d length at the junction, 1/mm; towards the centre
 };
 
-/// The joint itself.
+/// The junction itself.
 template <std::floating_point S>
 struct BasicGeometry {
   BasicSide<S> before;
@@ -41,11 +41,11 @@ using Geometry = BasicGeometry<double>;
 
 namespace cncplan {
 
-/// The square of the highest speed at which a joint may be passed, mm^2/s^2; infinity for no limit of its
+/// The square of the highest speed at which a junction may be passed, mm^2/s^2; infinity for no limit of its
 /// own.
 template <class P, class S = double>
-concept JunctionPolicy = requires(const P& policy, const junction::BasicGeometry<S>& joint) {
-  { policy.speed_sq(joint) } -> std::same_as<S>;
+concept JunctionPolicy = requires(const P& policy, const junction::BasicGeometry<S>& junction) {
+  { policy.speed_sq(junction) } -> std::same_as<S>;
 };
 
 }  // namespace cncplan

@@ -16,11 +16,11 @@ struct Minimum {
 
   template <std::floating_point S>
     requires(JunctionPolicy<Policies, S>&&...)
-  [[nodiscard]] S speed_sq(const BasicGeometry<S>& joint) const {
+  [[nodiscard]] S speed_sq(const BasicGeometry<S>& junction) const {
     return std::apply(
         [&](const auto&... policy) {
           S lowest = std::numeric_limits<S>::infinity();
-          ((lowest = std::min(lowest, policy.speed_sq(joint))), ...);
+          ((lowest = std::min(lowest, policy.speed_sq(junction))), ...);
           return lowest;
         },
         policies);

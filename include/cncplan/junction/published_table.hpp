@@ -12,8 +12,8 @@ namespace cncplan::junction {
 /// that a G02 chain runs as its G03 mirror image does. `absolute`: Norm+1 is always a turn to the left.
 enum class Norm : std::uint8_t { rotation, absolute };
 
-/// Judges a joint by the chords of the two blocks, beta being the angle between them (180 degrees is straight
-/// on):
+/// Judges a junction by the chords of the two blocks, beta being the angle between them (180 degrees is
+/// straight on):
 ///
 ///     transition    Norm+1: beta < 90   beta >= 90    Norm-1: beta < 90   beta >= 90
 ///     arc -> G01          0             0                   0             0
@@ -22,13 +22,13 @@ enum class Norm : std::uint8_t { rotation, absolute };
 ///
 /// beta >= 90 exactly when the dot product of successive chords is >= 0. Chords in line count as Norm+1
 /// between arcs of the same sense. Outside the paper's table (a first block that is straight, rapids,
-/// different planes, full circles) the joint is an exact stop.
+/// different planes, full circles) the junction is an exact stop.
 struct PublishedTable {
   Norm norm = Norm::rotation;
 
   template <std::floating_point S>
-  [[nodiscard]] S speed_sq(const BasicGeometry<S>& joint) const {
-    const auto& [before, after, limits] = joint;
+  [[nodiscard]] S speed_sq(const BasicGeometry<S>& junction) const {
+    const auto& [before, after, limits] = junction;
     const bool covered = before.kind == Kind::arc && after.kind == Kind::arc && before.plane == after.plane &&
                          !before.closed && !after.closed;
     if (!covered) return S(0);  // the rows of G01 are zero as well

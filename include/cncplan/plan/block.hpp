@@ -26,7 +26,7 @@ struct BasicBlock {
 
 using Block = BasicBlock<double>;
 
-/// The block as seen from the joint at its start, or at its end.
+/// The block as seen from the junction at its start, or at its end.
 template <std::floating_point S>
 [[nodiscard]] junction::BasicSide<S> side(const BasicBlock<S>& block, bool at_end) {
   const path::BasicSegment<S>& segment = block.segment;

@@ -1,4 +1,4 @@
-// Published planning: one profile a block, zero acceleration at every joint (KK22 section 3).
+// Published planning: one profile a block, zero acceleration at every junction (KK22 section 3).
 #pragma once
 
 #include <algorithm>
@@ -34,12 +34,12 @@ class SolverCache {
   profile::BasicSolver<S> solver_;
 };
 
-/// The speed at each joint, such that every pair of speeds can be driven within its block and no joint could
-/// be faster while the others stay: a backward and a forward pass. (A joint alone could be faster still
-/// behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds` has
-/// one entry more than `blocks`; the motion starts and ends at rest.
+/// The speed at each junction, such that every pair of speeds can be driven within its block and no junction
+/// could be faster while the others stay: a backward and a forward pass. (A junction alone could be faster
+/// still behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds`
+/// has one entry more than `blocks`; the motion starts and ends at rest.
 template <std::floating_point S, SolverFactory<S> Factory>
-void joint_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory, std::span<S> speeds) {
+void junction_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory, std::span<S> speeds) {
   SolverCache<S, Factory> solver(factory);
   const std::size_t n = blocks.size();
   speeds[n] = S(0);
@@ -57,7 +57,7 @@ void joint_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& fact
 template <std::floating_point S, SolverFactory<S> Factory, std::output_iterator<BasicSpan<S>> Out>
 Expected<Out> plan_blocks(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory,
                           std::span<S> speeds, Out out) {
-  joint_speeds(blocks, factory, speeds);
+  junction_speeds(blocks, factory, speeds);
   SolverCache<S, Factory> solver(factory);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicBlockCaps<S>& block = blocks[i];

@@ -1,4 +1,4 @@
-// Caps: what look-ahead needs to know of each block, from its shape, its feed and the joint before it.
+// Caps: what look-ahead needs to know of each block, from its shape, its feed and the junction before it.
 #pragma once
 
 #include <algorithm>
@@ -29,18 +29,18 @@ template <std::floating_point S, CurveRule<S> Rule>
   return {block.segment.length(), S(0), rule(block.segment.max_curvature(), block.limits), block.pause};
 }
 
-/// The caps of a block that follows another: the joint by the policy, the inside by its curvature.
+/// The caps of a block that follows another: the junction by the policy, the inside by its curvature.
 template <std::floating_point S, class Policy, CurveRule<S> Rule>
   requires JunctionPolicy<Policy, S>
 [[nodiscard]] BasicBlockCaps<S> caps(const BasicBlock<S>& before, const BasicBlock<S>& block,
                                      const Policy& policy, const Rule& rule) {
   BasicBlockCaps<S> result = caps_from_rest(block, rule);
   if (before.stop_at_end || before.pause > S(0)) return result;
-  junction::BasicGeometry<S> joint{side(before, true), side(block, false), block.limits};
-  joint.limits.velocity = std::min(before.limits.velocity, block.limits.velocity);
-  joint.limits.acceleration = std::min(before.limits.acceleration, block.limits.acceleration);
-  joint.limits.jerk = std::min(before.limits.jerk, block.limits.jerk);
-  result.entry = std::sqrt(policy.speed_sq(joint));
+  junction::BasicGeometry<S> junction{side(before, true), side(block, false), block.limits};
+  junction.limits.velocity = std::min(before.limits.velocity, block.limits.velocity);
+  junction.limits.acceleration = std::min(before.limits.acceleration, block.limits.acceleration);
+  junction.limits.jerk = std::min(before.limits.jerk, block.limits.jerk);
+  result.entry = std::sqrt(policy.speed_sq(junction));
   return result;
 }
 

@@ -50,7 +50,7 @@ using Played = BasicPlayed<double>;
 
 /// Runs along the blocks it is given, always on a plan that ends at rest on the path it has. A request (hold,
 /// override, new blocks) is met by a new plan from the state the machine is in: a ramp to a speed with zero
-/// acceleration, then spans. A plan that could not keep the joints' caps is not taken: the one before goes
+/// acceleration, then spans. A plan that could not keep the junctions' caps is not taken: the one before goes
 /// on, and the request is tried again a tick later. So whatever is asked for and however often, speed,
 /// acceleration and jerk stay within limits.
 ///
@@ -186,7 +186,7 @@ class BasicPlayer {
  private:
   static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
   static constexpr int most_plans = 16;  // in one tick
-  static constexpr S joint_tolerance = S(1) + S(1e-9);
+  static constexpr S junction_tolerance = S(1) + S(1e-9);
   static constexpr S negligible = S(1e5) * std::numeric_limits<S>::epsilon();  // mm/s: rest but for rounding
 
   static constexpr auto solver = [](const BasicLimits<S>& limits) {
@@ -269,10 +269,10 @@ class BasicPlayer {
     return false;
   }
 
-  // Begins to come to rest; false where no brake from here keeps limits and joints.
+  // Begins to come to rest; false where no brake from here keeps limits and junctions.
   bool brake(const BasicSpot<S>& at, const BasicState<S>& now) {
     const auto first = brake_leg(at, now, false);
-    if (!first || !keeps_joints(*first, at, now)) return false;
+    if (!first || !keeps_junctions(*first, at, now)) return false;
     BasicLeg<S> leg = *first;
     BasicSpot<S> spot = at;
     for (std::size_t legs = 0; legs < memory_.blocks.size(); ++legs) {
@@ -282,9 +282,10 @@ class BasicPlayer {
       spot = road_.snapped(road_.advance(spot, length));
       if (!(end.velocity > negligible)) return follow(*first, at, no_gate), true;
       if (!road_.ring.holds(spot.block)) return false;
-      if (spot.along == S(0) && end.velocity > road_.joint_cap(spot.block) * joint_tolerance) return false;
+      if (spot.along == S(0) && end.velocity > road_.junction_cap(spot.block) * junction_tolerance)
+        return false;
       leg = *brake_leg(spot, end, true);
-      if (!keeps_joints(leg, spot, end)) return false;
+      if (!keeps_junctions(leg, spot, end)) return false;
     }
     return false;
   }
@@ -305,18 +306,18 @@ class BasicPlayer {
     return brake.leg(now);
   }
 
-  // Whether a leg passes no joint too fast; that at its end is left out.
-  [[nodiscard]] bool keeps_joints(const BasicLeg<S>& leg, const BasicSpot<S>& from,
-                                  const BasicState<S>& start) const {
+  // Whether a leg passes no junction too fast; that at its end is left out.
+  [[nodiscard]] bool keeps_junctions(const BasicLeg<S>& leg, const BasicSpot<S>& from,
+                                     const BasicState<S>& start) const {
     const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
     const S fastest = start.velocity + rising * rising / (S(2) * road_.ring[from.block].caps.limits.jerk);
-    constexpr S rounding = S(1e-9);  // mm, of a leg that ends at a joint
+    constexpr S rounding = S(1e-9);  // mm, of a leg that ends at a junction
     S position = road_.ring.length(from.block) - from.along;
     for (std::int64_t block = from.block; position < leg.length() - rounding;) {
       if (!road_.ring.holds(block + road_.direction)) return true;
       block += road_.direction;
-      const S cap = road_.joint_cap(block);
-      if (cap < fastest && leg.velocity_at(position) > cap * joint_tolerance) return false;
+      const S cap = road_.junction_cap(block);
+      if (cap < fastest && leg.velocity_at(position) > cap * junction_tolerance) return false;
       position += road_.ring.length(block);
     }
     return true;
@@ -396,7 +397,7 @@ class BasicPlayer {
     return memory_.gates[gate].settled;
   }
 
-  // The plan ends here, at a joint.
+  // The plan ends here, at a junction.
   void rest_as_planned() {
     const std::int64_t done = at_.block - road_.direction;
     const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;

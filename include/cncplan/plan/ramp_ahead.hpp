@@ -66,7 +66,7 @@ template <std::floating_point S>
       if (last) break;
       if (!road.ring.holds(at.block + road.direction) || road.stops_behind(at.block, from.block)) return {};
       at.block += road.direction;
-      if (next_speed > road.joint_cap(at.block) * tolerance) return {};
+      if (next_speed > road.junction_cap(at.block) * tolerance) return {};
       position = until;
       speed = next_speed;
     }

@@ -70,8 +70,8 @@ class BasicRoad {
            ring[block].line == asked.pause_line && line_before != asked.pause_line && block != passed_pause;
   }
 
-  /// Highest speed at the joint between a block and the one behind it.
-  [[nodiscard]] S joint_cap(std::int64_t block) const {
+  /// Highest speed at the junction between a block and the one behind it.
+  [[nodiscard]] S junction_cap(std::int64_t block) const {
     return direction > 0 ? ring[block].caps.entry : ring[block + 1].caps.entry;
   }
 
@@ -86,7 +86,7 @@ class BasicRoad {
     return from;
   }
 
-  /// A spot that is a joint but for rounding, at the joint.
+  /// A spot that is a junction but for rounding, at the junction.
   [[nodiscard]] Spot snapped(Spot spot) const {
     constexpr S near = S(1e-9);
     if (!ring.holds(spot.block)) return spot;
@@ -113,7 +113,7 @@ class BasicRoad {
       caps.length = std::max(caps.length - at.along, S(0));
       caps.limits.velocity = std::max(wanted_speed(at.block), first ? speed : S(0));
       if (!(caps.limits.velocity > S(0))) return course;
-      caps.entry = first ? speed : joint_cap(at.block);
+      caps.entry = first ? speed : junction_cap(at.block);
       out[course.blocks++] = caps;
       if (stops_behind(at.block, from.block)) return course;
       horizon.take(caps.limits, caps.length);

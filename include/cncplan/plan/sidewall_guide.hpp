@@ -23,7 +23,7 @@ class BasicSidewallGuide {
  public:
   using Chart = kinematics::BasicSidewallChart<S>;
 
-  /// Normals that jump by less are as good as one: what rounding leaves of a tangent joint.
+  /// Normals that jump by less are as good as one: what rounding leaves of a tangent corner.
   static constexpr S smooth_angle = std::max(S(1e-8), 64 * std::numeric_limits<S>::epsilon());
   /// Radii that pass a piece's end by less have not left it, mm.
   static constexpr S margin = std::max(S(1e-9), 4096 * std::numeric_limits<S>::epsilon());

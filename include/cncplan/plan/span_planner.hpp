@@ -1,4 +1,4 @@
-// Look-ahead over spans: ramps cross blocks, and the acceleration is zero only where a joint's cap binds.
+// Look-ahead over spans: ramps cross blocks, and the acceleration is zero only where a junction's cap binds.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace cncplan::plan {
 
-/// A joint at which limits change or the speed's is lower than on both sides: the only joints look-ahead has
-/// to look at.
+/// A junction at which limits change or the speed's is lower than on both sides: the only junctions
+/// look-ahead has to look at.
 template <std::floating_point S>
 struct BasicGate {
   std::size_t block{};    ///< the block that starts here

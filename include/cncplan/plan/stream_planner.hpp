@@ -24,8 +24,8 @@ struct BasicStreamMemory {
 using StreamMemory = BasicStreamMemory<double>;
 
 /// Plans when the window is full, as if the motion ended with it, and lets go of at least a quarter of the
-/// window: up to the last knot that is settled (whose speed nothing later can change), else up to a joint in
-/// a cruise, else up to a knot made a quarter of the way. So a block is planned at most four times however
+/// window: up to the last knot that is settled (whose speed nothing later can change), else up to a junction
+/// in a cruise, else up to a knot made a quarter of the way. So a block is planned at most four times however
 /// long the program, the machine can always stop on what it has been given, and the same blocks give the same
 /// spans however they arrive.
 template <std::floating_point S, SolverFactory<S> Factory>
@@ -83,14 +83,15 @@ class StreamPlanner {
     const std::size_t enough = std::max<std::size_t>(count_ / 4, 1);
     for (std::size_t gate = held_count_ - 1; gate-- > 1;)
       if (held(gate).knot && held(gate).settled && held(gate).block >= enough) return gate;
-    if (!plan_anew(cruise_joint(enough))) return next_knot(0);
+    if (!plan_anew(cruise_junction(enough))) return next_knot(0);
     std::size_t gate = 1;
     while (!(held(gate).knot && held(gate).block >= enough)) ++gate;
     return gate;
   }
 
-  // The last joint in the cruise of the span that passes block `enough`; that block where it is not cruising.
-  std::size_t cruise_joint(std::size_t enough) {
+  // The last junction in the cruise of the span that passes block `enough`; that block where it is not
+  // cruising.
+  std::size_t cruise_junction(std::size_t enough) {
     std::size_t from = 0;
     std::size_t to = next_knot(0);
     while (held(to).block <= enough && to + 1 < held_count_) from = std::exchange(to, next_knot(to));
@@ -98,13 +99,14 @@ class StreamPlanner {
     const auto profile = planner.profile(from, to);
     if (!profile) return enough;
     const auto phases = profile->phases();
-    std::size_t joint = enough;
+    std::size_t junction = enough;
     S position = S(0);
     for (std::size_t block = held(from).block; block < held(to).block; ++block) {
-      if (block >= enough && position >= phases[3].position && position <= phases[4].position) joint = block;
+      if (block >= enough && position >= phases[3].position && position <= phases[4].position)
+        junction = block;
       position += memory_.window[block].length;
     }
-    return joint;
+    return junction;
   }
 
   // Writes the spans of the held plan up to a knot, and lets their blocks go.

@@ -39,7 +39,7 @@ template <std::floating_point S, SolverFactory<S> Law = SevenPhase>
   return plan;
 }
 
-/// The caps of a program of blocks: their joints by a policy, their curves by a rule.
+/// The caps of a program of blocks: their junctions by a policy, their curves by a rule.
 template <std::floating_point S, class Policy, CurveRule<S> Rule = ShareLimits>
   requires JunctionPolicy<Policy, S>
 [[nodiscard]] std::vector<BasicBlockCaps<S>> all_caps(const std::vector<BasicBlock<S>>& blocks,

@@ -1,4 +1,4 @@
-// Joints made by hand: all that the policies look at, without any path behind it.
+// Junctions made by hand: all that the policies look at, without any path behind it.
 #pragma once
 
 #include <cmath>
@@ -13,11 +13,11 @@ inline constexpr Limits kk22{.velocity = 30.0, .acceleration = 1000.0, .jerk = 1
 /// Two sides with the given unit tangents and nothing else.
 template <std::floating_point S>
 junction::BasicGeometry<S> corner(const BasicVector3<S>& before, const BasicVector3<S>& after) {
-  junction::BasicGeometry<S> joint;
-  joint.limits = {S(30), S(1000), S(10000)};
-  joint.before.tangent = before;
-  joint.after.tangent = after;
-  return joint;
+  junction::BasicGeometry<S> junction;
+  junction.limits = {S(30), S(1000), S(10000)};
+  junction.before.tangent = before;
+  junction.after.tangent = after;
+  return junction;
 }
 
 /// Straight on along X, then turned to the left by `angle`.
@@ -30,15 +30,15 @@ junction::BasicGeometry<S> corner(double angle) {
 /// Two arcs that show nothing but their chords.
 inline junction::Geometry arcs(Turn first, const Vector3& first_chord, Turn second,
                                const Vector3& second_chord, Plane plane = Plane::xy) {
-  junction::Geometry joint;
-  joint.limits = kk22;
-  joint.before.kind = joint.after.kind = junction::Kind::arc;
-  joint.before.plane = joint.after.plane = plane;
-  joint.before.turn = first;
-  joint.after.turn = second;
-  joint.before.chord = first_chord;
-  joint.after.chord = second_chord;
-  return joint;
+  junction::Geometry junction;
+  junction.limits = kk22;
+  junction.before.kind = junction.after.kind = junction::Kind::arc;
+  junction.before.plane = junction.after.plane = plane;
+  junction.before.turn = first;
+  junction.after.turn = second;
+  junction.before.chord = first_chord;
+  junction.after.chord = second_chord;
+  return junction;
 }
 
 inline Vector3 random_direction(Random& random) {
