@@ -1,4 +1,5 @@
-# That the files a page links to are there.   cmake -DPAGE=README.md -P links.cmake
+# That the files a page links to, or names with a folder between backquotes, are there.
+#   cmake -DPAGE=README.md -DROOT=. -P links.cmake
 cmake_minimum_required(VERSION 3.22)
 
 get_filename_component(folder ${PAGE} DIRECTORY)
@@ -13,5 +14,17 @@ foreach(link IN LISTS links)
     message(FATAL_ERROR "${PAGE} links to a file that is not there: ${link}")
   endif()
 endforeach()
-list(LENGTH links count)
-message(STATUS "${PAGE}: ${count} links, all there")
+
+string(REGEX MATCHALL "`[a-z0-9_]+/[a-z0-9_/]+[.][a-z]+`" names "${text}")
+foreach(name IN LISTS names)
+  string(REPLACE "`" "" name "${name}")
+  string(REGEX MATCH "^[^/]+" folder ${name})
+  foreach(place ${ROOT} ${ROOT}/include/cncplan)
+    if(EXISTS ${place}/${folder} AND NOT EXISTS ${place}/${name})  # elsewhere it is another project's
+      message(FATAL_ERROR "${PAGE} names a file that is not there: ${name}")
+    endif()
+  endforeach()
+endforeach()
+list(LENGTH links link_count)
+list(LENGTH names name_count)
+message(STATUS "${PAGE}: ${link_count} links and ${name_count} names of files, all there")

@@ -68,6 +68,12 @@ struct NumbersOnly {
 };
 auto chart = plan::OneChart<NumbersOnly>({});
 
+// expect NumbersMeasured, MeasuringChart: a chart measures numbers and jets
+struct NumbersMeasured : kinematics::PolarChart {
+  std::array<double, 3> measured(const std::array<double, 3>& point) const { return point; }
+};
+auto measured = plan::measured_point(NumbersMeasured{}, std::array<double, 3>{});
+
 // expect int, NumberOver: same_as
 auto joints_of_int = kinematics::PolarChart{}.joints(std::array<int, 3>{});
 
@@ -95,11 +101,17 @@ struct SpeedAlone {
 };
 auto rule = plan::caps(block, block, junction::ExactStop{}, SpeedAlone{});
 
-// expect ProfileAtOnce, SolverFactory: factory(limits)
+// expect ProfileAtOnce, RampLaw: law(limits)
 struct ProfileAtOnce {
   Expected<profile::Profile> operator()(const Limits&) const;
 };
 auto law = plan::whole_plan(std::vector<plan::BlockCaps>{}, ProfileAtOnce{});
+
+// expect Immovable, QueueItem: movable
+struct Immovable {
+  std::atomic<int> count;
+};
+plan::Queue<Immovable, 4>* queue;
 
 // expect NoState, StepRule: rule(point, x, along, x, x)
 struct NoState {
