@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../examples/generate/programs.hpp"
-#include "cncplan/gcode/program.hpp"
-#include "cncplan/plan/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
+#include "cncplan/plan/motion_block.hpp"
 
 namespace cncplan::bench {
 

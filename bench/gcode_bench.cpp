@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "../examples/generate/programs.hpp"
-#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
 #include "cncplan/gcode/writer.hpp"
 
 namespace {

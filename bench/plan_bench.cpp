@@ -8,10 +8,11 @@
 #include "ball.hpp"
 #include "buffer.hpp"
 #include "cncplan/junction/deviation.hpp"
+#include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/sampler.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/plan/stream_planner.hpp"
-#include "cncplan/profile/seven_phase.hpp"
+#include "plan/random_program.hpp"
 
 namespace {
 
@@ -40,8 +41,7 @@ struct Job {
       lengths.push_back(caps.back().length);
     }
     gates.resize(blocks.size() + 1);
-    const auto solver = [](const Limits& within) { return profile::seven_phase_solver(within); };
-    return plan::plan_spans(std::span<const plan::BlockCaps>(caps), solver, std::span(gates),
+    return plan::plan_spans(std::span<const plan::BlockCaps>(caps), plan::SevenPhase{}, std::span(gates),
                             std::back_inserter(spans))
         .has_value();
   }
@@ -51,8 +51,7 @@ struct Job {
     std::vector<plan::BlockCaps> ahead(window);
     std::vector<plan::Gate> first(window + 1), second(window + 1);
     spans.clear();
-    const auto solver = [](const Limits& within) { return profile::seven_phase_solver(within); };
-    plan::StreamPlanner<double, decltype(solver)> planner({ahead, first, second}, solver);
+    plan::StreamPlanner<double> planner({ahead, first, second});
     const junction::Deviation deviation{0.01};
     const auto out = std::back_inserter(spans);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -95,6 +94,28 @@ void plan_ball_stream(benchmark::State& state, std::size_t window) {
 BENCHMARK_CAPTURE(plan_ball_stream, , 256)->Name("plan/ball/stream")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_ball_stream, , 16)->Name("plan/ball/stream/16")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_ball_stream, , 4096)->Name("plan/ball/stream/4096")->Unit(benchmark::kMillisecond);
+
+// Programs whose caps, feeds and limits change all the time. An item is a block.
+void plan_random(benchmark::State& state) {
+  test::Random random(1);
+  std::vector<std::vector<plan::BlockCaps>> programs;
+  std::int64_t blocks = 0;
+  for (int i = 0; i < 100; ++i) {
+    programs.push_back(test::random_program(random, test::LimitSpread::wide, 4000));
+    blocks += static_cast<std::int64_t>(programs.back().size());
+  }
+  std::vector<plan::Gate> gates(4001);
+  std::vector<plan::Span> spans;
+  for (auto _ : state)
+    for (const auto& program : programs) {
+      spans.clear();
+      const auto planned = plan::plan_spans(std::span<const plan::BlockCaps>(program), plan::SevenPhase{},
+                                            std::span(gates), std::back_inserter(spans));
+      if (!planned) state.SkipWithError("a program has no plan");
+    }
+  state.SetItemsProcessed(state.iterations() * blocks);
+}
+BENCHMARK(plan_random)->Name("plan/random")->Unit(benchmark::kMillisecond);
 
 // Text to positions at every millisecond, on one core. An item is a sample; `times_real_time` is how often
 // faster than the machine would move it is.

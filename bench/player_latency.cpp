@@ -8,7 +8,7 @@
 
 #include "ball.hpp"
 #include "cncplan/junction/deviation.hpp"
-#include "cncplan/plan/player.hpp"
+#include "cncplan/plan/player/player.hpp"
 #include "latencies.hpp"
 #include "support/random.hpp"
 
@@ -34,12 +34,12 @@ void measure(const char* name, const std::vector<plan::PlayedBlock>& program, st
   constexpr std::size_t window = 256;
   constexpr double period = 1e-3;
   std::vector<plan::PlayedBlock> blocks(window + 1);
-  std::vector<plan::BlockCaps> course(window);
+  std::vector<plan::BlockCaps> ahead(window);
   std::vector<plan::Gate> gates(window + 1), spare_gates(window + 1);
   bench::Latencies latencies(count);
   std::size_t done = 0, first_run = 0;
   while (done < count) {
-    plan::Player player({blocks, course, gates, spare_gates});
+    plan::Player player({blocks, ahead, gates, spare_gates});
     std::size_t fed = 0;
     while (done < count && !(fed == program.size() && player.finished())) {
       while (fed < program.size() && player.push(program[fed])) ++fed;

@@ -1,6 +1,6 @@
 // G-code in, G-code out: mirrors a program in X. Arcs turn the other way round; all else stays as it is.
 #include <cncplan/gcode/lines.hpp>
-#include <cncplan/gcode/program.hpp>
+#include <cncplan/gcode/read_program.hpp>
 #include <cncplan/gcode/writer.hpp>
 #include <iostream>
 #include <iterator>

@@ -86,9 +86,9 @@ struct Report {
 // priority and memory that stays where it is.
 Report tick(Feed& feed) {
   std::array<plan::PlayedBlock, 128> memory;
-  std::array<plan::BlockCaps, 64> course;
+  std::array<plan::BlockCaps, 64> ahead;
   std::array<plan::Gate, 65> gates, spare_gates;
-  plan::Player player({memory, course, gates, spare_gates});
+  plan::Player player({memory, ahead, gates, spare_gates});
   constexpr double seconds = std::chrono::duration<double>(period).count();
   Report report;
   for (auto due = Clock::now();; due += period) {

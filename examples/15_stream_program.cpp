@@ -34,7 +34,7 @@ class Stream {
 
   std::array<plan::BlockCaps, window> blocks_;
   std::array<plan::Gate, window + 1> gates_, held_gates_;
-  plan::StreamPlanner<double, plan::SevenPhase> planner_{{blocks_, gates_, held_gates_}, {}};
+  plan::StreamPlanner<double> planner_{{blocks_, gates_, held_gates_}};
   Spans spans_;
   plan::Block before_;
   bool first_ = true;

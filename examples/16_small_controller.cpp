@@ -5,7 +5,7 @@
 #include <cncplan/gcode/reader.hpp>
 #include <cncplan/junction/deviation.hpp>
 #include <cncplan/plan/block_maker.hpp>
-#include <cncplan/plan/player.hpp>
+#include <cncplan/plan/player/player.hpp>
 #include <cstdio>
 
 using namespace cncplan;
@@ -20,11 +20,11 @@ constexpr std::array<std::string_view, 5> lines{"G21 G90 G17 F1200", "G1 X20", "
 constexpr std::size_t room = 16;
 std::array<plan::Block, room> blocks;
 std::array<plan::PlayedBlock, room> played;
-std::array<plan::BlockCaps, room> course;
+std::array<plan::BlockCaps, room> ahead;
 std::array<plan::Gate, room + 1> gates, spare_gates;
 gcode::Reader reader;
 plan::BlockMaker maker(limits, 50.0);
-plan::Player player({played, course, gates, spare_gates});
+plan::Player player({played, ahead, gates, spare_gates});
 std::size_t pushed = 0;
 int ticks = 0;
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cncplan/gcode/diagnostic_text.hpp"
-#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
 #include "cncplan/gcode/writer.hpp"
 
 namespace cncplan::fuzz {

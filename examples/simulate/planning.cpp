@@ -88,10 +88,9 @@ std::vector<plan::Span> spans_of(const Caps& caps, const Options& options) {
   }
   const auto law =
       options.law == Law::five ? profile::five_phase_solver<double> : profile::seven_phase_solver<double>;
-  const auto factory = [law](const Limits& limits) { return law(limits); };
-  if (options.planning == Planning::span) return support::spans_of(caps, factory);
+  if (options.planning == Planning::span) return support::spans_of(caps, law);
   std::vector<double> speeds(caps.size() + 1);
-  const auto planned = plan::plan_blocks(std::span<const plan::BlockCaps>(caps), factory, std::span(speeds),
+  const auto planned = plan::plan_blocks(std::span<const plan::BlockCaps>(caps), law, std::span(speeds),
                                          std::back_inserter(spans));
   if (!planned)
     throw Failure(Exit::other,

@@ -116,9 +116,9 @@ support::Plan play(const std::vector<plan::PlayedBlock>& pieces, const std::vect
     plan.length += piece.caps.length;
   }
   std::vector<plan::PlayedBlock> memory(window + 1);
-  std::vector<plan::BlockCaps> course(window);
+  std::vector<plan::BlockCaps> ahead(window);
   std::vector<plan::Gate> gates(window + 1), spare_gates(window + 1);
-  plan::Player player({memory, course, gates, spare_gates});
+  plan::Player player({memory, ahead, gates, spare_gates});
   Record record(pieces, plan);
   constexpr std::int64_t most_ticks = 10'000'000'000;
   double time = 0.0;

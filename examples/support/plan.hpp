@@ -96,12 +96,11 @@ inline Plan plan_of(std::vector<cncplan::plan::BlockCaps> caps, std::vector<cncp
 }
 
 /// Ramps that cross pieces. Throws `Failure`.
-template <class Factory>
-std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps,
-                                          const Factory& factory) {
+template <class Law>
+std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps, const Law& law) {
   std::vector<cncplan::plan::Span> spans;
   std::vector<cncplan::plan::Gate> gates(caps.size() + 1);
-  const auto planned = cncplan::plan::plan_spans(std::span<const cncplan::plan::BlockCaps>(caps), factory,
+  const auto planned = cncplan::plan::plan_spans(std::span<const cncplan::plan::BlockCaps>(caps), law,
                                                  std::span(gates), std::back_inserter(spans));
   if (!planned)
     throw Failure(Exit::other,

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cncplan/plan/sidewall_guide.hpp"
+#include "cncplan/plan/joint/sidewall_guide.hpp"
 #include "dxf.hpp"
 #include "support/failure.hpp"
 

@@ -60,8 +60,7 @@ Motion plan_motion(const Artwork& artwork, const kinematics::Sidewall& sidewall,
   std::vector<plan::BlockCaps> caps;
   plan::joint_caps(std::span<const Block>(motion.blocks), machine.joint_limits<4>(), options.corner_time,
                    std::back_inserter(caps));
-  auto spans =
-      support::spans_of(caps, [](const Limits& limits) { return profile::seven_phase_solver(limits); });
+  auto spans = support::spans_of(caps, plan::SevenPhase{});
   motion.plan = support::plan_of(std::move(caps), std::move(spans));
   return motion;
 }

@@ -62,8 +62,8 @@ TEMPLATE_TEST_CASE("a phase's inverse meets the position to rounding", "", float
     const long double error = std::abs(position(phase, tau) - static_cast<long double>(where)) / allowed;
     if (error > worst) worst = error, worst_phase = phase, worst_where = where;
   }
-  CAPTURE(test::seed(), worst_phase.duration, worst_phase.position, worst_phase.velocity,
-          worst_phase.acceleration, worst_phase.jerk, worst_where);
+  CAPTURE(worst_phase.duration, worst_phase.position, worst_phase.velocity, worst_phase.acceleration,
+          worst_phase.jerk, worst_where);
   CHECK(static_cast<double>(worst) < 4.0);
 }
 
@@ -119,7 +119,6 @@ TEMPLATE_TEST_CASE("many positions at once are inverted as one by one", "", floa
       if (!(error <= worst)) worst = error, worst_phase = phase;
     }
   }
-  CAPTURE(test::seed(), worst_phase.duration, worst_phase.velocity, worst_phase.acceleration,
-          worst_phase.jerk);
+  CAPTURE(worst_phase.duration, worst_phase.velocity, worst_phase.acceleration, worst_phase.jerk);
   CHECK(worst < S(4));
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cncplan/gcode/diagnostic_text.hpp"
-#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
 
 namespace cncplan::test {
 

@@ -148,7 +148,6 @@ TEST_CASE("real programs read back bit for bit") {
 
 TEST_CASE("random programs read back bit for bit") {
   test::Random random;
-  CAPTURE(test::seed());
   Dialect turning;
   turning.axes.push_back({'A', AxisKind::rotary});
   turning.axes.push_back({'C', AxisKind::rotary});

@@ -18,7 +18,7 @@
 #include "cncplan/path/segment.hpp"
 #include "cncplan/plan/block_maker.hpp"
 #include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/player.hpp"
+#include "cncplan/plan/player/player.hpp"
 #include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
@@ -132,7 +132,7 @@ void stream_a_program() {
   std::array<plan::BlockCaps, 4> window;
   std::array<plan::Gate, 5> window_gates, held_gates;
   std::array<plan::Span, 8> spans;
-  plan::StreamPlanner planner(plan::StreamMemory{window, window_gates, held_gates}, plan::SevenPhase{});
+  plan::StreamPlanner planner(plan::StreamMemory{window, window_gates, held_gates});
   make_blocks(reader_of_stream, [&](const plan::Block&, const plan::BlockCaps& caps) {
     sink = planner.push(caps, spans.begin()).has_value() ? 1.0 : 0.0;
   });
@@ -141,9 +141,9 @@ void stream_a_program() {
 
 void play_a_program() {
   std::array<plan::PlayedBlock, 4> played;
-  std::array<plan::BlockCaps, 4> course;
+  std::array<plan::BlockCaps, 4> ahead;
   std::array<plan::Gate, 5> gates, spare_gates;
-  plan::Player player({played, course, gates, spare_gates});
+  plan::Player player({played, ahead, gates, spare_gates});
   make_blocks(reader_of_player, [&](const plan::Block& block, const plan::BlockCaps& caps) {
     while (!player.push({.caps = caps, .feed = block.limits.velocity})) sink = player.tick(1e-3).along;
     player.feed_override(0.5);

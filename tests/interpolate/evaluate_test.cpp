@@ -70,6 +70,5 @@ TEMPLATE_TEST_CASE("A path's own frames are those of its derivatives, one by one
         }
       }
     }
-  CAPTURE(test::seed());
   CHECK(worst / eps < 12);
 }

@@ -101,7 +101,6 @@ TEST_CASE("Stream, batch and single samples agree to 1e-12 mm") {
         CHECK(batch.col(k - 1) == segment.end());
       }
     }
-  CAPTURE(test::seed());
   CHECK(worst < 1e-12);
 }
 
@@ -160,7 +159,6 @@ TEST_CASE("float: the error stays within 1e-6 of the size of the motion") {
           worst, static_cast<float>((sample.position.cast<long double>() - truth).norm()) / arc.length());
     }
   }
-  CAPTURE(test::seed());
   CHECK(worst < 1e-6F);
   WARN("float: largest error / length " << worst);
 }

@@ -34,7 +34,7 @@ TEMPLATE_TEST_CASE("The first instant at or after a time is found whatever round
     auto t = static_cast<TestType>(k) * period;
     if (random.coin()) t = std::nextafter(t, random.coin() ? TestType(0) : TestType(1e30));
     const std::int64_t found = BasicGrid<TestType>{period, t}.first_at(t);
-    CAPTURE(test::seed(), period, k, t, found);
+    CAPTURE(period, k, t, found);
     right = static_cast<TestType>(found) * period >= t && static_cast<TestType>(found - 1) * period < t;
     if (!right) CHECK(right);
   }

@@ -42,7 +42,7 @@ TEST_CASE("deviation agrees with its formula from reversal to turns of 1e-9 rad"
         static_cast<double>(junction::Deviation{delta}.speed_sq(junction) / formula(junction, delta) - 1));
     if (off > worst) worst = off, at = turn;
   }
-  INFO("seed " << test::seed() << ", turn " << at);
+  INFO("turn " << at);
   CHECK(worst < 1e-12);
 }
 

@@ -23,7 +23,6 @@ TEST_CASE("at the tangent policy's speed the axis that jumps most jumps by the s
                       std::abs(speed * junction.after.tangent[axis] - speed * junction.before.tangent[axis]));
     worst = std::max(worst, std::abs(jump / step - 1.0));
   }
-  INFO("seed " << test::seed());
   CHECK(worst < 1e-13);
 }
 

@@ -7,10 +7,10 @@
 #include "cncplan/kinematics/tire_mold.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/cursor.hpp"
-#include "cncplan/plan/joint_course.hpp"
-#include "cncplan/plan/joint_plan.hpp"
-#include "cncplan/plan/polar_guide.hpp"
-#include "cncplan/plan/sidewall_guide.hpp"
+#include "cncplan/plan/joint/caps.hpp"
+#include "cncplan/plan/joint/course.hpp"
+#include "cncplan/plan/joint/polar_guide.hpp"
+#include "cncplan/plan/joint/sidewall_guide.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "support/catch.hpp"
@@ -49,9 +49,8 @@ Planned<Course> planned(const Course& course, const Joints& limits, double perio
   plan::joint_caps(std::span(blocks), limits, period, std::back_inserter(result.caps));
   for (const auto& caps : result.caps) result.lengths.push_back(caps.length);
   std::vector<plan::Gate> gates(blocks.size() + 1);
-  const auto factory = [](const Limits& l) { return profile::seven_phase_solver(l); };
-  const auto ok = plan::plan_spans(std::span<const plan::BlockCaps>(result.caps), factory, std::span(gates),
-                                   std::back_inserter(result.spans));
+  const auto ok = plan::plan_spans(std::span<const plan::BlockCaps>(result.caps), plan::SevenPhase{},
+                                   std::span(gates), std::back_inserter(result.spans));
   REQUIRE(ok);
   for (const auto& span : result.spans) result.duration += span.profile.duration();
   return result;

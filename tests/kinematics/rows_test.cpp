@@ -1,8 +1,8 @@
 // Straight rows in machine space, held against the wall at many more places than the division looks at.
 #include "cncplan/kinematics/profile_chain.hpp"
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/sidewall_guide.hpp"
-#include "cncplan/plan/sidewall_rows.hpp"
+#include "cncplan/plan/joint/sidewall_guide.hpp"
+#include "cncplan/plan/joint/sidewall_rows.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

@@ -2,8 +2,8 @@
 #include "cncplan/kinematics/tire_mold_row.hpp"
 
 #include "cncplan/path/line.hpp"
-#include "cncplan/plan/joint_caps.hpp"
-#include "cncplan/plan/stretch.hpp"
+#include "cncplan/plan/joint/limits_along.hpp"
+#include "cncplan/plan/joint/stretch.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"

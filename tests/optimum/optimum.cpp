@@ -1,14 +1,12 @@
 // How far plans are from the fastest motion: random short programs, planned and optimised numerically.
-//   cncplan_optimum [--seed N] [--count N] [--acceleration MM/S^2] [--nodes N]
 // Each lies between two long runs at full speed, which both motions begin and end in, so that only the blocks
 // between them differ. Exit 1 if a plan is faster than the optimum found, by more than 0.1 %.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "cncplan/plan/block_planner.hpp"
@@ -20,8 +18,6 @@
 namespace {
 
 using namespace cncplan;
-
-constexpr auto seven_phase = [](const Limits& limits) { return profile::seven_phase_solver(limits); };
 
 struct Program {
   std::vector<plan::BlockCaps> blocks;
@@ -86,25 +82,16 @@ struct Loss {
 }  // namespace
 
 int main(int argc, char** argv) {
+  CLI::App app("how much longer plans take than the fastest motion that a grid search finds");
   std::uint64_t seed = test::seed();
   int count = 200;
   std::size_t nodes = 2000;
   Limits limits{30.0, 1000.0, 10000.0};
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string_view option = argv[i];
-    if (option == "--seed")
-      seed = std::strtoull(argv[i + 1], nullptr, 10);
-    else if (option == "--count")
-      count = std::atoi(argv[i + 1]);
-    else if (option == "--acceleration")
-      limits.acceleration = std::strtod(argv[i + 1], nullptr);
-    else if (option == "--nodes")
-      nodes = std::strtoull(argv[i + 1], nullptr, 10);
-    else
-      return std::fprintf(stderr,
-                          "usage: cncplan_optimum [--seed N] [--count N] [--acceleration A] [--nodes N]\n"),
-             2;
-  }
+  app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
+  app.add_option("--count", count, "how many programs")->capture_default_str();
+  app.add_option("--acceleration", limits.acceleration, "the limit, mm/s^2")->capture_default_str();
+  app.add_option("--nodes", nodes, "of the grid along each program")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
   test::Random random(seed);
   Loss across, single;
   double grid = 0.0;
@@ -115,8 +102,8 @@ int main(int argc, char** argv) {
     std::vector<plan::Gate> gates(blocks.size() + 1);
     std::vector<double> speeds(blocks.size() + 1);
     std::vector<plan::Span> spans, singles;
-    if (!plan::plan_spans(blocks, seven_phase, std::span(gates), std::back_inserter(spans)) ||
-        !plan::plan_blocks(blocks, seven_phase, std::span(speeds), std::back_inserter(singles)))
+    if (!plan::plan_spans(blocks, plan::SevenPhase{}, std::span(gates), std::back_inserter(spans)) ||
+        !plan::plan_blocks(blocks, plan::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
       return std::fprintf(stderr, "no plan\n"), 1;
 
     std::vector<double> highest(nodes, limits.velocity * limits.velocity);

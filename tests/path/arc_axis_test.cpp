@@ -50,7 +50,6 @@ TEMPLATE_TEST_CASE("Turnings are where the rate changes sign, each of them and n
     }
     missed += std::abs(turnings - changes);
   }
-  INFO("seed " << test::seed());
   CHECK(missed == 0);
   CHECK(false_ones == 0);
 }
@@ -69,7 +68,6 @@ TEMPLATE_TEST_CASE("Walking from turning to turning neither repeats nor skips on
         if (axis.next_turning_number(at) != n + 1 || axis.previous_turning_number(at) != n - 1) ++wrong;
     }
   }
-  INFO("seed " << test::seed());
   CHECK(wrong == 0);
 }
 
@@ -103,8 +101,8 @@ TEMPLATE_TEST_CASE("A crossing stands at the wanted value, at turnings as well a
       low = high;
     }
   }
-  INFO("seed " << test::seed() << ": ArcAxis{" << where.start << ", " << where.radial << ", "
-               << where.tangential << ", " << where.growth << ", " << where.phase << "}");
+  INFO("ArcAxis{" << where.start << ", " << where.radial << ", " << where.tangential << ", " << where.growth
+                  << ", " << where.phase << "}");
   CHECK(worst < 8);
 }
 

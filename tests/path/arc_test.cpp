@@ -52,7 +52,6 @@ TEMPLATE_TEST_CASE("Arcs of every kind obey the laws of paths", "", float, doubl
       const S last = std::nextafter(arc.parameter_end(), S(0));
       approach.see(static_cast<double>((arc.position(last) - arc.end()).norm()) / size_of(arc), arc);
     }
-    INFO("seed " << test::seed());
     test::check_path_laws(worst, "arc kind " + std::to_string(static_cast<int>(kind)));
     INFO(ends.arc);
     CHECK(ends.value == 0);
@@ -81,7 +80,7 @@ TEMPLATE_TEST_CASE("Points of an arc lie on its circle at the angle that the swe
       const double dz = double(p(a.third)) - (double(arc.start()(a.third)) + part * double(arc.rise()));
       worst.see(std::hypot(dx, dy, dz) / size_of(arc), arc);
     }
-  INFO("seed " << test::seed() << ": " << worst.arc);
+  INFO(worst.arc);
   CHECK(worst.value < 4);
 }
 
@@ -113,7 +112,7 @@ TEMPLATE_TEST_CASE("Tangents, curvature and its maximum agree with the derivativ
                   arc);
     }
   const double eps = static_cast<double>(std::numeric_limits<S>::epsilon());
-  INFO("seed " << test::seed() << ": " << curvature.arc << "; " << above.arc);
+  INFO(curvature.arc << "; " << above.arc);
   CHECK(curvature.value < 400 * eps);
   CHECK(above.value < 400 * eps);
   CHECK(tangent.value < 8 * eps);
@@ -143,7 +142,7 @@ TEMPLATE_TEST_CASE("Boxes hold every point and touch the arc on all sides", "", 
                     (1e-5 * largest + size_of(arc)),
                 arc);
     }
-  INFO("seed " << test::seed() << ": " << outside.arc << "; " << loose.arc);
+  INFO(outside.arc << "; " << loose.arc);
   CHECK(outside.value <
         2);  // roundings; the scan's own steps may miss (pi / 1000)^2 / 2 = 5e-6 of the radius
   CHECK(loose.value < 2);
@@ -186,7 +185,7 @@ TEMPLATE_TEST_CASE("Pieces between turnings are monotone and crossings invert po
         }
       }
     }
-  INFO("seed " << test::seed() << ": " << wrong_way.arc << "; " << crossing.arc << "; " << stuck.arc);
+  INFO(wrong_way.arc << "; " << crossing.arc << "; " << stuck.arc);
   CHECK(stuck.value == 0);
   CHECK(wrong_way.value < 2);
   CHECK(crossing.value < 4);

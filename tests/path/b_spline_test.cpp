@@ -31,7 +31,6 @@ void check_laws() {
     worst.worst_of(test::path_law_errors(
         path::ArcLengthTable(BasicBSpline<S, Degree>(std::span<const BasicVector3<S>>(controls))), 0.5));
   }
-  CAPTURE(test::seed());
   test::check_path_laws(worst, "B-spline of degree " + std::to_string(Degree));
 }
 

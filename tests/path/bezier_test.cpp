@@ -26,7 +26,6 @@ void check_laws() {
   test::PathLawErrors worst;
   for (int i = 0; i < 40; ++i)
     worst.worst_of(test::path_law_errors(path::ArcLengthTable(random_bezier<S, Degree>(random)), 0.2));
-  CAPTURE(test::seed());
   test::check_path_laws(worst, "Bezier of degree " + std::to_string(Degree));
 }
 

@@ -52,7 +52,6 @@ TEMPLATE_TEST_CASE("Points of many lengths are those of single ones, the ends bi
              out[out.size() - 1] == segment.end() && out[out.size() - 2] == segment.end();
     }
   }
-  CAPTURE(test::seed());
   CHECK(ends);
   CHECK(worst / eps < 3);
 }

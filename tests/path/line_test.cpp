@@ -31,7 +31,6 @@ TEMPLATE_TEST_CASE("A line obeys the laws of paths and ends on its ends", "", fl
       crossing_error = std::max(crossing_error, double(off / std::numeric_limits<S>::epsilon()));
     }
   }
-  INFO("seed " << test::seed());
   test::check_path_laws(worst, "lines");
   CHECK(ends_exact);
   CHECK(crossing_error < 2000);  // coordinates up to 500: four units in the last place

@@ -88,7 +88,7 @@ TEST_CASE("The published selection and the closed form agree on a million inputs
     worst_sweep =
         std::max(worst_sweep, std::abs(published.sweep - std::abs(arc->sweep())) / (rounding_sweep + 1e-15));
   }
-  INFO("seed " << test::seed() << ": " << describe(where));
+  INFO(describe(where));
   CHECK(refused == 0);
   CHECK(worst_center < 8);
   CHECK(worst_sweep < 8);
@@ -173,7 +173,7 @@ TEST_CASE("The published parametrisation runs from start to end (Eqs. 8-13 with 
       where = c;
     }
   }
-  INFO("seed " << test::seed() << ": " << describe(where));
+  INFO(describe(where));
   CHECK(worst < 40);
 }
 

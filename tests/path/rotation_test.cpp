@@ -26,7 +26,6 @@ TEMPLATE_TEST_CASE("Sine and versine are right to rounding, near whole turns as 
       small = std::max(
           {small, std::abs(rotation.sine / std::sin(x) - 1), std::abs(rotation.versine / true_versine - 1)});
   }
-  CAPTURE(test::seed());
   CHECK(static_cast<double>(sine / eps) < 7);
   CHECK(static_cast<double>(versine / eps) < 7);
   CHECK(static_cast<double>(small / eps) < 4);

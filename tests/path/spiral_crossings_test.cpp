@@ -68,7 +68,7 @@ TEMPLATE_TEST_CASE("a batch of crossings of a spiral lies on it, between turning
         low = high;
       }
   }
-  CAPTURE(test::seed(), worst_arc, worst_length_arc);
+  CAPTURE(worst_arc, worst_length_arc);
   CHECK(worst < 4.0);
   CHECK(worst_length < 4.0);
 }

@@ -80,8 +80,7 @@ TEST_CASE("Length of spirals agrees with integration to a few units in the last 
                  static_cast<double>(std::abs(length_at(small, short_angle) - exact_float) / exact_float));
   }
   std::printf("spiral length: worst relative error %.2g (double), %.2g (float)\n", worst, worst_float);
-  INFO("seed " << test::seed() << ": Spiral{" << where.radius << ", " << where.growth << ", " << where.rise
-               << "}, angle " << worst_angle);
+  INFO("Spiral{" << where.radius << ", " << where.growth << ", " << where.rise << "}, angle " << worst_angle);
   CHECK(worst < 2e-15);
   CHECK(worst_float < 1e-6);
 }
@@ -116,7 +115,6 @@ TEST_CASE("angle_at inverts length_at within its steps") {
     const double error = std::abs(length_at(spiral, angle_at(spiral, s, angle, end)) - s) / end;
     (extreme ? worst_extreme : worst) = std::max(extreme ? worst_extreme : worst, error);
   }
-  INFO("seed " << test::seed());
   CHECK(worst < 1e-15);
   CHECK(worst_extreme < 1e-15);
   CHECK(angle_at(Spiral<double>{1, 0.5, 0}, 0.0, 2.0, 3.0) == 0.0);

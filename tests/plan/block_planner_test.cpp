@@ -63,7 +63,7 @@ TEST_CASE("no grid of junction speeds takes less time") {
       if (1.0 - time / planned > saved) saved = 1.0 - time / planned, where = blocks;
     }
   }
-  INFO("seed " << test::seed() << ", " << test::literal(where));
+  INFO(test::literal(where));
   CHECK(saved < 1e-12);
   CHECK(feasible > 1000);
 }
@@ -87,7 +87,6 @@ TEST_CASE("no junction can be faster while the others stay") {
       speeds[i] = planned;
     }
   }
-  INFO("seed " << test::seed());
   CHECK(raised == 0);
 }
 
@@ -101,7 +100,6 @@ TEST_CASE("plans block by block break nothing, under both laws") {
     worst.worst_of(test::examine_plan<double>(blocks, spans));
     for (const auto& span : spans) REQUIRE(span.count <= 1);
   }
-  INFO("seed " << test::seed());
   CHECK(worst.worst() < 1e-10);
 }
 

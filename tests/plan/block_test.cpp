@@ -43,7 +43,7 @@ TEST_CASE("tangents and curvature vectors at both ends are those of differences 
       REQUIRE(std::abs(side.curvature.norm() / arc.curvature(u0) - 1.0) < 1e-9);
     }
   }
-  INFO("seed " << test::seed() << ", " << where);
+  INFO(where);
   CHECK(tangent < 2e-2);
   CHECK(curvature < 1e-6);
 }

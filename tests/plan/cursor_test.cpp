@@ -64,7 +64,6 @@ TEST_CASE("a cursor is where a search from the start finds it, whatever its stri
       REQUIRE(place.along <= lengths[place.block]);
     }
   }
-  INFO("seed " << test::seed());
   CHECK(position < 1.0);
   CHECK(velocity < 1e-9);
   CHECK(along < 1.0);

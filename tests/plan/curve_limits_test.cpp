@@ -48,8 +48,8 @@ TEST_CASE("shared limits keep both vector sums at every speed, acceleration and 
           jerk = std::max(jerk, j);
         }
   }
-  INFO("seed " << test::seed() << ", 1/R " << curvature << ", limits " << where.velocity << ' '
-               << where.acceleration << ' ' << where.jerk);
+  INFO("1/R " << curvature << ", limits " << where.velocity << ' ' << where.acceleration << ' '
+              << where.jerk);
   CHECK(static_cast<double>(acceleration) <= 1 + 1e-12);
   CHECK(static_cast<double>(jerk) <= 1 + 1e-12);
   CHECK(static_cast<double>(jerk) > 1 - 1e-12);  // the rule leaves none of the jerk

@@ -12,23 +12,23 @@
 namespace cncplan::test {
 
 /// Fails the test where there is no plan.
-template <std::floating_point S, class Factory = plan::SevenPhase>
+template <std::floating_point S, class Law = plan::SevenPhase>
 std::vector<plan::BasicSpan<S>> spans_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
-                                         const Factory& factory = {}) {
+                                         const Law& law = {}) {
   std::vector<plan::BasicSpan<S>> spans;
   std::vector<plan::BasicGate<S>> gates(blocks.size() + 1);
-  REQUIRE(plan::plan_spans(std::span<const plan::BasicBlockCaps<S>>(blocks), factory, std::span(gates),
+  REQUIRE(plan::plan_spans(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(gates),
                            std::back_inserter(spans)));
   return spans;
 }
 
 /// The same, block by block.
-template <std::floating_point S, class Factory = plan::SevenPhase>
+template <std::floating_point S, class Law = plan::SevenPhase>
 std::vector<plan::BasicSpan<S>> single_blocks_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
-                                                 const Factory& factory = {}) {
+                                                 const Law& law = {}) {
   std::vector<plan::BasicSpan<S>> spans;
   std::vector<S> speeds(blocks.size() + 1);
-  REQUIRE(plan::plan_blocks(std::span<const plan::BasicBlockCaps<S>>(blocks), factory, std::span(speeds),
+  REQUIRE(plan::plan_blocks(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(speeds),
                             std::back_inserter(spans)));
   return spans;
 }

@@ -40,7 +40,7 @@ TEST_CASE("random programs break no cap, no feed and no limit, and join without 
       worst.worst_of(errors);
     }
   }
-  INFO("seed " << test::seed() << ", worst: " << test::literal(where));
+  INFO("worst: " << test::literal(where));
   CHECK(worst.cap < 1e-11);
   CHECK(worst.velocity < 1e-12);
   CHECK(worst.acceleration < 1e-12);
@@ -63,7 +63,7 @@ TEST_CASE("spans are never slower than block by block under the same caps") {
     saved = std::max(saved, 1.0 - across / single);
     if (across / single - 1.0 > worst) worst = across / single - 1.0, where = blocks;
   }
-  INFO("seed " << test::seed() << ", " << where.size() << " blocks: " << test::literal(where));
+  INFO(where.size() << " blocks: " << test::literal(where));
   CHECK(worst < 1e-12);
   CHECK(saved > 0.5);
 }
@@ -103,7 +103,6 @@ TEST_CASE("samples of a plan differ by what the limits allow") {
     }
     CHECK(cursor.at(total * 2.0).state.velocity == 0.0);
   }
-  INFO("seed " << test::seed());
   CHECK(speed < 1e-9);
   CHECK(acceleration < 1e-9);
   CHECK(jerk < 1e-9);
@@ -178,7 +177,7 @@ TEST_CASE("random programs in float keep their limits to float's digits") {
     if (errors.worst() > worst_one) worst_one = errors.worst(), where = blocks;
     worst.worst_of(errors);
   }
-  INFO("seed " << test::seed() << ", worst: " << test::literal(where));
+  INFO("worst: " << test::literal(where));
   CHECK(worst.cap < 1e-2);
   CHECK(worst.velocity < 1e-4);
   CHECK(worst.acceleration < 1e-4);

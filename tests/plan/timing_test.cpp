@@ -52,7 +52,7 @@ TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
       }
     }
   }
-  INFO("seed " << test::seed() << ", " << test::literal(where));
+  INFO(test::literal(where));
   CHECK(gap < 1e-12);
   CHECK(travel < 1e-12);
   CHECK(junction < 1e-12);

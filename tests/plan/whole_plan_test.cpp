@@ -3,7 +3,7 @@
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/kinematics/cartesian.hpp"
-#include "cncplan/plan/joint_course.hpp"
+#include "cncplan/plan/joint/course.hpp"
 #include "planned.hpp"
 
 using namespace cncplan;

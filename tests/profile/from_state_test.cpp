@@ -68,7 +68,7 @@ TEST_CASE("random stops come to rest within the limits, and no later than any ot
   for (int n = 0; n < 100000; ++n) {
     const StateCase c = draw_state(random);
     const auto p = profile::stop(c.start, c.limits);
-    INFO("seed " << test::seed() << ", " << c.literal());
+    INFO(c.literal());
     REQUIRE(p);
     const Travelled t = integrate(c, *p);
     const double v = c.limits.velocity;
@@ -107,7 +107,7 @@ TEST_CASE("random moves from any state cover the length exactly within the limit
     const StateCase c = draw_state(random);
     const auto p = profile::from_state(c.length, c.start, c.end, c.limits);
     if (!p) {
-      INFO("seed " << test::seed() << ", " << c.literal());
+      INFO(c.literal());
       REQUIRE(p.error().code == ErrorCode::end_speed_unreachable);
       continue;
     }
@@ -125,7 +125,6 @@ TEST_CASE("random moves from any state cover the length exactly within the limit
     grow(worst_highest, t.highest / v - 1);
     grow(worst_lowest, -t.lowest / v);
   }
-  INFO("seed " << test::seed());
   CHECK(solved > 50000);
   INFO(position_case);
   CHECK(worst_position < 1e-12);
@@ -146,7 +145,7 @@ TEST_CASE("more jerk never takes longer") {
     Limits more = c.limits;
     more.jerk *= 1.0 + random.uniform(0.0, 0.5);
     const auto quicker = profile::from_state(c.length, c.start, c.end, more);
-    INFO("seed " << test::seed() << ", " << c.literal());
+    INFO(c.literal());
     REQUIRE(quicker);
     CHECK(quicker->duration() <= p->duration() * (1 + 1e-7));
     ++tried;
@@ -168,7 +167,7 @@ TEST_CASE("from rest acceleration it is the seven-phase profile") {
     const double off = std::abs(p->duration() / q->duration() - 1);
     if (off > worst) worst = off, where = c;
   }
-  INFO("seed " << test::seed() << ", " << where.literal());
+  INFO(where.literal());
   CHECK(worst < 1e-6);
 }
 

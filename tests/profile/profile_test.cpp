@@ -60,7 +60,6 @@ TEST_CASE("random profiles: position grows with time, time_at is its inverse, de
       if (off > worst_slope) worst_slope = off, slope_case = c;
     }
   }
-  INFO("seed " << test::seed());
   INFO(inverse_case.literal());
   CHECK(worst_inverse < 1e-14);
   INFO(back_case.literal());

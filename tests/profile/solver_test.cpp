@@ -30,7 +30,7 @@ TEST_CASE("random profiles keep every limit and lose no time against an independ
       worst.jerk_excess = std::max(worst.jerk_excess, errors.jerk_excess);
     }
   }
-  INFO("seed " << test::seed() << ", worst time: " << where.literal());
+  INFO("worst time: " << where.literal());
   CHECK(worst.time_loss < 1e-12);
   CHECK(worst.end_position < 8.0);
   CHECK(worst.end_speed < 8.0);
@@ -67,7 +67,7 @@ TEST_CASE("the reachable speed is the one whose ramp fills the length") {
       if (off > worst) worst = off, where = c;
     }
   }
-  INFO("seed " << test::seed() << ", " << where.literal());
+  INFO(where.literal());
   CHECK(worst < 1e-14);
 }
 
@@ -92,7 +92,6 @@ TEST_CASE("the root between two ramps is exact to rounding over all magnitudes")
     }
     worst = std::max(worst, std::abs(static_cast<double>(w / below - 1)));
   }
-  INFO("seed " << test::seed());
   CHECK(worst < 1e-15);
 }
 

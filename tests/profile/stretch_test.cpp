@@ -18,7 +18,7 @@ TEST_CASE("a stretched move takes the time it is given, within the limits") {
     if (!fastest) continue;
     const double duration = fastest->duration() * random.log_uniform(1.0, 4.0);
     const auto p = profile::stretched(c.length, c.speeds, duration, c.limits);
-    INFO("seed " << test::seed() << ", " << c.literal());
+    INFO(c.literal());
     if (!p) {
       REQUIRE(p.error().code == ErrorCode::above_limit);
       continue;

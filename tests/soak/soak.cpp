@@ -1,53 +1,36 @@
 // Random profiles over the whole domain, each checked against oracles that share nothing with the solver;
 // prints the worst of each error with the case that caused it. Exit 1 if a bound is broken.
-#include <chrono>
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
+#include <string>
 
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "soak/worst.hpp"
 #include "support/profile_oracle.hpp"
 
 namespace {
 
 using namespace cncplan;
 
-struct Quantity {
-  const char* name;
-  double test::ProfileErrors::*member;
-  double bound;
-  double worst = -1.0;
-  test::ProfileCase where{};
-  bool seven = false;
+struct Case {
+  test::ProfileCase move{};
+  bool seven{};
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::uint64_t seed = test::seed();
-  std::uint64_t count = 1'000'000;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string_view option = argv[i];
-    if (option == "--seed")
-      seed = std::strtoull(argv[i + 1], nullptr, 10);
-    else if (option == "--count")
-      count = static_cast<std::uint64_t>(std::strtod(argv[i + 1], nullptr));
-    else
-      return std::fprintf(stderr, "usage: soak [--seed N] [--count N]\n"), 2;
-  }
-
+int soak(std::uint64_t seed, std::uint64_t count) {
   using E = test::ProfileErrors;
-  Quantity quantities[] = {{"end position (eps)", &E::end_position, 4.0},
-                           {"end speed (eps)", &E::end_speed, 4.0},
-                           {"end acceleration", &E::end_acceleration, 1e-12},
-                           {"continuity (eps)", &E::continuity, 8.0},
-                           {"velocity excess", &E::velocity_excess, 1e-12},
-                           {"acceleration excess", &E::acceleration_excess, 1e-12},
-                           {"jerk excess", &E::jerk_excess, 1e-12},
-                           {"speed below zero", &E::lowest_speed, 1e-12},
-                           {"time over optimum", &E::time_loss, 1e-12}};
+  test::Worst<E, Case> all[] = {{"end position (eps)", &E::end_position, 4.0},
+                                {"end speed (eps)", &E::end_speed, 4.0},
+                                {"end acceleration", &E::end_acceleration, 1e-12},
+                                {"continuity (eps)", &E::continuity, 8.0},
+                                {"velocity excess", &E::velocity_excess, 1e-12},
+                                {"acceleration excess", &E::acceleration_excess, 1e-12},
+                                {"jerk excess", &E::jerk_excess, 1e-12},
+                                {"speed below zero", &E::lowest_speed, 1e-12},
+                                {"time over optimum", &E::time_loss, 1e-12}};
   test::Random random(seed);
   std::uint64_t solved = 0;
   for (std::uint64_t draw = 0; draw < count; ++draw) {
@@ -70,19 +53,25 @@ int main(int argc, char** argv) {
       ++solved;
       auto errors = test::examine(c, *profile);
       if (feasible) errors.time_loss = std::abs(test::time_loss(c, *profile, seven));
-      for (Quantity& q : quantities)
-        if (!(errors.*q.member <= q.worst)) q = {q.name, q.member, q.bound, errors.*q.member, c, seven};
+      for (auto& worst : all) worst.take(errors, {c, seven});
     }
   }
 
-  bool held = true;
   std::printf("seed %llu, %llu draws, %llu profiles\n", static_cast<unsigned long long>(seed),
               static_cast<unsigned long long>(count), static_cast<unsigned long long>(solved));
-  for (const Quantity& q : quantities) {
-    const bool within = q.worst <= q.bound;
-    held = held && within;
-    std::printf("%-20s worst %-10.3g bound %-8.3g %s  %s %s\n", q.name, q.worst, q.bound,
-                within ? "ok " : "BROKEN", q.seven ? "seven" : "five", q.where.literal().c_str());
-  }
-  return held ? 0 : 1;
+  const auto literal = [](const Case& c) { return (c.seven ? "seven " : "five ") + c.move.literal(); };
+  return test::report(std::span<const test::Worst<E, Case>>(all), literal) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("random profiles against independent oracles");
+  std::uint64_t seed = test::seed();
+  double count = 1e6;
+  app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
+  app.add_option("--count", count, "how many draws; each is solved with five and with seven phases")
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  return soak(seed, static_cast<std::uint64_t>(count));
 }

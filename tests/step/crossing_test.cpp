@@ -103,7 +103,7 @@ TEST_CASE("an axis that turns round steps when brute force says, with and withou
     const auto array = test::rest_to_rest(end, random.log_uniform(0.1, 1000.0));
     const std::vector<Phase> phases(array.begin(), array.end());
     const SineAxis<double> path{amplitude, 1.0, end, 0.0};
-    CAPTURE(test::seed(), run, amplitude, end, per_unit);
+    CAPTURE(run, amplitude, end, per_unit);
     const auto expected = brute_force(phases, static_cast<long double>(amplitude), per_unit, 20000);
 
     step::StepCursor cursor(path, step::PhaseClock(phases), 0, per_unit, 0);
@@ -133,7 +133,7 @@ TEST_CASE("an axis that turns round steps when brute force says, with and withou
       worst_traced = std::max(worst_traced, traced_error);
     }
   }
-  CAPTURE(test::seed(), worst_amplitude, worst_end, worst_per_unit);
+  CAPTURE(worst_amplitude, worst_end, worst_per_unit);
   CHECK(worst < 1.0);
   CHECK(worst_traced < 1.0);
 }

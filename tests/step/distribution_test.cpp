@@ -57,7 +57,7 @@ TEST_CASE("every axis gets exactly its count, signs and rests included") {
   for (int run = 0; run < 300; ++run) {
     std::array<std::int64_t, 4> counts{};
     for (auto& count : counts) count = random.integer(-30, 30);
-    CAPTURE(test::seed(), counts[0], counts[1], counts[2], counts[3]);
+    CAPTURE(counts[0], counts[1], counts[2], counts[3]);
     std::array<std::int64_t, 4> lcm{}, largest{};
     const auto add = [](std::array<std::int64_t, 4>& sums, step::PulseWord word) {
       for (std::size_t i = 0; i < 4; ++i) sums[i] += word >> i & 1;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/player.hpp"
+#include "cncplan/plan/player/player.hpp"
 #include "support/random.hpp"
 
 namespace cncplan::test {
@@ -55,9 +55,9 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
   constexpr double period = 1e-3;
   constexpr long most_ticks = 1'000'000;
   std::vector<plan::PlayedBlock> blocks(window + 24);
-  std::vector<plan::BlockCaps> course(window);
+  std::vector<plan::BlockCaps> ahead(window);
   std::vector<plan::Gate> gates(window + 1), spare(window + 1);
-  plan::Player player({blocks, course, gates, spare}, 16);
+  plan::Player player({blocks, ahead, gates, spare}, 16);
   std::vector<double> start(program.size() + 1);
   for (std::size_t i = 0; i < program.size(); ++i) start[i + 1] = start[i] + program[i].caps.length;
 

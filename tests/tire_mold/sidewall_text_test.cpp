@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "cncplan/gcode/lines.hpp"
-#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
 #include "run.hpp"
 #include "support/catch.hpp"
 

@@ -4,12 +4,14 @@
 #include <concepts>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 namespace cncplan::gcode {
 
-/// Gives one line after the other, without its end; a line may be valid until the next call only.
+/// Gives one line after the other, without its end; a line may be valid until the next call only. `L` may be
+/// a reference, as of a parameter that takes anything.
 template <class L>
-concept LineSource = requires(L& lines) {
+concept LineSource = requires(std::remove_reference_t<L>& lines) {
   { lines.next() } -> std::same_as<std::optional<std::string_view>>;
 };
 

@@ -14,7 +14,7 @@
 #include "cncplan/path/box.hpp"
 #include "cncplan/path/circle_crossings.hpp"
 #include "cncplan/path/helix_batch.hpp"
-#include "cncplan/path/plane.hpp"
+#include "cncplan/path/plane_swap.hpp"
 #include "cncplan/path/rotation.hpp"
 #include "cncplan/path/spiral.hpp"
 #include "cncplan/path/spiral_crossings.hpp"

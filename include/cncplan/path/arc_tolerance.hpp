@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "cncplan/core/error.hpp"
-#include "cncplan/path/plane.hpp"
+#include "cncplan/path/plane_swap.hpp"
 
 namespace cncplan::path {
 

@@ -7,7 +7,7 @@
 
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/motion.hpp"
-#include "cncplan/plan/program.hpp"
+#include "cncplan/plan/motion_block.hpp"
 
 namespace cncplan::plan {
 

@@ -15,21 +15,21 @@
 namespace cncplan::plan {
 
 /// The same solver again while the limits stay the same, as they mostly do from block to block.
-template <std::floating_point S, SolverFactory<S> Factory>
+template <std::floating_point S, RampLaw<S> Law>
 class SolverCache {
  public:
-  explicit SolverCache(const Factory& factory) : factory_(factory), solver_(factory(limits_)) {}
+  explicit SolverCache(const Law& law) : law_(law), solver_(law(limits_)) {}
 
   const profile::BasicSolver<S>& operator()(const BasicLimits<S>& limits) {
     if (limits != limits_) {
       limits_ = limits;
-      solver_ = factory_(limits);
+      solver_ = law_(limits);
     }
     return solver_;
   }
 
  private:
-  Factory factory_;
+  Law law_;
   BasicLimits<S> limits_{S(1), S(1), S(1)};
   profile::BasicSolver<S> solver_;
 };
@@ -38,9 +38,9 @@ class SolverCache {
 /// could be faster while the others stay: a backward and a forward pass. (A junction alone could be faster
 /// still behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds`
 /// has one entry more than `blocks`; the motion starts and ends at rest.
-template <std::floating_point S, SolverFactory<S> Factory>
-void junction_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory, std::span<S> speeds) {
-  SolverCache<S, Factory> solver(factory);
+template <std::floating_point S, RampLaw<S> Law>
+void junction_speeds(std::span<const BasicBlockCaps<S>> blocks, const Law& law, std::span<S> speeds) {
+  SolverCache<S, Law> solver(law);
   const std::size_t n = blocks.size();
   speeds[n] = S(0);
   for (std::size_t i = n; i-- > 0;) {
@@ -54,11 +54,11 @@ void junction_speeds(std::span<const BasicBlockCaps<S>> blocks, const Factory& f
 
 /// Plans block by block: writes a span for each block, and one for each pause, into `out`. `speeds` is room
 /// for one speed more than there are blocks.
-template <std::floating_point S, SolverFactory<S> Factory, std::output_iterator<BasicSpan<S>> Out>
-Expected<Out> plan_blocks(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory,
-                          std::span<S> speeds, Out out) {
-  junction_speeds(blocks, factory, speeds);
-  SolverCache<S, Factory> solver(factory);
+template <std::floating_point S, RampLaw<S> Law, std::output_iterator<BasicSpan<S>> Out>
+Expected<Out> plan_blocks(std::span<const BasicBlockCaps<S>> blocks, const Law& law, std::span<S> speeds,
+                          Out out) {
+  junction_speeds(blocks, law, speeds);
+  SolverCache<S, Law> solver(law);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicBlockCaps<S>& block = blocks[i];
     const auto profile = solver(block.limits)(block.length, {speeds[i], speeds[i + 1]});

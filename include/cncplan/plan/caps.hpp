@@ -30,8 +30,7 @@ template <std::floating_point S, CurveRule<S> Rule>
 }
 
 /// The caps of a block that follows another: the junction by the policy, the inside by its curvature.
-template <std::floating_point S, class Policy, CurveRule<S> Rule>
-  requires JunctionPolicy<Policy, S>
+template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule>
 [[nodiscard]] BasicBlockCaps<S> caps(const BasicBlock<S>& before, const BasicBlock<S>& block,
                                      const Policy& policy, const Rule& rule) {
   BasicBlockCaps<S> result = caps_from_rest(block, rule);

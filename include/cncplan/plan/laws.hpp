@@ -10,8 +10,8 @@ namespace cncplan::plan {
 
 /// Makes the solver for given limits: the five- or the seven-phase law.
 template <class F, class S>
-concept SolverFactory = requires(const F& factory, const BasicLimits<S>& limits) {
-  { factory(limits) } -> std::same_as<profile::BasicSolver<S>>;
+concept RampLaw = requires(const F& law, const BasicLimits<S>& limits) {
+  { law(limits) } -> std::same_as<profile::BasicSolver<S>>;
 };
 
 /// KK22's profiles.

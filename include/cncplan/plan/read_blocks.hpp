@@ -1,19 +1,17 @@
 // All blocks of a G-code program (set-up).
 #pragma once
 
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
 #include "cncplan/plan/block_maker.hpp"
 
 namespace cncplan::plan {
 
 /// The blocks of a program under limits along the path; rapids run at `rapid_rate`. Errors, at their place:
 /// the reader's and those of arcs.
-template <class Lines>
-  requires gcode::LineSource<std::remove_reference_t<Lines>>
+template <gcode::LineSource Lines>
 [[nodiscard]] Expected<std::vector<Block>, gcode::Diagnostic> read_blocks(Lines&& lines,
                                                                           gcode::Reader& reader,
                                                                           const Limits& limits,

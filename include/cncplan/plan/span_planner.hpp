@@ -70,13 +70,13 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
 /// d2), so a knot within reach of its neighbour is a stronger bound on what lies beyond it than the neighbour
 /// is. Where limits differ and that fails, there is no profile between two knots, and the gates between them
 /// become fixed.
-template <std::floating_point S, SolverFactory<S> Factory>
+template <std::floating_point S, RampLaw<S> Law = SevenPhase>
 class GatePlanner {
  public:
   using Gate = BasicGate<S>;
   using Profile = profile::BasicProfile<S>;
 
-  GatePlanner(std::span<Gate> gates, const Factory& factory) : gates_(gates), solver_(factory) {}
+  explicit GatePlanner(std::span<Gate> gates, const Law& law = {}) : gates_(gates), solver_(law) {}
 
   /// Finds the knots and their speeds.
   void solve() {
@@ -224,18 +224,18 @@ class GatePlanner {
   }
 
   std::span<Gate> gates_;
-  SolverCache<S, Factory> solver_;
+  SolverCache<S, Law> solver_;
   S fastest_{};
 };
 
 /// Plans whole spans: writes them, and the pauses, into `out`. `gates` is room for one gate more than there
 /// are blocks.
-template <std::floating_point S, SolverFactory<S> Factory, std::output_iterator<BasicSpan<S>> Out>
-Expected<Out> plan_spans(std::span<const BasicBlockCaps<S>> blocks, const Factory& factory,
+template <std::floating_point S, RampLaw<S> Law, std::output_iterator<BasicSpan<S>> Out>
+Expected<Out> plan_spans(std::span<const BasicBlockCaps<S>> blocks, const Law& law,
                          std::span<BasicGate<S>> gates, Out out) {
   if (blocks.empty()) return out;
   gates = gates.first(make_gates(blocks, S(0), gates));
-  GatePlanner<S, Factory> planner(gates, factory);
+  GatePlanner<S, Law> planner(gates, law);
   planner.solve();
   for (std::size_t from = 0; from + 1 < gates.size();) {
     const std::size_t to = planner.next_knot(from);

@@ -28,12 +28,12 @@ using StreamMemory = BasicStreamMemory<double>;
 /// in a cruise, else up to a knot made a quarter of the way. So a block is planned at most four times however
 /// long the program, the machine can always stop on what it has been given, and the same blocks give the same
 /// spans however they arrive.
-template <std::floating_point S, SolverFactory<S> Factory>
+template <std::floating_point S, RampLaw<S> Law = SevenPhase>
 class StreamPlanner {
  public:
   /// `memory.window` has room for at least four blocks.
-  StreamPlanner(const BasicStreamMemory<S>& memory, const Factory& factory)
-      : memory_(memory), factory_(factory) {}
+  explicit StreamPlanner(const BasicStreamMemory<S>& memory, const Law& law = {})
+      : memory_(memory), law_(law) {}
 
   /// Takes a block in; writes the spans that are finished by it into `out`.
   template <std::output_iterator<BasicSpan<S>> Out>
@@ -69,7 +69,7 @@ class StreamPlanner {
   bool plan_anew(std::size_t divide = 0) {
     const std::span<const BasicBlockCaps<S>> blocks = memory_.window.first(count_);
     const std::size_t gates = make_gates(blocks, start_speed_, memory_.gates, divide);
-    GatePlanner<S, Factory> planner(memory_.gates.first(gates), factory_);
+    GatePlanner<S, Law> planner(memory_.gates.first(gates), law_);
     planner.solve();
     if (memory_.gates[0].speed < start_speed_) return false;
     std::copy_n(memory_.gates.begin(), gates, memory_.held_gates.begin());
@@ -95,7 +95,7 @@ class StreamPlanner {
     std::size_t from = 0;
     std::size_t to = next_knot(0);
     while (held(to).block <= enough && to + 1 < held_count_) from = std::exchange(to, next_knot(to));
-    GatePlanner<S, Factory> planner(memory_.held_gates.first(held_count_), factory_);
+    GatePlanner<S, Law> planner(memory_.held_gates.first(held_count_), law_);
     const auto profile = planner.profile(from, to);
     if (!profile) return enough;
     const auto phases = profile->phases();
@@ -112,7 +112,7 @@ class StreamPlanner {
   // Writes the spans of the held plan up to a knot, and lets their blocks go.
   template <class Out>
   Expected<Out> write(std::size_t until, Out out) {
-    GatePlanner<S, Factory> planner(memory_.held_gates.first(held_count_), factory_);
+    GatePlanner<S, Law> planner(memory_.held_gates.first(held_count_), law_);
     for (std::size_t from = 0; from < until;) {
       const std::size_t to = next_knot(from);
       const auto profile = planner.profile(from, to);
@@ -143,7 +143,7 @@ class StreamPlanner {
   }
 
   BasicStreamMemory<S> memory_;
-  Factory factory_;
+  Law law_;
   std::size_t count_ = 0;       // blocks in the window
   std::size_t held_count_ = 0;  // gates of the plan that holds
   std::size_t released_ = 0;    // blocks that have gone out

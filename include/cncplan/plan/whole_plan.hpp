@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/joint_plan.hpp"
+#include "cncplan/plan/joint/caps.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/span_planner.hpp"
 
@@ -26,7 +26,7 @@ struct BasicPlan {
 using Plan = BasicPlan<double>;
 
 /// The plan of blocks that are known by their caps, from rest to rest. Errors: those of profiles.
-template <std::floating_point S, SolverFactory<S> Law = SevenPhase>
+template <std::floating_point S, RampLaw<S> Law = SevenPhase>
 [[nodiscard]] Expected<BasicPlan<S>> whole_plan(const std::vector<BasicBlockCaps<S>>& caps,
                                                 const Law& law = {}) {
   BasicPlan<S> plan;
@@ -40,8 +40,7 @@ template <std::floating_point S, SolverFactory<S> Law = SevenPhase>
 }
 
 /// The caps of a program of blocks: their junctions by a policy, their curves by a rule.
-template <std::floating_point S, class Policy, CurveRule<S> Rule = ShareLimits>
-  requires JunctionPolicy<Policy, S>
+template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule = ShareLimits>
 [[nodiscard]] std::vector<BasicBlockCaps<S>> all_caps(const std::vector<BasicBlock<S>>& blocks,
                                                       const Policy& policy, const Rule& rule = {}) {
   std::vector<BasicBlockCaps<S>> all;
@@ -51,9 +50,8 @@ template <std::floating_point S, class Policy, CurveRule<S> Rule = ShareLimits>
 }
 
 /// The plan of a program of blocks, by `all_caps`.
-template <std::floating_point S, class Policy, CurveRule<S> Rule = ShareLimits,
-          SolverFactory<S> Law = SevenPhase>
-  requires JunctionPolicy<Policy, S>
+template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule = ShareLimits,
+          RampLaw<S> Law = SevenPhase>
 [[nodiscard]] Expected<BasicPlan<S>> whole_plan(const std::vector<BasicBlock<S>>& blocks,
                                                 const Policy& policy, const Rule& rule = {},
                                                 const Law& law = {}) {
@@ -61,13 +59,13 @@ template <std::floating_point S, class Policy, CurveRule<S> Rule = ShareLimits,
 }
 
 /// The plan of a program in machine space, within the limits of its joints; see `joint_caps`.
-template <JointPath P, SolverFactory<typename P::Scalar> Law = SevenPhase>
+template <JointPath P, RampLaw<typename P::Scalar> Law = SevenPhase>
 [[nodiscard]] Expected<BasicPlan<typename P::Scalar>> whole_plan(
     const std::vector<JointBlock<P>>& blocks,
     const BasicJointLimits<typename P::Scalar, P::Vector::RowsAtCompileTime>& joints,
-    std::type_identity_t<typename P::Scalar> period, const Law& law = {}) {
+    std::type_identity_t<typename P::Scalar> corner_time, const Law& law = {}) {
   std::vector<BasicBlockCaps<typename P::Scalar>> caps;
-  joint_caps(std::span<const JointBlock<P>>(blocks), joints, period, std::back_inserter(caps));
+  joint_caps(std::span<const JointBlock<P>>(blocks), joints, corner_time, std::back_inserter(caps));
   return whole_plan(caps, law);
 }
 

@@ -1,4 +1,4 @@
-// The speeds at the two ends of a stretch of path.
+// The speeds at the two ends of a path.
 #pragma once
 
 #include <concepts>

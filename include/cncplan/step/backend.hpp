@@ -23,13 +23,16 @@ concept Backend = requires(B& backend, const BasicEdge<typename B::Scalar>& edge
   { backend.accept(edge) } -> std::same_as<Expected<void>>;
 };
 
+template <class B, class S>
+concept BackendOver = Backend<B> && std::same_as<typename B::Scalar, S>;
+
 /// Hands all edges of a source to a backend, unless that refuses one. Errors: the backend's.
-template <EdgeSource E, Backend B>
-  requires std::same_as<typename E::Scalar, typename B::Scalar> Expected<void> send(E& edges, B& backend) {
-    while (const auto edge = edges.next())
-      if (auto taken = backend.accept(*edge); !taken) return taken;
-    return {};
-  }
+template <EdgeSource E, BackendOver<typename E::Scalar> B>
+Expected<void> send(E& edges, B& backend) {
+  while (const auto edge = edges.next())
+    if (auto taken = backend.accept(*edge); !taken) return taken;
+  return {};
+}
 
 /// What one axis has done. Positions and errors are in the axis' unit (mm or rad).
 template <std::floating_point S>

@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "cncplan/plan/course.hpp"
+#include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 
 namespace cncplan::plan {
@@ -27,7 +27,7 @@ struct BasicRequests {
 };
 
 /// Blocks ahead of a spot, for planning.
-struct Course {
+struct Ahead {
   std::size_t blocks{};
   bool whole{};  ///< up to where the motion has to rest, or the blocks end
 };
@@ -103,26 +103,26 @@ class BasicRoad {
   }
 
   /// The blocks from a spot on that is passed at `speed`, as far as they matter.
-  Course course(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
-    Course course{0, true};
+  Ahead ahead(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
+    Ahead ahead{0, true};
     Horizon<S> horizon;
     for (Spot at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
-      if (course.blocks == out.size() || horizon.reached()) return {course.blocks, false};
-      const bool first = course.blocks == 0;
+      if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false};
+      const bool first = ahead.blocks == 0;
       BasicBlockCaps<S> caps = ring[at.block].caps;
       caps.length = std::max(caps.length - at.along, S(0));
       caps.limits.velocity = std::max(wanted_speed(at.block), first ? speed : S(0));
-      if (!(caps.limits.velocity > S(0))) return course;
+      if (!(caps.limits.velocity > S(0))) return ahead;
       caps.entry = first ? speed : junction_cap(at.block);
-      out[course.blocks++] = caps;
-      if (stops_behind(at.block, from.block)) return course;
+      out[ahead.blocks++] = caps;
+      if (stops_behind(at.block, from.block)) return ahead;
       horizon.take(caps.limits, caps.length);
     }
-    return course;
+    return ahead;
   }
 
-  /// The stretches of equal limits from a spot on, as far as it takes to come to rest from `speed`; how many.
-  std::size_t stretches(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
+  /// The zones of equal limits from a spot on, as far as it takes to come to rest from `speed`; how many.
+  std::size_t zones(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     std::size_t count = 0;
     Horizon<S> horizon;
     for (Spot at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {

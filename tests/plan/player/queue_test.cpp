@@ -1,11 +1,11 @@
-#include "cncplan/plan/queue.hpp"
+#include "cncplan/plan/player/queue.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <thread>
 
-#include "cncplan/plan/player.hpp"
+#include "cncplan/plan/player/player.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
@@ -102,9 +102,9 @@ TEST_CASE("a player is fed from another thread, with requests from a third") {
     }
   });
   std::array<plan::PlayedBlock, 64> memory;
-  std::array<plan::BlockCaps, 64> course;
+  std::array<plan::BlockCaps, 64> ahead;
   std::array<plan::Gate, 65> gates, spare_gates;
-  plan::Player player({memory, course, gates, spare_gates});
+  plan::Player player({memory, ahead, gates, spare_gates});
   plan::Played before{}, now{};
   double worst = 0.0;
   int fed = 0;

@@ -1,4 +1,4 @@
-#include "cncplan/gcode/program.hpp"
+#include "cncplan/gcode/read_program.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "cncplan/plan/brake.hpp"
+#include "cncplan/plan/player/brake.hpp"
 
 #include <cmath>
 #include <vector>
@@ -19,11 +19,11 @@ struct Stop {
 };
 
 // Leg after leg to rest, as a player drives them.
-Stop brake(State now, std::vector<plan::BlockCaps> stretches) {
+Stop brake(State now, std::vector<plan::BlockCaps> zones) {
   Stop stop;
   for (int leg_number = 0; leg_number < 100; ++leg_number) {
-    const Limits& limits = stretches.front().limits;
-    auto leg = plan::BasicBrake<double>(stretches).leg(now);
+    const Limits& limits = zones.front().limits;
+    auto leg = plan::BasicBrake<double>(zones).leg(now);
     const double length = leg.length();
     while (leg.left() > 0.0) {
       const State state = leg.state();
@@ -37,8 +37,8 @@ Stop brake(State now, std::vector<plan::BlockCaps> stretches) {
     leg.advance(leg.left());
     stop.end = now = leg.state();
     if (now.velocity < 1e-8) break;
-    stretches.front().length -= length;
-    if (stretches.size() > 1 && stretches.front().length < 1e-9) stretches.erase(stretches.begin());
+    zones.front().length -= length;
+    if (zones.size() > 1 && zones.front().length < 1e-9) zones.erase(zones.begin());
   }
   return stop;
 }
@@ -54,7 +54,7 @@ TEST_CASE("under one set of limits it brakes as the profile does") {
     const auto best = profile::stop({now.velocity, now.acceleration}, limits);
     REQUIRE(best);
     const Stop stop = brake(now, {{1.0, 0, limits, 0}});
-    CAPTURE(test::seed(), i, now.velocity, now.acceleration, limits.acceleration, limits.jerk);
+    CAPTURE(i, now.velocity, now.acceleration, limits.acceleration, limits.jerk);
     CHECK(stop.time == Approx(best->duration()).epsilon(1e-6));
     CHECK(std::abs(stop.end.velocity) < 1e-9);
   }
@@ -75,17 +75,17 @@ TEST_CASE("across a border it takes the least time within 0.1 %, and keeps the l
     const double best = test::BrakeOracle(v, a, room, first, second).least_time();
     if (!std::isfinite(best)) continue;  // there is no way to rest: no plan would come here
     ++drawn;
-    const std::vector<plan::BlockCaps> stretches{{room, 0, first, 0}, {1.0, 0, second, 0}};
+    const std::vector<plan::BlockCaps> zones{{room, 0, first, 0}, {1.0, 0, second, 0}};
     const State now{0, v, a, 0};
-    if (!plan::BasicBrake<double>(stretches).safe(now)) continue;
+    if (!plan::BasicBrake<double>(zones).safe(now)) continue;
     ++safe;
-    const Stop stop = brake(now, stretches);
+    const Stop stop = brake(now, zones);
     slower += stop.time > best * 1.001 ? 1 : 0;
     worst = std::max(worst, stop.time / best - 1);
     excess = std::max(excess, stop.worst);
     end = std::max(end, std::abs(stop.end.velocity));
   }
-  CAPTURE(test::seed(), safe, slower, worst);
+  CAPTURE(safe, slower, worst);
   CHECK(safe >= 0.97 * drawn);
   CHECK(slower <= 0.02 * safe);
   CHECK(worst < 0.03);

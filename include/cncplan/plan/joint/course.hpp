@@ -8,7 +8,7 @@
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/path/segment.hpp"
-#include "cncplan/plan/stretch.hpp"
+#include "cncplan/plan/joint/stretch.hpp"
 
 namespace cncplan::plan {
 

@@ -12,39 +12,38 @@
 #include <span>
 
 #include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/leg.hpp"
+#include "cncplan/plan/player/leg.hpp"
 
 namespace cncplan::plan {
 
-/// Brakes through stretches of path, each with its own limits of acceleration and jerk, as hard as leaves a
+/// Brakes through zones of path, each with its own limits of acceleration and jerk, as hard as leaves a
 /// way out: to release the brake at full jerk, such that the acceleration is within the limit of every
-/// stretch when it comes to it, and gone before the speed is.
+/// zone when it comes to it, and gone before the speed is.
 ///
 ///     acceleration  0 |\                         /
-///                     | \              _________/     the second stretch allows less, so the brake is
+///                     | \              _________/     the second zone allows less, so the brake is
 ///                  -A |  \____________/               released before its border
-///                           stretch 1 | stretch 2
+///                           zone 1 | zone 2
 ///
 /// A state with a way out is safe. From a safe state the brake is applied until the last instant that is
 /// safe, which halving finds; then released, up to the border or to rest. What comes next depends on the
-/// state alone, so each stretch is worked out when it is entered.
+/// state alone, so each zone is worked out when it is entered.
 template <std::floating_point S>
 class BasicBrake {
  public:
-  /// Of the caps only length and limits count; the first is what is left of the stretch that the machine is
+  /// Of the caps only length and limits count; the first is what is left of the zone that the machine is
   /// in, and the last goes on for ever.
-  explicit BasicBrake(std::span<const BasicBlockCaps<S>> stretches) : stretches_(stretches) {}
+  explicit BasicBrake(std::span<const BasicBlockCaps<S>> zones) : zones_(zones) {}
 
   /// Whether there is a way out of a state, to within rounding.
   [[nodiscard]] bool safe(const BasicState<S>& now) const {
     constexpr S rounding = S(1e-9);
-    return -now.acceleration <= stretches_[0].limits.acceleration * (S(1) + rounding) &&
-           safe(now, 0, rounding);
+    return -now.acceleration <= zones_[0].limits.acceleration * (S(1) + rounding) && safe(now, 0, rounding);
   }
 
-  /// The motion from a safe state to the end of the first stretch, or to rest.
+  /// The motion from a safe state to the end of the first zone, or to rest.
   [[nodiscard]] BasicLeg<S> leg(const BasicState<S>& from) const {
-    const BasicLimits<S>& limits = stretches_[0].limits;
+    const BasicLimits<S>& limits = zones_[0].limits;
     std::array<BasicPhase<S>, 3> phases{};
     std::size_t count = 0;
     BasicState<S> now{S(0), from.velocity, from.acceleration, S(0)};
@@ -84,9 +83,9 @@ class BasicBrake {
     [[nodiscard]] BasicState<S> end() const { return phase.at(phase.duration); }
   };
 
-  // A phase from a state, for so many seconds, but not beyond the stretch that it is in and not backwards.
-  // Positions count from the start of that stretch.
-  [[nodiscard]] Run run(const BasicState<S>& from, S jerk, S seconds, std::size_t stretch) const {
+  // A phase from a state, for so many seconds, but not beyond the zone that it is in and not backwards.
+  // Positions count from the start of that zone.
+  [[nodiscard]] Run run(const BasicState<S>& from, S jerk, S seconds, std::size_t zone) const {
     Run result{{S(0), seconds, from.position, from.velocity, from.acceleration, jerk}, Ends::in_time};
     const S square = from.acceleration * from.acceleration - S(2) * jerk * from.velocity;
     const S brakes = std::sqrt(std::max(square, S(0))) - from.acceleration;
@@ -95,31 +94,31 @@ class BasicBrake {
       result.phase.duration = S(2) * from.velocity / brakes;
       result.ends = Ends::at_rest;
     }
-    if (stretch + 1 < stretches_.size() && result.end().position >= stretches_[stretch].length) {
-      result.phase.duration = result.phase.tau_at(stretches_[stretch].length);
+    if (zone + 1 < zones_.size() && result.end().position >= zones_[zone].length) {
+      result.phase.duration = result.phase.tau_at(zones_[zone].length);
       result.ends = Ends::border;
     }
     return result;
   }
 
   // Whether the brake can be released from here on. A state that a run left at a border stands in the next
-  // stretch.
-  [[nodiscard]] bool safe(BasicState<S> now, std::size_t stretch, S rounding) const {
-    for (;; ++stretch) {
-      const BasicLimits<S>& limits = stretches_[stretch].limits;
-      if (stretch > 0) {
+  // zone.
+  [[nodiscard]] bool safe(BasicState<S> now, std::size_t zone, S rounding) const {
+    for (;; ++zone) {
+      const BasicLimits<S>& limits = zones_[zone].limits;
+      if (zone > 0) {
         now.position = S(0);
         if (-now.acceleration > limits.acceleration * (S(1) + rounding)) return false;
       }
       if (now.acceleration >= S(0)) return true;
       const S settled = now.velocity - now.acceleration * now.acceleration / (S(2) * limits.jerk);
-      const Run release = run(now, limits.jerk, -now.acceleration / limits.jerk, stretch);
+      const Run release = run(now, limits.jerk, -now.acceleration / limits.jerk, zone);
       if (release.ends != Ends::border) return settled >= -rounding * (S(1) + now.velocity);
       now = release.end();
     }
   }
 
-  // How long a phase in the first stretch, whose end is not safe, can last.
+  // How long a phase in the first zone, whose end is not safe, can last.
   [[nodiscard]] S last_safe(const BasicPhase<S>& phase) const {
     S low = S(0);
     S high = phase.duration;
@@ -131,7 +130,7 @@ class BasicBrake {
     return low;
   }
 
-  std::span<const BasicBlockCaps<S>> stretches_;
+  std::span<const BasicBlockCaps<S>> zones_;
 };
 
 }  // namespace cncplan::plan

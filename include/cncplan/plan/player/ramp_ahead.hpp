@@ -6,7 +6,7 @@
 #include <concepts>
 #include <optional>
 
-#include "cncplan/plan/road.hpp"
+#include "cncplan/plan/player/road.hpp"
 #include "cncplan/profile/from_state.hpp"
 
 namespace cncplan::plan {

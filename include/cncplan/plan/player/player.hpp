@@ -8,25 +8,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 
-#include "cncplan/plan/brake.hpp"
-#include "cncplan/plan/leg.hpp"
-#include "cncplan/plan/ramp_ahead.hpp"
-#include "cncplan/plan/road.hpp"
+#include "cncplan/plan/player/brake_ahead.hpp"
+#include "cncplan/plan/player/leg.hpp"
+#include "cncplan/plan/player/ramp_ahead.hpp"
+#include "cncplan/plan/player/road.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/from_state.hpp"
 
 namespace cncplan::plan {
 
-/// What a player works in; all of it belongs to the caller. The course and the gates bound the look-ahead:
-/// `course` blocks, and one gate more than that in each buffer.
+/// What a player works in; all of it belongs to the caller. `ahead` and the gates bound the look-ahead:
+/// `ahead` blocks, and one gate more than that in each buffer.
 template <std::floating_point S>
 struct BasicPlayerMemory {
   std::span<BasicPlayedBlock<S>> blocks;
-  std::span<BasicBlockCaps<S>> course;
+  std::span<BasicBlockCaps<S>> ahead;
   std::span<BasicGate<S>> gates;
   std::span<BasicGate<S>> spare_gates;
 };
@@ -186,12 +185,6 @@ class BasicPlayer {
  private:
   static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
   static constexpr int most_plans = 16;  // in one tick
-  static constexpr S junction_tolerance = S(1) + S(1e-9);
-  static constexpr S negligible = S(1e5) * std::numeric_limits<S>::epsilon();  // mm/s: rest but for rounding
-
-  static constexpr auto solver = [](const BasicLimits<S>& limits) {
-    return profile::seven_phase_solver(limits);
-  };
 
   template <class T>
   void ask(T& value, const T& wanted) {
@@ -251,7 +244,11 @@ class BasicPlayer {
     const BasicState<S> now = leg_.state();
     const BasicSpot<S> at = locate();
     if (!road_.ring.holds(at.block)) return false;
-    if (road_.must_rest(at.block)) return brake(at, now);
+    if (road_.must_rest(at.block)) {
+      const auto leg = brake_ahead(road_, at, now, memory_.ahead);
+      if (leg) follow(*leg, at, no_gate);
+      return leg.has_value();
+    }
     const S wanted = road_.wanted_speed(at.block);
     if (now.acceleration == S(0) && now.velocity <= wanted && plan_from(at, now.velocity)) {
       adopt(at);
@@ -259,7 +256,7 @@ class BasicPlayer {
     }
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
     const S settled = profile::settled_speed(state, road_.ring[at.block].caps.limits);
-    for (const S target : {wanted, settled > negligible ? std::min(settled, wanted) : S(0)}) {
+    for (const S target : {wanted, settled > negligible_speed<S> ? std::min(settled, wanted) : S(0)}) {
       const auto ramp = ramp_ahead(road_, at, now, target);
       if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
       take_spare();
@@ -269,70 +266,16 @@ class BasicPlayer {
     return false;
   }
 
-  // Begins to come to rest; false where no brake from here keeps limits and junctions.
-  bool brake(const BasicSpot<S>& at, const BasicState<S>& now) {
-    const auto first = brake_leg(at, now, false);
-    if (!first || !keeps_junctions(*first, at, now)) return false;
-    BasicLeg<S> leg = *first;
-    BasicSpot<S> spot = at;
-    for (std::size_t legs = 0; legs < memory_.blocks.size(); ++legs) {
-      const S length = leg.length();
-      leg.advance(leg.left());
-      const BasicState<S> end = leg.state();
-      spot = road_.snapped(road_.advance(spot, length));
-      if (!(end.velocity > negligible)) return follow(*first, at, no_gate), true;
-      if (!road_.ring.holds(spot.block)) return false;
-      if (spot.along == S(0) && end.velocity > road_.junction_cap(spot.block) * junction_tolerance)
-        return false;
-      leg = *brake_leg(spot, end, true);
-      if (!keeps_junctions(leg, spot, end)) return false;
-    }
-    return false;
-  }
-
-  // The motion to rest under the limits of each block, up to where they change. Going on with a brake, there
-  // always is one.
-  [[nodiscard]] std::optional<BasicLeg<S>> brake_leg(const BasicSpot<S>& at, const BasicState<S>& now,
-                                                     bool going_on) const {
-    const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    const S fastest = std::max(now.velocity, profile::settled_speed(state, road_.ring[at.block].caps.limits));
-    const auto stretches = memory_.course.first(road_.stretches(at, fastest, memory_.course));
-    const auto ramp = profile::stop(state, stretches[0].limits);
-    constexpr S rounding = S(1e-9);  // of a plan that rests at the end of the stretch
-    if (ramp && (stretches.size() == 1 || ramp->length() < stretches[0].length + rounding))
-      return BasicLeg<S>(*ramp);
-    const BasicBrake<S> brake(stretches);
-    if (!going_on && !brake.safe(now)) return {};
-    return brake.leg(now);
-  }
-
-  // Whether a leg passes no junction too fast; that at its end is left out.
-  [[nodiscard]] bool keeps_junctions(const BasicLeg<S>& leg, const BasicSpot<S>& from,
-                                     const BasicState<S>& start) const {
-    const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
-    const S fastest = start.velocity + rising * rising / (S(2) * road_.ring[from.block].caps.limits.jerk);
-    constexpr S rounding = S(1e-9);  // mm, of a leg that ends at a junction
-    S position = road_.ring.length(from.block) - from.along;
-    for (std::int64_t block = from.block; position < leg.length() - rounding;) {
-      if (!road_.ring.holds(block + road_.direction)) return true;
-      block += road_.direction;
-      const S cap = road_.junction_cap(block);
-      if (cap < fastest && leg.velocity_at(position) > cap * junction_tolerance) return false;
-      position += road_.ring.length(block);
-    }
-    return true;
-  }
-
   // Plans from a spot at a speed with zero acceleration, into the spare gates. False if the speed is too high
   // there.
   bool plan_from(const BasicSpot<S>& from, S speed) {
-    const auto [blocks, whole] = road_.course(from, speed, memory_.course);
+    const auto [blocks, whole] = road_.ahead(from, speed, memory_.ahead);
     spare_whole_ = whole;
     spare_count_ = 0;
     if (blocks == 0) return speed == S(0);
-    const std::span<const BasicBlockCaps<S>> course = memory_.course.first(blocks);
-    spare_count_ = make_gates(course, speed, memory_.spare_gates);
-    GatePlanner planner(memory_.spare_gates.first(spare_count_), solver);
+    const std::span<const BasicBlockCaps<S>> ahead = memory_.ahead.first(blocks);
+    spare_count_ = make_gates(ahead, speed, memory_.spare_gates);
+    GatePlanner planner(memory_.spare_gates.first(spare_count_));
     planner.solve();
     return !(memory_.spare_gates[0].speed < speed);
   }
@@ -364,7 +307,7 @@ class BasicPlayer {
   }
 
   void begin_span(std::size_t gate) {
-    GatePlanner planner(memory_.gates.first(gate_count_), solver);
+    GatePlanner planner(memory_.gates.first(gate_count_));
     const std::size_t next = planner.next_knot(gate);
     if (const auto profile = planner.profile(gate, next)) return follow(BasicLeg<S>(*profile), at_, next);
     const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
@@ -377,8 +320,8 @@ class BasicPlayer {
     const BasicState<S> end = leg_.state();
     at_ = road_.snapped(road_.advance(at_, leg_.length()));
     if (next_gate_ == no_gate) {
-      if (end.velocity > negligible && road_.ring.holds(at_.block))
-        return follow(*brake_leg(at_, end, true), at_, no_gate), false;
+      if (end.velocity > negligible_speed<S> && road_.ring.holds(at_.block))
+        return follow(braking_on(road_, at_, end, memory_.ahead), at_, no_gate), false;
       return rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;

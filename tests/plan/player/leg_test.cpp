@@ -1,4 +1,4 @@
-#include "cncplan/plan/leg.hpp"
+#include "cncplan/plan/player/leg.hpp"
 
 #include <array>
 #include <cmath>

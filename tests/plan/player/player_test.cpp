@@ -1,4 +1,4 @@
-#include "cncplan/plan/player.hpp"
+#include "cncplan/plan/player/player.hpp"
 
 #include <cmath>
 #include <span>
@@ -19,13 +19,13 @@ constexpr Limits limits{30.0, 1000.0, 10000.0};
 struct Rig {
   explicit Rig(std::size_t window, std::int64_t keep = 8)
       : blocks(window + 16),
-        course(window),
+        ahead(window),
         gates(window + 1),
         spare(window + 1),
-        player({blocks, course, gates, spare}, keep) {}
+        player({blocks, ahead, gates, spare}, keep) {}
 
   std::vector<plan::PlayedBlock> blocks;
-  std::vector<plan::BlockCaps> course;
+  std::vector<plan::BlockCaps> ahead;
   std::vector<plan::Gate> gates, spare;
   plan::Player player;
 };
@@ -113,7 +113,7 @@ TEST_CASE("a hold takes the least time where limits differ from block to block")
     slower += time > best * 1.001 ? 1 : 0;
     worst = std::max(worst, time / best - 1);
   }
-  CAPTURE(test::seed(), slower, worst);
+  CAPTURE(slower, worst);
   CHECK(slower == 0);
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("random requests break no limit, and the end stays exact") {
     const int gap = random.integer(0, 3) == 0 ? 1 : random.integer(2, 200);
     const auto window = static_cast<std::size_t>(random.integer(4, 64));
     const auto faults = test::play(program, random, gap, window, 20000);
-    CAPTURE(test::seed(), sequence, gap, window, program.size(), faults.ticks);
+    CAPTURE(sequence, gap, window, program.size(), faults.ticks);
     CHECK(faults.jerk < 1e-6);
     CHECK(faults.acceleration < 1e-9);
     CHECK(faults.speed < 1e-9);

@@ -1,4 +1,4 @@
-#include "cncplan/plan/program.hpp"
+#include "cncplan/plan/motion_block.hpp"
 
 #include <numbers>
 

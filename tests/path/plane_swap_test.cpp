@@ -1,4 +1,4 @@
-#include "cncplan/path/plane.hpp"
+#include "cncplan/path/plane_swap.hpp"
 
 #include "support/catch.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/limits.hpp"
-#include "cncplan/plan/joint_path.hpp"
+#include "cncplan/plan/joint/path.hpp"
 
 namespace cncplan::plan {
 
@@ -73,14 +73,14 @@ template <std::floating_point S, int N>
 }
 
 /// The highest speed at which the motion may pass from one path to the next where they do not join smoothly.
-/// A jump of a joint's velocity counts as spread over `period` seconds, or over the time that the shorter of
-/// both paths takes, `length` mm, if that is less: so many short paths in a row are a curve. So spread, and
-/// with the bends of both paths, it keeps to the joint's acceleration limit; a jump of its acceleration keeps
-/// to its jerk limit. With a period of zero every such place is a stop. Infinite where the joints' rates
-/// agree to rounding.
+/// A jump of a joint's velocity counts as spread over `corner_time` seconds, or over the time that the
+/// shorter of both paths takes, `length` mm, if that is less: so many short paths in a row are a curve. So
+/// spread, and with the bends of both paths, it keeps to the joint's acceleration limit; a jump of its
+/// acceleration keeps to its jerk limit. With a corner time of zero every such place is a stop. Infinite
+/// where the joints' rates agree to rounding.
 template <std::floating_point S, int N>
 [[nodiscard]] S corner_speed(const BasicJointRates<S, N>& before, const BasicJointRates<S, N>& after,
-                             const BasicJointLimits<S, N>& joints, S period, S length) {
+                             const BasicJointLimits<S, N>& joints, S corner_time, S length) {
   const S rounding = std::sqrt(std::numeric_limits<S>::epsilon());
   const S size = std::max(before.first.cwiseAbs().maxCoeff(), after.first.cwiseAbs().maxCoeff());
   const S bends = std::max(before.second.cwiseAbs().maxCoeff(), after.second.cwiseAbs().maxCoeff());
@@ -88,17 +88,17 @@ template <std::floating_point S, int N>
   for (int i = 0; i < N; ++i) {
     const S jump = std::abs(after.first[i] - before.first[i]);
     const S bend = std::max(std::abs(before.second[i]), std::abs(after.second[i]));
-    const S most = joints.acceleration[i];
-    if (jump > rounding * size && std::isfinite(most)) {
-      // jump v / period + bend v^2 = most, and jump v^2 / length + bend v^2 = most
-      const S by_time = jump / period;
-      const S root = std::sqrt(by_time * by_time + S(4) * most * bend);
-      speed = std::min({speed, period > S(0) ? S(2) * most / (by_time + root) : S(0),
-                        std::sqrt(most / (jump / length + bend))});
+    const S limit = joints.acceleration[i];
+    if (jump > rounding * size && std::isfinite(limit)) {
+      // jump v / corner_time + bend v^2 = limit, and jump v^2 / length + bend v^2 = limit
+      const S by_time = jump / corner_time;
+      const S root = std::sqrt(by_time * by_time + S(4) * limit * bend);
+      speed = std::min({speed, corner_time > S(0) ? S(2) * limit / (by_time + root) : S(0),
+                        std::sqrt(limit / (jump / length + bend))});
     }
     const S bending = std::abs(after.second[i] - before.second[i]);
     if (bending > rounding * (bends + size))
-      speed = std::min({speed, std::sqrt(joints.jerk[i] * period / bending),
+      speed = std::min({speed, std::sqrt(joints.jerk[i] * corner_time / bending),
                         std::cbrt(joints.jerk[i] * length / bending)});
   }
   return speed;

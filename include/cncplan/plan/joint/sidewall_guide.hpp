@@ -11,8 +11,8 @@
 
 #include "cncplan/kinematics/sidewall.hpp"
 #include "cncplan/path/line.hpp"
-#include "cncplan/plan/radius.hpp"
-#include "cncplan/plan/stretch.hpp"
+#include "cncplan/plan/joint/radius.hpp"
+#include "cncplan/plan/joint/stretch.hpp"
 
 namespace cncplan::plan {
 

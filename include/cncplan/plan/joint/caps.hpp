@@ -9,8 +9,8 @@
 
 #include "cncplan/core/joint_limits.hpp"
 #include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/joint_caps.hpp"
-#include "cncplan/plan/joint_path.hpp"
+#include "cncplan/plan/joint/limits_along.hpp"
+#include "cncplan/plan/joint/path.hpp"
 
 namespace cncplan::plan {
 
@@ -20,7 +20,7 @@ namespace cncplan::plan {
 template <JointPath P, std::output_iterator<BasicBlockCaps<typename P::Scalar>> Out>
 Out joint_caps(std::span<const JointBlock<P>> blocks,
                const BasicJointLimits<typename P::Scalar, P::Vector::RowsAtCompileTime>& joints,
-               typename P::Scalar period, Out out) {
+               typename P::Scalar corner_time, Out out) {
   using S = typename P::Scalar;
   constexpr S steps_per_octave = S(32);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -33,7 +33,7 @@ Out joint_caps(std::span<const JointBlock<P>> blocks,
     if (i > 0 && !blocks[i - 1].stop_at_end && !(blocks[i - 1].pause > S(0))) {
       const P& before = blocks[i - 1].path;
       const S corner = corner_speed(before.rates(before.parameter_end()), block.path.rates(S(0)), joints,
-                                    period, std::min(before.length(), block.path.length()));
+                                    corner_time, std::min(before.length(), block.path.length()));
       caps.entry = std::min(corner, caps.limits.velocity);
     }
     *out++ = caps;

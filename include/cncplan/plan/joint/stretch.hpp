@@ -9,7 +9,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/path/segment.hpp"
-#include "cncplan/plan/mapped_path.hpp"
+#include "cncplan/plan/joint/mapped_path.hpp"
 
 namespace cncplan::plan {
 

@@ -9,8 +9,8 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/path/segment.hpp"
-#include "cncplan/plan/joint_path.hpp"
-#include "cncplan/plan/moving_point.hpp"
+#include "cncplan/plan/joint/moving_point.hpp"
+#include "cncplan/plan/joint/path.hpp"
 
 namespace cncplan::plan {
 

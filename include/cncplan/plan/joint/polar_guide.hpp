@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/plan/radius.hpp"
-#include "cncplan/plan/stretch.hpp"
+#include "cncplan/plan/joint/radius.hpp"
+#include "cncplan/plan/joint/stretch.hpp"
 
 namespace cncplan::plan {
 

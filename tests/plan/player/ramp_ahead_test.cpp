@@ -1,4 +1,4 @@
-#include "cncplan/plan/ramp_ahead.hpp"
+#include "cncplan/plan/player/ramp_ahead.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -51,7 +51,7 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
       excess = std::max(excess, (crossed - cap) / 30.0);
     }
   }
-  CAPTURE(test::seed(), refused);
+  CAPTURE(refused);
   CHECK(ramps > 500);
   CHECK(refused > 500);
   CHECK(excess < 1e-9);

@@ -1,4 +1,4 @@
-// A stretch of motion that is being driven: where it is now, at the cost of one phase.
+// The part of a plan that is being driven: where it is now, at the cost of one phase.
 #pragma once
 
 #include <algorithm>

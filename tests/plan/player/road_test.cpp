@@ -1,4 +1,4 @@
-#include "cncplan/plan/road.hpp"
+#include "cncplan/plan/player/road.hpp"
 
 #include <vector>
 
@@ -59,41 +59,41 @@ TEST_CASE("spots go on across junctions, in both directions") {
   CHECK(road.turned_round(Spot{-1, 0.0}) == Spot{0, 0.0});  // it had run back behind the first
 }
 
-TEST_CASE("a course ends at stops, at blocks that are held, and where it matters no more") {
+TEST_CASE("a look-ahead ends at stops, at blocks that are held, and where it matters no more") {
   Street street(8);
   auto& road = street.road;
   std::vector<plan::BlockCaps> out(8);
-  const auto blocks = [&](double speed) { return road.course({0, 0.5}, speed, out).blocks; };
+  const auto blocks = [&](double speed) { return road.ahead({0, 0.5}, speed, out).blocks; };
   CHECK(blocks(5.0) == 2);  // to 20 mm/s and back takes 1.8 mm: 0.5 + 2
-  CHECK_FALSE(road.course({0, 0.5}, 5.0, out).whole);
+  CHECK_FALSE(road.ahead({0, 0.5}, 5.0, out).whole);
   CHECK(out[0].length == 0.5);
   CHECK(out[0].entry == 5.0);
   CHECK(out[1].entry == 11.0);
-  CHECK(road.course({7, 0.0}, 5.0, out).whole);
+  CHECK(road.ahead({7, 0.0}, 5.0, out).whole);
   road.asked.pause_line = 2;
   CHECK(blocks(5.0) == 1);
-  CHECK(road.course({0, 0.5}, 5.0, out).whole);
+  CHECK(road.ahead({0, 0.5}, 5.0, out).whole);
   road.passed_pause = 1;
   CHECK(blocks(5.0) == 2);
   road.asked.single_step = true;
   CHECK(blocks(5.0) == 1);
   road.asked = {};
   road.asked.rapid_share = 0.0;
-  CHECK(road.course({1, 1.9}, 5.0, out).blocks == 1);
-  CHECK(road.course({1, 1.9}, 5.0, out).whole);
+  CHECK(road.ahead({1, 1.9}, 5.0, out).blocks == 1);
+  CHECK(road.ahead({1, 1.9}, 5.0, out).whole);
   road.asked = {.optional_stops = true};
-  CHECK(road.course({3, 0.0}, 0.0, out).blocks == 1);
-  CHECK(road.course({0, 0.0}, 0.0, std::span(out).first(2)).blocks == 2);
+  CHECK(road.ahead({3, 0.0}, 0.0, out).blocks == 1);
+  CHECK(road.ahead({0, 0.0}, 0.0, std::span(out).first(2)).blocks == 2);
 }
 
-TEST_CASE("stretches join blocks of equal limits") {
+TEST_CASE("zones join blocks of equal limits") {
   std::vector<plan::PlayedBlock> memory(8);
   plan::BasicRoad<double> road(memory);
   const Limits low{10.0, 500.0, 5000.0};
   for (const Limits& of_block : {limits, limits, low, low, limits})
     road.ring.push({{0.1, 30.0, of_block, 0.0}, 30.0});
   std::vector<plan::BlockCaps> out(8);
-  REQUIRE(road.stretches({0, 0.05}, 30.0, out) == 3);
+  REQUIRE(road.zones({0, 0.05}, 30.0, out) == 3);
   CHECK(out[0].length == Approx(0.15));
   CHECK(out[1].length == Approx(0.2));
   CHECK(out[1].limits.jerk == 5000.0);

@@ -12,7 +12,7 @@
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/sidewall.hpp"
 #include "cncplan/kinematics/tire_mold.hpp"
-#include "cncplan/plan/stretch.hpp"
+#include "cncplan/plan/joint/stretch.hpp"
 
 namespace cncplan::plan {
 
