@@ -9,10 +9,9 @@
 #include <limits>
 #include <variant>
 
-#include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
 #include "route.hpp"
-#include "support/failure.hpp"
+#include "support/refuse.hpp"
 
 namespace simulate {
 
@@ -21,10 +20,6 @@ namespace {
 using namespace cncplan;
 using support::Exit;
 using support::Failure;
-
-[[noreturn]] void refuse(const std::string& file, const gcode::Diagnostic& diagnostic) {
-  throw Failure(Exit::bad_input, gcode::to_text(file, diagnostic));
-}
 
 // Turns items into blocks, in order.
 class Builder {
@@ -91,7 +86,7 @@ class Builder {
 
   void add_segment(const gcode::Motion& motion, const Limits& limits, double rapid_rate) {
     auto block = plan::block(motion, limits, rapid_rate);
-    if (!block) refuse(program_.file, {block.error(), motion.line, motion.column, {}});
+    if (!block) support::refuse(program_.file, {block.error(), motion.line, motion.column, {}});
     if (machine_.kinematics == Kinematics::cartesian) {
       const auto bounds = block->segment.bounds();
       check_travel<3>(motion, bounds.low, bounds.high);
@@ -173,7 +168,7 @@ Program read_program(const Options& options, const Machine& machine) {
   Builder build(options, machine, program);
   const auto read = gcode::read_program(gcode::StreamLines(stream), reader,
                                         [&](const gcode::Item& item) { std::visit(build, item); });
-  if (!read) refuse(file, read.error());
+  if (!read) support::refuse(file, read.error());
   (void)build.last_block(1);
   if (options.from_line) begin_at(program, *options.from_line);
   program.lines = static_cast<std::size_t>(reader.line());

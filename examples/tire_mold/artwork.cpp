@@ -10,8 +10,7 @@
 #include <iterator>
 #include <variant>
 
-#include "cncplan/gcode/diagnostic_text.hpp"
-#include "support/failure.hpp"
+#include "support/refuse.hpp"
 
 namespace tire_mold {
 
@@ -20,10 +19,6 @@ namespace {
 using namespace cncplan;
 using support::Exit;
 using support::Failure;
-
-[[noreturn]] void refuse(const std::string& file, const gcode::Diagnostic& diagnostic) {
-  throw Failure(Exit::bad_input, gcode::to_text(file, diagnostic));
-}
 
 // The words of a line; none where it holds no block (blank, a comment, a %, a program number).
 std::vector<gcode::Word> words_of(const std::string& text) {
@@ -39,7 +34,7 @@ void check_codes(const std::string& file, int number, const Line& line) {
     if (word.letter != 'G') continue;
     const bool shift = word.number >= 92 && word.number < 93;
     if (shift || std::find(elsewhere.begin(), elsewhere.end(), word.number) != elsewhere.end())
-      refuse(file, {{ErrorCode::not_supported, "G", word.number, 0.0}, number, word.column});
+      support::refuse(file, {{ErrorCode::not_supported, "G", word.number, 0.0}, number, word.column});
   }
 }
 
@@ -51,7 +46,7 @@ class Taker {
   void operator()(gcode::Motion motion) {
     motion.offset = {};
     const auto segment = plan::segment(motion);
-    if (!segment) refuse(file_, {segment.error(), motion.line, motion.column, {}});
+    if (!segment) support::refuse(file_, {segment.error(), motion.line, motion.column, {}});
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
     line_.moves.push_back({*segment, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
   }
@@ -81,7 +76,7 @@ Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
     items.clear();
     const bool finished = reader.finished();
     if (const auto read = reader.read_line(text, std::back_inserter(items)); !read)
-      refuse(file, read.error());
+      support::refuse(file, read.error());
     Line& line = artwork.lines.emplace_back();
     line.text = text;
     if (!finished) line.words = words_of(text);

@@ -5,7 +5,6 @@
 
 #include "cncplan/kinematics/cartesian.hpp"
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/kinematics/profile_chain.hpp"
 #include "cncplan/kinematics/tire_mold.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/joint/caps.hpp"
@@ -15,6 +14,7 @@
 #include "cncplan/plan/joint/sidewall_rows.hpp"
 #include "laws.hpp"
 #include "support/random.hpp"
+#include "wall.hpp"
 
 using namespace cncplan;
 using namespace cncplan::kinematics;
@@ -23,17 +23,6 @@ namespace {
 
 template <class S>
 constexpr S pi = std::numbers::pi_v<S>;
-
-// Flat shoulder, tangent arc, and a slope behind a kink of about 0.2 rad.
-template <class S>
-BasicProfileChain<S> wall() {
-  using V = BasicVector2<S>;
-  const V kink(S(160) - S(40) * std::sin(S(0.8)), S(60) + S(40) * std::cos(S(0.8)));
-  const std::vector<BasicDrawn<S>> drawn{
-      BasicDrawnLine<S>{V(200, 100), V(160, 100)}, BasicDrawnArc<S>{V(160, 60), S(40), pi<S> / S(2), S(0.8)},
-      BasicDrawnLine<S>{kink, kink + S(30) * V(-std::cos(S(1)), -std::sin(S(1)))}};
-  return *chain_profile(std::span<const BasicDrawn<S>>(drawn));
-}
 
 template <class S>
 path::BasicSegment<S> line(S x0, S y0, S z0, S x1, S y1, S z1) {
@@ -120,7 +109,7 @@ void compare(const Summary& single, const Summary& exact) {
 
 template <class S>
 Summary on_the_wall() {
-  const auto chain = wall<S>();
+  const auto chain = test::wall<S>();
   const BasicSidewall<S> sidewall(chain.pieces, S(50), S(20.8));
   BasicJointLimits<S, 4> limits;
   limits.velocity << 100, 100, 1, 1;
@@ -168,8 +157,8 @@ TEST_CASE("float: machines there and back", "[float]") {
 }
 
 TEST_CASE("float: the profile is chained and mapped as in double", "[float]") {
-  const auto single = wall<float>();
-  const auto exact = wall<double>();
+  const auto single = test::wall<float>();
+  const auto exact = test::wall<double>();
   REQUIRE(single.pieces.size() == exact.pieces.size());
   CHECK(single.entities == exact.entities);
   CHECK(static_cast<double>(single.length()) == Approx(exact.length()).epsilon(1e-6));
@@ -201,7 +190,7 @@ TEST_CASE("float: a program round the table and its caps as in double", "[float]
 }
 
 TEST_CASE("float: rows of a stretch keep the tolerance", "[float]") {
-  const auto chain = wall<float>();
+  const auto chain = test::wall<float>();
   const BasicSidewall<float> sidewall(chain.pieces, 50, 20.8F);
   plan::BasicSidewallGuide<float> guide(sidewall, 1);
   std::vector<plan::SidewallStretch<float>> stretches;

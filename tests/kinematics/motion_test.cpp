@@ -3,7 +3,6 @@
 #include <iterator>
 #include <vector>
 
-#include "cncplan/kinematics/profile_chain.hpp"
 #include "cncplan/kinematics/tire_mold.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/cursor.hpp"
@@ -11,11 +10,11 @@
 #include "cncplan/plan/joint/course.hpp"
 #include "cncplan/plan/joint/polar_guide.hpp"
 #include "cncplan/plan/joint/sidewall_guide.hpp"
-#include "cncplan/plan/span_planner.hpp"
-#include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/plan/whole_plan.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
+#include "wall.hpp"
 
 using namespace cncplan;
 using namespace cncplan::kinematics;
@@ -24,36 +23,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Flat shoulder, tangent arc, and a slope behind a kink of about 0.2 rad.
-ProfileChain wall() {
-  const Vector2 kink(160 - 40 * std::sin(0.8), 60 + 40 * std::cos(0.8));
-  const std::vector<Drawn> drawn{DrawnLine{{200, 100}, {160, 100}}, DrawnArc{{160, 60}, 40, pi / 2, 0.8},
-                                 DrawnLine{kink, kink + 30 * Vector2(-std::cos(1.0), -std::sin(1.0))}};
-  return *chain_profile(std::span<const Drawn>(drawn));
-}
-
 path::Segment line(const Vector3& a, const Vector3& b) { return path::Line(a, b); }
 
-template <class Course>
-struct Planned {
-  std::vector<double> lengths;
-  std::vector<plan::BlockCaps> caps;
-  std::vector<plan::Span> spans;
-  double duration = 0;
-};
-
 template <class Course, class Joints>
-Planned<Course> planned(const Course& course, const Joints& limits, double period) {
-  Planned<Course> result;
-  const auto& blocks = course.blocks();
-  plan::joint_caps(std::span(blocks), limits, period, std::back_inserter(result.caps));
-  for (const auto& caps : result.caps) result.lengths.push_back(caps.length);
-  std::vector<plan::Gate> gates(blocks.size() + 1);
-  const auto ok = plan::plan_spans(std::span<const plan::BlockCaps>(result.caps), plan::SevenPhase{},
-                                   std::span(gates), std::back_inserter(result.spans));
-  REQUIRE(ok);
-  for (const auto& span : result.spans) result.duration += span.profile.duration();
-  return result;
+plan::Plan planned(const Course& course, const Joints& limits, double corner_time) {
+  const auto plan = plan::whole_plan(course.blocks(), limits, corner_time);
+  REQUIRE(plan);
+  return *plan;
 }
 
 template <int N>
@@ -66,8 +42,8 @@ struct Worst {
 // Differences of sampled joint positions over a step so short that they are the derivatives, and no longer
 // than the time between places where the jerk may jump: a difference is a mean of the derivative, so it may
 // not exceed the limit either.
-template <class Course, int N>
-Worst<N> measure(const Course& course, const Planned<Course>& plan, double step) {
+template <int N, class Course>
+Worst<N> measure(const Course& course, const plan::Plan& plan, double step) {
   plan::Cursor cursor(plan.spans, plan.lengths);
   Worst<N> worst;
   std::vector<VectorN<double, N>> last;
@@ -112,7 +88,7 @@ BasicJointLimits<double, 4> tire_limits() {
 }  // namespace
 
 TEST_CASE("joints keep their limits over wall, kink and corners", "[motion]") {
-  const auto chain = wall();
+  const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   plan::JointCourse course{plan::SidewallGuide(sidewall, 1.0)};
   const auto arc =
@@ -152,7 +128,7 @@ TEST_CASE("joints keep their limits over wall, kink and corners", "[motion]") {
   for (const auto& block : course.blocks()) CHECK(block.path.length() <= 2.0 * 1.3);
   SECTION("with a stop at every corner") {
     const auto plan = planned(course, limits, 0.0);
-    const auto worst = measure<decltype(course), 4>(course, plan, 1e-3);
+    const auto worst = measure<4>(course, plan, 1e-3);
     check_within(worst, limits, 1e-4);
     // one axis at least comes near to what binds: the limits are used
     const auto used = [](const auto& reached, const auto& limit) {
@@ -166,7 +142,7 @@ TEST_CASE("joints keep their limits over wall, kink and corners", "[motion]") {
     const auto stopping = planned(course, limits, 0.0);
     const auto plan = planned(course, limits, 1e-3);
     CHECK(plan.duration < stopping.duration);
-    const auto worst = measure<decltype(course), 4>(course, plan, 1e-3);
+    const auto worst = measure<4>(course, plan, 1e-3);
     for (int i = 0; i < 4; ++i) {
       CHECK(worst.velocity[i] <= limits.velocity[i] * (1 + 1e-6));
       CHECK(worst.acceleration[i] <= 2 * limits.acceleration[i]);  // the corner's jump and what surrounds it
@@ -175,7 +151,7 @@ TEST_CASE("joints keep their limits over wall, kink and corners", "[motion]") {
 }
 
 TEST_CASE("every sample of the plan stands on the wall, and C goes on without a jump", "[motion]") {
-  const auto chain = wall();
+  const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   plan::JointCourse course{plan::SidewallGuide(sidewall, 1.0)};
   // twice round the mold
@@ -214,7 +190,7 @@ TEST_CASE("every sample of the plan stands on the wall, and C goes on without a 
 }
 
 TEST_CASE("mapped paths measure themselves", "[motion]") {
-  const auto chain = wall();
+  const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   plan::JointCourse course{plan::SidewallGuide(sidewall, 1.0)};
   test::Random random;
@@ -286,10 +262,12 @@ TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[
   CHECK(refused.error().bound == 1.0);
 
   const auto plan = planned(course, limits, 0.0);
-  check_within(measure<decltype(course), 3>(course, plan, 1e-3), limits, 1e-4);
+  check_within(measure<3>(course, plan, 1e-3), limits, 1e-4);
   // at 1.5 mm from the axis, 60 degrees a second are pi/2 mm/s
   double slowest = 100;
-  for (const auto& caps : plan.caps) slowest = std::min(slowest, caps.limits.velocity);
+  std::vector<plan::BlockCaps> caps;
+  plan::joint_caps(std::span(course.blocks()), limits, 0.0, std::back_inserter(caps));
+  for (const auto& block : caps) slowest = std::min(slowest, block.limits.velocity);
   CHECK(slowest < pi / 2);
   CHECK(slowest > 0.3);
 }

@@ -1,10 +1,10 @@
 // Straight rows in machine space, held against the wall at many more places than the division looks at.
-#include "cncplan/kinematics/profile_chain.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/joint/sidewall_guide.hpp"
 #include "cncplan/plan/joint/sidewall_rows.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
+#include "wall.hpp"
 
 using namespace cncplan;
 using namespace cncplan::kinematics;
@@ -12,13 +12,6 @@ using namespace cncplan::kinematics;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-ProfileChain wall() {
-  const Vector2 kink(160 - 40 * std::sin(0.8), 60 + 40 * std::cos(0.8));
-  const std::vector<Drawn> drawn{DrawnLine{{200, 100}, {160, 100}}, DrawnArc{{160, 60}, 40, pi / 2, 0.8},
-                                 DrawnLine{kink, kink + 30 * Vector2(-std::cos(1.0), -std::sin(1.0))}};
-  return *chain_profile(std::span<const Drawn>(drawn));
-}
 
 // The largest distance of a row's places from the true path, found by looking for the nearest place.
 double distance(const plan::SidewallStretch<double>& stretch, double from, double to) {
@@ -46,7 +39,7 @@ double distance(const plan::SidewallStretch<double>& stretch, double from, doubl
 }  // namespace
 
 TEST_CASE("rows stay within the tolerance, and are not many more than needed", "[rows]") {
-  const auto chain = wall();
+  const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   test::Random random;
   double worst = 0, told_too_little = 0;
@@ -81,7 +74,7 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
 }
 
 TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]") {
-  const auto chain = wall();
+  const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   plan::SidewallGuide guide(sidewall, 1.0);
   std::vector<plan::SidewallStretch<double>> out;
@@ -125,7 +118,7 @@ TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]")
 }
 
 TEST_CASE("segments that leave the wall are refused", "[rows]") {
-  const auto chain = wall();
+  const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   plan::SidewallGuide guide(sidewall, 60.0);
   std::vector<plan::SidewallStretch<double>> out;

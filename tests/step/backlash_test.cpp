@@ -4,19 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "doubles.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
 using step::Edge;
+using test::Listed;
 
 namespace {
-
-struct Listed {
-  using Scalar = double;
-  std::vector<Edge> edges;
-  std::size_t at = 0;
-  std::optional<Edge> next() { return at < edges.size() ? std::optional(edges[at++]) : std::nullopt; }
-};
 
 static_assert(step::EdgeSource<step::BacklashCompensation<Listed>>);
 

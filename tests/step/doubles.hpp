@@ -1,13 +1,16 @@
-// Paths and profiles that the tests of step own: simple enough to be known exactly by other means.
+// Paths, profiles and edges that the tests of step own: simple enough to be known exactly by other means.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "cncplan/core/phase.hpp"
 #include "cncplan/core/vector.hpp"
+#include "cncplan/step/edge.hpp"
 
 namespace cncplan::test {
 
@@ -82,5 +85,13 @@ std::array<BasicPhase<S>, 4> rest_to_rest(S length, S jerk) {
            {S(2) * t, t, S(6) * d, v, S(0), -jerk},
            {S(3) * t, t, S(11) * d, v / S(2), -a, jerk}}};
 }
+
+/// Edges written by hand.
+struct Listed {
+  using Scalar = double;
+  std::vector<step::Edge> edges;
+  std::size_t at = 0;
+  std::optional<step::Edge> next() { return at < edges.size() ? std::optional(edges[at++]) : std::nullopt; }
+};
 
 }  // namespace cncplan::test

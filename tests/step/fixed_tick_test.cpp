@@ -11,17 +11,7 @@
 using namespace cncplan;
 using step::Edge;
 using step::Tick;
-
-namespace {
-
-struct Listed {
-  using Scalar = double;
-  std::vector<Edge> edges;
-  std::size_t at = 0;
-  std::optional<Edge> next() { return at < edges.size() ? std::optional(edges[at++]) : std::nullopt; }
-};
-
-}  // namespace
+using test::Listed;
 
 TEST_CASE("edges of one tick share a word, directions stay") {
   step::FixedTicks ticks(Listed{{{0.101, 0, 1}, {0.104, 2, -1}, {0.201, 0, 1}, {0.26, 1, 1}, {0.34, 2, 1}}},
