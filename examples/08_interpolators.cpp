@@ -92,7 +92,7 @@ std::vector<Vector3> positions(const P& path, const Walk& way) {
 
 template <Path P>
 profile::Profile profile_for(Method method, const P& path, double curvature) {
-  Limits capped = plan::CapSpeed{}(curvature, limits);
+  Limits capped = plan::CapSpeed{}({curvature}, limits);
   if (method == Method::constant) return profile::constant_speed(path.length(), capped.velocity);
   return profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0}, capped).value();
 }

@@ -95,7 +95,7 @@ struct SpeedNotSquared {
 };
 auto policy = plan::caps(block, block, SpeedNotSquared{}, plan::ShareLimits{});
 
-// expect SpeedAlone, CurveRule: rule(curvature, limits)
+// expect SpeedAlone, CurveRule: rule(bend, limits)
 struct SpeedAlone {
   double operator()(double, const Limits&) const;
 };

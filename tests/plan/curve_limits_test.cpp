@@ -13,13 +13,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Vector sums on a circle, over the limits of the whole motion.
+// Vector sums on a curve, over the limits of the whole motion. What its bend changes by adds the most where
+// it points as all the rest does.
 struct Sums {
   long double acceleration, jerk;
 };
-Sums sums(const Limits& whole, long double k, long double v, long double a, long double j) {
+Sums sums(const Limits& whole, const plan::Bend& bend, long double v, long double a, long double j) {
+  const long double k = bend.curvature;
   return {std::hypot(a, v * v * k) / whole.acceleration,
-          std::hypot(j - v * v * v * k * k, 3 * v * a * k) / whole.jerk};
+          (std::hypot(j - v * v * v * k * k, 3 * v * a * k) + v * v * v * bend.change) / whole.jerk};
 }
 
 Limits draw(test::Random& random) {
@@ -31,25 +33,26 @@ Limits draw(test::Random& random) {
 TEST_CASE("shared limits keep both vector sums at every speed, acceleration and jerk within them") {
   test::Random random;
   long double acceleration = 0, jerk = 0;
-  double curvature = 0;
+  plan::Bend bent;
   Limits where{};
   for (int draws = 0; draws < 400; ++draws) {
     const Limits whole = draw(random);
     const double k = random.log_uniform(1e-4, 1e3);
-    const Limits along = plan::ShareLimits{}(k, whole);
+    const plan::Bend bend{k, random.coin() ? 0.0 : k * k * random.log_uniform(1e-6, 1e3)};
+    const Limits along = plan::ShareLimits{}(bend, whole);
     REQUIRE(along.velocity <= whole.velocity);
     for (int iv = 0; iv <= 16; ++iv)
       for (int ia = -8; ia <= 8; ++ia)
         for (int ij = -8; ij <= 8; ++ij) {
-          const auto [a, j] = sums(whole, k, along.velocity * (iv / 16.0L), along.acceleration * (ia / 8.0L),
-                                   along.jerk * (ij / 8.0L));
-          if (std::max(a, j) > std::max(acceleration, jerk)) where = whole, curvature = k;
+          const auto [a, j] = sums(whole, bend, along.velocity * (iv / 16.0L),
+                                   along.acceleration * (ia / 8.0L), along.jerk * (ij / 8.0L));
+          if (std::max(a, j) > std::max(acceleration, jerk)) where = whole, bent = bend;
           acceleration = std::max(acceleration, a);
           jerk = std::max(jerk, j);
         }
   }
-  INFO("1/R " << curvature << ", limits " << where.velocity << ' ' << where.acceleration << ' '
-              << where.jerk);
+  INFO("bend " << bent.curvature << ", " << bent.change << ", limits " << where.velocity << ' '
+               << where.acceleration << ' ' << where.jerk);
   CHECK(static_cast<double>(acceleration) <= 1 + 1e-12);
   CHECK(static_cast<double>(jerk) <= 1 + 1e-12);
   CHECK(static_cast<double>(jerk) > 1 - 1e-12);  // the rule leaves none of the jerk
@@ -61,8 +64,8 @@ TEST_CASE("what sharing leaves on the table") {
   for (int draws = 0; draws < 100000; ++draws) {
     const Limits whole = draw(random);
     const double k = random.log_uniform(1e-4, 1e3);
-    const Limits shared = plan::ShareLimits{}(k, whole);
-    slowest = std::min(slowest, shared.velocity / plan::CapSpeed{}(k, whole).velocity);
+    const Limits shared = plan::ShareLimits{}({k}, whole);
+    slowest = std::min(slowest, shared.velocity / plan::CapSpeed{}({k}, whole).velocity);
     least_jerk = std::min(least_jerk, shared.jerk / whole.jerk);
     REQUIRE(shared.acceleration > 0.0);
   }
@@ -77,7 +80,7 @@ TEST_CASE("speed alone: v^2/R and v^3/R^2 reach the limits and no more") {
   for (int draws = 0; draws < 20000; ++draws) {
     const Limits whole = draw(random);
     const double k = random.log_uniform(1e-4, 1e3);
-    const Limits along = plan::CapSpeed{}(k, whole);
+    const Limits along = plan::CapSpeed{}({k}, whole);
     const double v = along.velocity;
     const double used =
         std::max({v / whole.velocity, v * v * k / whole.acceleration, v * v * v * k * k / whole.jerk});
@@ -87,26 +90,32 @@ TEST_CASE("speed alone: v^2/R and v^3/R^2 reach the limits and no more") {
   }
   CHECK(worst < 1e-14);
   // R = 0.5 mm at 30 mm/s would take 1800 mm/s^2 and 108000 mm/s^3
-  CHECK(plan::CapSpeed{}(2.0, Limits{30, 1000, 10000}).velocity == Approx(std::cbrt(2500.0)).epsilon(1e-14));
+  CHECK(plan::CapSpeed{}({2.0}, Limits{30, 1000, 10000}).velocity ==
+        Approx(std::cbrt(2500.0)).epsilon(1e-14));
+}
+
+TEST_CASE("speed alone on a helix: its jerk at constant speed is that of the curve's third derivative") {
+  const plan::Bend bend{0.3, 0.4};  // |d^3 p / ds^3| = hypot(0.09, 0.4) = 0.41
+  CHECK(plan::CapSpeed{}(bend, Limits{1e3, 1e9, 41.0}).velocity == Approx(std::cbrt(100.0)).epsilon(1e-14));
 }
 
 TEST_CASE("a straight path keeps its limits, and limits that are not there stay so") {
   const Limits kk22{30, 1000, 10000};
-  CHECK(plan::ShareLimits{}(0.0, kk22) == kk22);
-  CHECK(plan::CapSpeed{}(0.0, kk22) == kk22);
-  const Limits no_jerk = plan::ShareLimits{}(0.1, Limits{30, 1000, infinity});
+  CHECK(plan::ShareLimits{}({0.0}, kk22) == kk22);
+  CHECK(plan::CapSpeed{}({0.0}, kk22) == kk22);
+  const Limits no_jerk = plan::ShareLimits{}({0.1}, Limits{30, 1000, infinity});
   CHECK(no_jerk.jerk == infinity);
   CHECK(std::hypot(no_jerk.acceleration, 90.0) == Approx(1000.0).epsilon(1e-14));
-  const Limits no_acceleration = plan::ShareLimits{}(0.1, Limits{30, infinity, 10000});
+  const Limits no_acceleration = plan::ShareLimits{}({0.1}, Limits{30, infinity, 10000});
   CHECK(std::isfinite(no_acceleration.acceleration));
-  const Sums worst = sums({30, infinity, 10000}, 0.1L, no_acceleration.velocity, no_acceleration.acceleration,
-                          -static_cast<long double>(no_acceleration.jerk));
+  const Sums worst = sums({30, infinity, 10000}, {0.1}, no_acceleration.velocity,
+                          no_acceleration.acceleration, -static_cast<long double>(no_acceleration.jerk));
   CHECK(static_cast<double>(worst.jerk) <= 1 + 1e-12);
 }
 
 TEST_CASE("shared limits in float are those of double") {
-  const auto narrow = plan::ShareLimits{}(2.0f, BasicLimits<float>{30.0f, 1000.0f, 10000.0f});
-  const auto wide = plan::ShareLimits{}(2.0, Limits{30, 1000, 10000});
+  const auto narrow = plan::ShareLimits{}({2.0f}, BasicLimits<float>{30.0f, 1000.0f, 10000.0f});
+  const auto wide = plan::ShareLimits{}({2.0}, Limits{30, 1000, 10000});
   CHECK(narrow.velocity == Approx(wide.velocity).epsilon(1e-6));
   CHECK(narrow.acceleration == Approx(wide.acceleration).epsilon(1e-5));
   CHECK(narrow.jerk == Approx(wide.jerk).epsilon(1e-5));

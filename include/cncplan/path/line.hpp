@@ -81,6 +81,7 @@ class BasicLine {
   [[nodiscard]] const Vector& end_tangent() const { return direction_; }
   [[nodiscard]] S curvature(S) const { return S(0); }
   [[nodiscard]] S max_curvature() const { return S(0); }
+  [[nodiscard]] S max_curvature_change() const { return S(0); }
 
   /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
   [[nodiscard]] S next_turning(int /*axis*/, S /*u*/) const { return length_; }

@@ -87,6 +87,9 @@ class BasicSegment {
   [[nodiscard]] S max_curvature() const {
     return visit([](const auto& p) { return p.max_curvature(); });
   }
+  [[nodiscard]] S max_curvature_change() const {
+    return visit([](const auto& p) { return p.max_curvature_change(); });
+  }
   [[nodiscard]] S next_turning(int axis, S u) const {
     return visit([axis, u](const auto& p) { return p.next_turning(axis, u); });
   }

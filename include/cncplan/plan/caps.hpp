@@ -26,10 +26,11 @@ using BlockCaps = BasicBlockCaps<double>;
 /// The caps of the first block of a program, or of one behind a stop.
 template <std::floating_point S, CurveRule<S> Rule>
 [[nodiscard]] BasicBlockCaps<S> caps_from_rest(const BasicBlock<S>& block, const Rule& rule) {
-  return {block.segment.length(), S(0), rule(block.segment.max_curvature(), block.limits), block.pause};
+  const BasicBend<S> bend{block.segment.max_curvature(), block.segment.max_curvature_change()};
+  return {block.segment.length(), S(0), rule(bend, block.limits), block.pause};
 }
 
-/// The caps of a block that follows another: the junction by the policy, the inside by its curvature.
+/// The caps of a block that follows another: the junction by the policy, the inside by its bend.
 template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule>
 [[nodiscard]] BasicBlockCaps<S> caps(const BasicBlock<S>& before, const BasicBlock<S>& block,
                                      const Policy& policy, const Rule& rule) {
