@@ -16,19 +16,24 @@ using namespace cncplan;
 int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
   using F = test::PlayerFaults;
   using Worst = test::Worst<F, std::uint64_t>;
-  Worst all[] = {{"jerk (relative)", &F::jerk, 1e-6},   {"acceleration (relative)", &F::acceleration, 1e-9},
-                 {"speed (relative)", &F::speed, 1e-9}, {"speed at junctions (mm/s)", &F::junction, 1e-9},
-                 {"travel (mm)", &F::travel, 1e-9},     {"end (mm)", &F::end, 1e-9}};
+  Worst all[] = {{"jerk (relative)", &F::jerk, 1e-6},
+                 {"acceleration (relative)", &F::acceleration, 1e-9},
+                 {"speed (relative)", &F::speed, 1e-9},
+                 {"speed at junctions (mm/s)", &F::junction, 1e-9},
+                 {"travel (mm)", &F::travel, 1e-9},
+                 {"acceleration in space (relative)", &F::sum_acceleration, 1e-9},
+                 {"jerk in space (relative)", &F::sum_jerk, 1e-9},
+                 {"end (mm)", &F::end, 1e-9}};
   std::uint64_t ticks = 0, blocks = 0, requests = 0, unfinished = 0;
   for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {
     test::Random random(seed + sequence * 0x9e3779b97f4a7c15);
-    const auto program = test::random_program(random, random.integer(1, 30));
+    const auto program = test::random_played(random, random.integer(1, 30));
     const int gap = random.integer(0, 3) == 0 ? 1 : random.integer(2, 100);
     const auto window = static_cast<std::size_t>(random.integer(4, 64));
     const auto faults = test::play(program, random, gap, window, 1000);
     ticks += static_cast<std::uint64_t>(faults.ticks);
     requests += static_cast<std::uint64_t>(faults.requests);
-    blocks += program.size();
+    blocks += program.blocks.size();
     for (Worst& worst : all) worst.take(faults, sequence);
     if (!faults.finished && unfinished++ == 0)
       std::printf("not finished: sequence %llu\n", static_cast<unsigned long long>(sequence));

@@ -29,7 +29,7 @@ bool report(std::span<const Worst<Errors, Case>> all, Literal&& literal) {
   for (const auto& worst : all) {
     const bool within = worst.value <= worst.bound;
     held = held && within;
-    std::printf("%-24s worst %-10.3g bound %-8.3g %s  %s\n", worst.name, worst.value, worst.bound,
+    std::printf("%-32s worst %-10.3g bound %-8.3g %s  %s\n", worst.name, worst.value, worst.bound,
                 within ? "ok    " : "BROKEN", literal(worst.where).c_str());
   }
   return held;

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string>
+#include <numbers>
 #include <vector>
 
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/path/arc_from_center.hpp"
+#include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "support/random.hpp"
 
@@ -19,39 +22,93 @@ struct PlayerFaults {
   double speed{};         ///< above what the block bears, relative
   double junction{};      ///< mm/s above a junction's cap, beyond what a tick hides
   double travel{};  ///< mm between travelled distance and the integral of the speed, beyond a tick's rounding
-  double end{};     ///< mm from the end of the last block
+  double sum_acceleration{};  ///< of the point in space, by its velocity at both ends of a tick, above the
+                              ///< limit, relative
+  double sum_jerk{};          ///< of the point in space, by its acceleration at both ends of a tick, likewise
+  double end{};               ///< mm from the end of the last block
   bool finished{};
   long ticks{};
   long requests{};
 };
 
-/// Short and long blocks, slow and free junctions, curved (lower limits) and straight ones.
-inline std::vector<plan::PlayedBlock> random_program(Random& random, int count) {
-  std::vector<plan::PlayedBlock> program;
+/// Blocks to be played, and the motion in space that each stands for.
+struct PlayedProgram {
+  std::vector<plan::PlayedBlock> blocks;
+  std::vector<plan::Block> motions;
+};
+
+/// A line or an arc of about `length` mm from a point on; a third of the arcs are helices.
+inline path::Segment random_segment(Random& random, const Vector3& start, double length) {
+  constexpr double pi = std::numbers::pi;
+  const double heading = random.uniform(-pi, pi);
+  const double rise = random.integer(0, 2) == 0 ? random.uniform(-0.5, 0.5) * length : 0.0;
+  const Vector3 along(std::cos(heading), std::sin(heading), 0.0);
+  if (random.coin()) return path::Line(start, start + length * along + rise * Vector3::UnitZ());
+  const double radius = random.log_uniform(0.1, 50.0);
+  const double sweep = std::min(length / radius, 6.0) * (random.coin() ? 1.0 : -1.0);
+  const Vector3 center = start - radius * along;
+  const Vector3 end =
+      center + Vector3(radius * std::cos(heading + sweep), radius * std::sin(heading + sweep), rise);
+  const auto arc = path::arc_from_center(start, end, center,
+                                         sweep < 0.0 ? Turn::clockwise : Turn::counterclockwise, Plane::xy);
+  return arc ? path::Segment(*arc) : path::Segment(path::Line(start, end));
+}
+
+/// Short and long lines, arcs and helices, slow and free junctions, some blocks with lower limits.
+inline PlayedProgram random_played(Random& random, int count) {
+  PlayedProgram program;
   const double longest = random.log_uniform(0.05, 10.0);
+  const junction::Deviation policy{random.coin() ? 0.01 : 1.0};
+  Vector3 at = Vector3::Zero();
   for (int i = 0; i < count; ++i) {
-    plan::PlayedBlock block;
-    block.caps = {random.log_uniform(0.01, longest), 1e3, {30.0, 1000.0, 10000.0}, 0.0};
-    if (random.integer(0, 3) == 0) block.caps.entry = random.uniform(0.0, 30.0);
+    plan::Block motion;
+    motion.segment = random_segment(random, at, random.log_uniform(0.01, longest));
+    at = motion.segment.end();
+    motion.limits = {30.0, 1000.0, 10000.0};
     if (random.integer(0, 5) == 0) {
-      block.caps.limits.velocity = random.uniform(3.0, 30.0);
-      block.caps.limits.acceleration *= random.uniform(0.4, 1.0);
-      block.caps.limits.jerk *= random.uniform(0.3, 1.0);
+      motion.limits.velocity = random.uniform(3.0, 30.0);
+      motion.limits.acceleration *= random.uniform(0.4, 1.0);
+      motion.limits.jerk *= random.uniform(0.3, 1.0);
     }
-    if (random.integer(0, 30) == 0) block.caps.pause = 0.01;
-    if (i == 0 || program.back().caps.pause > 0.0) block.caps.entry = 0.0;
+    if (random.integer(0, 30) == 0) motion.pause = 0.01;
+    plan::PlayedBlock block;
+    block.caps = i == 0 ? plan::caps_from_rest(motion, plan::ShareLimits{})
+                        : plan::caps(program.motions.back(), motion, policy, plan::ShareLimits{});
+    if (random.integer(0, 3) == 0) block.caps.entry = std::min(block.caps.entry, random.uniform(0.0, 30.0));
     block.feed = random.uniform(5.0, 30.0);
     block.rapid = random.integer(0, 6) == 0;
     block.line = i + 1;
-    program.push_back(block);
+    program.blocks.push_back(block);
+    program.motions.push_back(motion);
   }
   return program;
 }
 
+/// Where the point of a motion is, and how its velocity changes, by its state along the path.
+struct PointMotion {
+  Vector3 position;
+  Vector3 velocity;
+  Vector3 acceleration;
+
+  PointMotion(const plan::Block& motion, const plan::Played& now) {
+    const auto& path = motion.segment;
+    const double u = path.parameter_at(now.along);
+    const Vector3 first = path.derivative(u);
+    const Vector3 second = path.second_derivative(u);
+    const double speed_sq = first.squaredNorm();
+    const Vector3 tangent = first / std::sqrt(speed_sq);
+    const Vector3 curvature = (second - tangent * tangent.dot(second)) / speed_sq;
+    position = path.position(u);
+    velocity = now.velocity * tangent;
+    acceleration = now.acceleration * tangent + now.velocity * now.velocity * curvature;
+  }
+};
+
 /// Plays a program with a request about every `mean_gap` ticks for `restless` ticks, then undisturbed until
 /// it is finished.
-inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& random, int mean_gap,
-                         std::size_t window, long restless) {
+inline PlayerFaults play(const PlayedProgram& played, Random& random, int mean_gap, std::size_t window,
+                         long restless) {
+  const std::vector<plan::PlayedBlock>& program = played.blocks;
   constexpr double period = 1e-3;
   constexpr long most_ticks = 1'000'000;
   std::vector<plan::PlayedBlock> blocks(window + 24);
@@ -128,6 +185,14 @@ inline PlayerFaults play(const std::vector<plan::PlayedBlock>& program, Random& 
          std::max(-now.along, now.along - program[static_cast<std::size_t>(now.block)].caps.length));
     grow(faults.travel, std::abs(moved - period * (now.velocity + before.velocity) / 2) - slack * period / 4);
     position += moved;
+    if (now.block == before.block && !turned) {
+      // over a tick in one block a difference is a mean, and so within the limit too
+      const plan::Block& motion = played.motions[static_cast<std::size_t>(now.block)];
+      const PointMotion from(motion, before), to(motion, now);
+      grow(faults.sum_acceleration,
+           (to.velocity - from.velocity).norm() / period / motion.limits.acceleration - 1);
+      grow(faults.sum_jerk, (to.acceleration - from.acceleration).norm() / period / motion.limits.jerk - 1);
+    }
     before = now;
     if (fed == program.size() && player.finished()) {
       faults.finished = true;

@@ -190,16 +190,18 @@ TEST_CASE("until the next change the jerk is what it was") {
 TEST_CASE("random requests break no limit, and the end stays exact") {
   test::Random random;
   for (int sequence = 0; sequence < 200; ++sequence) {
-    const auto program = test::random_program(random, random.integer(1, 60));
+    const auto program = test::random_played(random, random.integer(1, 60));
     const int gap = random.integer(0, 3) == 0 ? 1 : random.integer(2, 200);
     const auto window = static_cast<std::size_t>(random.integer(4, 64));
     const auto faults = test::play(program, random, gap, window, 20000);
-    CAPTURE(sequence, gap, window, program.size(), faults.ticks);
+    CAPTURE(sequence, gap, window, program.blocks.size(), faults.ticks);
     CHECK(faults.jerk < 1e-6);
     CHECK(faults.acceleration < 1e-9);
     CHECK(faults.speed < 1e-9);
     CHECK(faults.junction < 1e-9);
     CHECK(faults.travel < 1e-9);
+    CHECK(faults.sum_acceleration < 1e-9);
+    CHECK(faults.sum_jerk < 1e-9);
     CHECK(faults.finished);
     CHECK(faults.end < 1e-9);
   }
@@ -208,7 +210,7 @@ TEST_CASE("random requests break no limit, and the end stays exact") {
 TEST_CASE("the same requests at the same ticks give the same samples bit for bit") {
   const auto run = [] {
     test::Random random(7);
-    const auto program = test::random_program(random, 40);
+    const auto program = test::random_played(random, 40).blocks;
     Rig rig(64);
     for (const auto& block : program) rig.player.push(block);
     std::vector<plan::Played> samples;
@@ -306,7 +308,7 @@ TEST_CASE("a dwell is waited for") {
 
 TEST_CASE("ticks allocate nothing") {
   test::Random random;
-  const auto program = test::random_program(random, 50);
+  const auto program = test::random_played(random, 50).blocks;
   Rig rig(64);
   const auto allocations = test::heap_allocations_of([&] {
     for (const auto& block : program) rig.player.push(block);
