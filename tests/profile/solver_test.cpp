@@ -1,6 +1,7 @@
 #include "cncplan/profile/solver.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
@@ -128,4 +129,29 @@ TEST_CASE("zero length and the speed limit itself are ordinary cases") {
 TEST_CASE("a ramp that fills its length to the last digit is feasible (found by the soak, seed 1)") {
   const Limits limits{0.021340459271441979, 3.7496784472480762, 6838613.1541934507};
   CHECK(profile::five_phase(4.4861359234020375e-05, {0.016946962267085339, 0.021340459271441979}, limits));
+}
+
+TEST_CASE("a solver without a speed limit above zero refuses whatever it is asked") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double length : {0.0, 10.0}) {
+    const auto p = profile::five_phase_solver(Limits{nan, 1000.0, 10000.0})(length, {0.0, 0.0});
+    REQUIRE_FALSE(p);
+    CHECK(p.error().code == ErrorCode::not_finite);
+    CHECK(p.error().field == "velocity limit");
+    for (const double limit : {0.0, -1.0})
+      CHECK(profile::seven_phase_solver(Limits{limit, 1000.0, 10000.0})(length, {0.0, 0.0}).error() ==
+            Error{ErrorCode::not_positive, "velocity limit", limit, 0.0});
+  }
+}
+
+TEST_CASE(
+    "an end speed out of reach is refused with the nearest one on the way, though a lower one is near") {
+  // (20 + v) sqrt((20 - v) / J) is 0.95 mm at v = 9.915, more at 5, less again at 3.1
+  const auto solver = profile::seven_phase_solver(Limits{30.0, 1000.0, 10000.0});
+  const auto refused = solver(0.95, {20.0, 5.0});
+  REQUIRE_FALSE(refused);
+  const double bound = refused.error().bound;
+  CHECK(bound == Approx(9.915).epsilon(1e-3));
+  CHECK((20.0 + bound) * std::sqrt((20.0 - bound) / 1e4) == Approx(0.95).epsilon(1e-12));
+  CHECK(solver(0.95, {20.0, 3.1}));
 }

@@ -109,8 +109,8 @@ template <std::floating_point S>
 /// Three families, by growing length: braking all the way, with the brake released for a while at first; from
 /// the settled speed (or the end speed, if that is higher) up to a top speed and down again; and the same
 /// with a cruise at the speed limit. Within each the distance grows with one parameter, which is found by
-/// halving an interval as often as there are digits, at most. Errors: as `stop`, as the other solvers;
-/// `end_speed_unreachable`, with the end speed reachable as bound, where the length is too short.
+/// halving an interval eight times more often than there are digits, at most. Errors: as `stop`, as the other
+/// solvers; `end_speed_unreachable`, where the length is too short, with the bound that they give.
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicProfile<S>> from_state(S length, const BasicStartState<S>& start, S end_velocity,
                                                    const BasicLimits<S>& limits);
@@ -196,7 +196,7 @@ class FromState {
                             .down = down});
   }
 
-  // The end speed nearest to the wanted one that the length allows.
+  // The end speed nearest to the wanted one, on the way to it, that the length allows.
   [[nodiscard]] S reachable() const {
     const S settled = std::max(settled_speed(start_, limits_), S(0));
     const auto fits = [&](S share) {

@@ -35,13 +35,15 @@ class BasicSolver {
   [[nodiscard]] constexpr const BasicRampLaw<S>& law() const { return law_; }
   [[nodiscard]] constexpr S velocity_limit() const { return velocity_limit_; }
 
-  /// The profile over `length` mm (>= 0, finite). Errors: a length or speed that is not finite, negative, or
-  /// above the speed limit, by name; `end_speed_unreachable` with the wanted end speed as its value and the
-  /// reachable one nearest to it as its bound.
+  /// The profile over `length` mm (>= 0, finite). Errors: a speed limit that is not positive; a length or
+  /// speed that is not finite, negative, or above the speed limit, by name; `end_speed_unreachable` with the
+  /// wanted end speed as its value and, as its bound, the one nearest to it that can be reached on the way
+  /// from the start speed. (Below a wanted lower speed there may be others: a ramp close to a standstill can
+  /// be shorter.)
   [[nodiscard]] Expected<BasicProfile<S>> operator()(S length, const BasicBoundarySpeeds<S>& speeds) const {
     const auto [start, end] = speeds;
     if (!(length >= S(0) && length <= std::numeric_limits<S>::max() && std::min(start, end) >= S(0) &&
-          start <= velocity_limit_ && end <= velocity_limit_))
+          start <= velocity_limit_ && end <= velocity_limit_ && velocity_limit_ > S(0)))
       return refuse(length, speeds);
 
     const S high = std::max(start, end);
@@ -100,20 +102,28 @@ class BasicSolver {
                             .down = down});
   }
 
+  // Names the first of them that is out of its domain.
   [[nodiscard]] Expected<BasicProfile<S>> refuse(S length, const BasicBoundarySpeeds<S>& speeds) const {
-    const auto check = [](S value, S bound, std::string_view field) -> Expected<BasicProfile<S>> {
+    const auto within = [](S value, S bound) { return value >= S(0) && value <= bound; };
+    const auto fault = [](S value, S bound, std::string_view field) {
       if (!std::isfinite(value)) return detail::refusal(ErrorCode::not_finite, field, value, S(0));
       if (value < S(0)) return detail::refusal(ErrorCode::negative, field, value, S(0));
-      if (value > bound) return detail::refusal(ErrorCode::above_limit, field, value, bound);
-      return {};
+      return detail::refusal(ErrorCode::above_limit, field, value, bound);
     };
-    if (auto bad = check(length, std::numeric_limits<S>::max(), "length"); !bad) return bad;
-    if (auto bad = check(speeds.start, velocity_limit_, "start speed"); !bad) return bad;
-    return check(speeds.end, velocity_limit_, "end speed");
+    if (!(velocity_limit_ > S(0))) {
+      const ErrorCode code = std::isnan(velocity_limit_) ? ErrorCode::not_finite : ErrorCode::not_positive;
+      return detail::refusal(code, "velocity limit", velocity_limit_, S(0));
+    }
+    constexpr S longest = std::numeric_limits<S>::max();
+    if (!within(length, longest)) return fault(length, longest, "length");
+    if (!within(speeds.start, velocity_limit_)) return fault(speeds.start, velocity_limit_, "start speed");
+    return fault(speeds.end, velocity_limit_, "end speed");
   }
 
-  // The ramp from `start` to the wanted speed is too long; those to speeds nearer to `start` are shorter, and
-  // exactly one of them has the length. Halving the interval as often as there are digits finds it.
+  // The ramp from `start` to the wanted speed is too long. Over the speeds in between its length grows from
+  // 0, and upwards for ever; downwards it may shrink again, but is concave, and at the wanted speed still too
+  // long. So exactly one of them has the length, and all nearer to `start` fit. Halving the interval as often
+  // as there are digits finds it.
   [[nodiscard]] Expected<BasicProfile<S>> unreachable(S length, const BasicBoundarySpeeds<S>& speeds) const {
     S within = speeds.start;
     S beyond = speeds.end;
