@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "cncplan/path/plane_swap.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -110,6 +111,20 @@ TEST_CASE("Numbers that are none are refused by name, the centre's third coordin
   CHECK(clockwise({10, 0, 0}, {5, 0, nan}));
   CHECK(arc_from_center({0, 0, 0}, {10, 0, 0}, {5, 0, 0}, Turn::clockwise, Plane::xy, {}, -2).error() ==
         Error{ErrorCode::negative, "extra turns", -2.0, 0.0});
+}
+
+TEST_CASE("A million extra turns stay on the circle, more are refused") {
+  const auto turned = [](int turns) {
+    return arc_from_center({1, 0, 0}, {0, 1, 0}, {0, 0, 0}, Turn::counterclockwise, Plane::xy, {}, turns);
+  };
+  const auto arc = turned(1'000'000);
+  REQUIRE(arc);
+  double worst = 0;
+  for (int i = 0; i <= 1000; ++i)
+    worst = std::max(worst, std::abs(arc->position(arc->parameter_end() * i / 1000).norm() - 1));
+  CHECK(worst < 1e-15);
+  CHECK(turned(1'000'001).error() == Error{ErrorCode::above_limit, "extra turns", 1'000'001, 1'000'000});
+  CHECK(turned(2'000'000'000).error().code == ErrorCode::above_limit);
 }
 
 TEST_CASE("float arcs land on their ends as well") {

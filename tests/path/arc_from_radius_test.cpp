@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "cncplan/path/plane_swap.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -123,6 +124,11 @@ TEST_CASE("Numbers that are none, or too large, are refused by name") {
   CHECK(clockwise({0, 0, 0}, {1, 0, 0}, 1e80).error() == Error{ErrorCode::above_limit, "radius", 1e80, 1e75});
   CHECK(arc_from_radius({0, 0, 0}, {1, 0, 0}, 5.0, Turn::clockwise, Plane::xy, {}, -1).error() ==
         Error{ErrorCode::negative, "extra turns", -1.0, 0.0});
+  const auto turned = [](int turns) {
+    return arc_from_radius({0, 0, 0}, {1, 0, 0}, 5.0, Turn::clockwise, Plane::xy, {}, turns);
+  };
+  CHECK(turned(1'000'000));
+  CHECK(turned(2'000'000'000).error() == Error{ErrorCode::above_limit, "extra turns", 2e9, 1e6});
 }
 
 TEST_CASE("Extra turns add to the sweep: P2 on a half circle is 540 degrees") {

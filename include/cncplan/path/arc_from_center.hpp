@@ -1,6 +1,11 @@
 // Arc from its end points and centre (the I J K words).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <numbers>
+#include <string_view>
 #include <type_traits>
 
 #include "cncplan/path/arc.hpp"
@@ -13,8 +18,8 @@ namespace cncplan::path {
 ///
 /// The centre stays as programmed. Radii that differ within tolerance give a spiral that hits the end point;
 /// a difference within the rounding of the coordinates gives a circle. Errors: not_finite, above_limit
-/// (start, end, center), negative (extra turns), below_limit (radius), radius_mismatch (center: the
-/// difference and the bound).
+/// (start, end, center, extra turns), negative (extra turns), below_limit (radius), radius_mismatch (center:
+/// the difference and the bound).
 template <std::floating_point S = double>
 [[nodiscard]] Expected<BasicArc<S>> arc_from_center(
     const BasicVector3<S>& start, const std::type_identity_t<BasicVector3<S>>& end,
@@ -28,7 +33,7 @@ template <std::floating_point S = double>
   if (auto ok = check_point("end", end); !ok) return tl::unexpected(ok.error());
   for (const int axis : {a.first, a.second})
     if (auto ok = check_number("center", center(axis)); !ok) return tl::unexpected(ok.error());
-  if (extra_turns < 0) return fail(ErrorCode::negative, "extra turns", static_cast<S>(extra_turns), S(0));
+  if (auto ok = check_extra_turns(extra_turns); !ok) return tl::unexpected(ok.error());
 
   const S x0 = start(a.first) - center(a.first);
   const S y0 = start(a.second) - center(a.second);

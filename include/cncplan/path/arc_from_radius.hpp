@@ -1,6 +1,11 @@
 // Arc from its end points and radius (the R word): the well-conditioned form of KK22's centre selection.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <numbers>
+#include <string_view>
 #include <type_traits>
 
 #include "cncplan/path/arc.hpp"
@@ -19,9 +24,9 @@ namespace cncplan::path {
 ///
 /// A radius that is half the chord up to rounding (of the relative bound `semicircle`, or of the coordinates'
 /// own digits), or too short within tolerance, gives the semicircle about the midpoint; radius_adjustment()
-/// tells by how much. Errors: not_finite, above_limit (start, end, radius), negative (extra turns),
-/// coincident_points (end: distance and bound), chord_exceeds_diameter (radius as programmed, and half the
-/// chord).
+/// tells by how much. Errors: not_finite, above_limit (start, end, radius, extra turns), negative (extra
+/// turns), coincident_points (end: distance and bound), chord_exceeds_diameter (radius as programmed, and
+/// half the chord).
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicArc<S>> arc_from_radius(
     const std::type_identity_t<BasicVector3<S>>& start, const std::type_identity_t<BasicVector3<S>>& end,
@@ -33,7 +38,7 @@ template <std::floating_point S>
   if (auto ok = check_point("start", start); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_point("end", end); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_number("radius", radius); !ok) return tl::unexpected(ok.error());
-  if (extra_turns < 0) return fail(ErrorCode::negative, "extra turns", static_cast<S>(extra_turns), S(0));
+  if (auto ok = check_extra_turns(extra_turns); !ok) return tl::unexpected(ok.error());
 
   const PlaneAxes a = axes(plane);
   const S dx = end(a.first) - start(a.first);

@@ -1,11 +1,15 @@
 // What an arc's programmed numbers may be off by, and the checks that both forms of arc share.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
+#include <string_view>
 
 #include "cncplan/core/error.hpp"
-#include "cncplan/path/plane_swap.hpp"
+#include "cncplan/core/plane.hpp"
+#include "cncplan/core/vector.hpp"
 
 namespace cncplan::path {
 
@@ -35,6 +39,17 @@ template <std::floating_point S>
   if (std::abs(value) <= largest_coordinate<S>) return {};
   const ErrorCode code = std::isfinite(value) ? ErrorCode::above_limit : ErrorCode::not_finite;
   return tl::unexpected(Error{code, field, static_cast<double>(value), double(largest_coordinate<S>)});
+}
+
+/// More whole turns are refused: far more than are milled, and few enough for `rotation`.
+inline constexpr int most_extra_turns = 1'000'000;
+
+/// Nothing, or `negative` or `above_limit` for the whole turns that are added to an arc.
+[[nodiscard]] inline Expected<void> check_extra_turns(int turns) {
+  if (turns >= 0 && turns <= most_extra_turns) return {};
+  const bool below = turns < 0;
+  return tl::unexpected(Error{below ? ErrorCode::negative : ErrorCode::above_limit, "extra turns",
+                              static_cast<double>(turns), below ? 0.0 : double(most_extra_turns)});
 }
 
 /// Nothing, or the first fault among the point's coordinates.
