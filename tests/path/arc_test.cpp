@@ -191,6 +191,28 @@ TEMPLATE_TEST_CASE("Pieces between turnings are monotone and crossings invert po
   CHECK(crossing.value < 4);
 }
 
+TEMPLATE_TEST_CASE("Beyond its ends an arc has the point and the derivatives of the nearer one", "", float,
+                   double) {
+  using S = TestType;
+  test::Random random;
+  Worst other;
+  for (const test::ArcKind kind : test::arc_kinds)
+    for (int i = 0; i < 20; ++i) {
+      const auto arc = test::random_arc<S>(random, kind);
+      const S end = arc.parameter_end();
+      const auto same = [&](S beyond, S at) {
+        const bool equal = arc.position(beyond) == arc.position(at) &&
+                           arc.derivative(beyond) == arc.derivative(at) &&
+                           arc.second_derivative(beyond) == arc.second_derivative(at);
+        other.see(equal ? 0 : 1, arc);
+      };
+      same(S(-0.5), S(0));
+      same(end + S(0.5), end);
+    }
+  INFO(other.arc);
+  CHECK(other.value == 0);
+}
+
 TEST_CASE("A quarter circle and a helix give the figures of the textbook") {
   const double r = 30;
   const double pi = std::numbers::pi;

@@ -2,19 +2,22 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
 #include <numbers>
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/frame.hpp"
+#include "cncplan/core/plane.hpp"
 #include "cncplan/core/points.hpp"
+#include "cncplan/core/vector.hpp"
 #include "cncplan/path/arc_axis.hpp"
 #include "cncplan/path/box.hpp"
 #include "cncplan/path/circle_crossings.hpp"
 #include "cncplan/path/helix_batch.hpp"
-#include "cncplan/path/plane_swap.hpp"
 #include "cncplan/path/rotation.hpp"
 #include "cncplan/path/spiral.hpp"
 #include "cncplan/path/spiral_crossings.hpp"
@@ -111,7 +114,8 @@ class BasicArc {
 
   /// Position and both derivatives for one sine and cosine.
   [[nodiscard]] CurvePoint<Vector> at(S u) const {
-    const auto [sine, versine] = rotation(std::clamp(u, S(0), angle_));
+    u = std::clamp(u, S(0), angle_);
+    const auto [sine, versine] = rotation(u);
     const S cosine = S(1) - versine;
     const Vector turned = sine * tangential_ - versine * radial_;
     const Vector outward = radial_ + turned;
