@@ -23,6 +23,17 @@ struct LogSpiral {
   }
 };
 
+// A curve without extent, as a path of no parts is.
+struct Spot {
+  using Scalar = double;
+  using Vector = Vector3;
+  double length() const { return 0.0; }
+  double parameter_end() const { return 0.0; }
+  Vector position(double) const { return Vector::Ones(); }
+  Vector derivative(double) const { return Vector::Zero(); }
+  Vector second_derivative(double) const { return Vector::Zero(); }
+};
+
 }  // namespace
 
 TEST_CASE("Lengths and parameters of a logarithmic spiral are the closed forms") {
@@ -49,7 +60,18 @@ TEST_CASE("Lengths outside the curve give its ends, and a start at rest has a pa
   CHECK(table.parameter_at(-1.0) == 0.0);
   CHECK(table.parameter_at(table.length()) == 1.0);
   CHECK(table.parameter_at(1e9) == 1.0);
+  CHECK(table.length_at(-1.0) == 0.0);
+  CHECK(table.length_at(1.0) == table.length());
+  CHECK(table.length_at(2.0) == table.length());
   for (const double s : {1e-9, 1e-6, 1e-3, 1.0})
     CHECK(path::arc_length(from_rest, 0.0, table.parameter_at(s), 64) ==
           Approx(s).epsilon(1e-9).margin(1e-14));
+}
+
+TEST_CASE("A curve whose parameter ends at 0 has a length everywhere, of 0") {
+  const path::ArcLengthTable table{Spot{}};
+  for (const double u : {-1.0, 0.0, 1.0}) {
+    CHECK(table.length_at(u) == 0.0);
+    CHECK(table.parameter_at(u) == 0.0);
+  }
 }

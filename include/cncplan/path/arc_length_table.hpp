@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <limits>
 
@@ -44,10 +43,12 @@ class ArcLengthTable {
     }
   }
 
-  /// Length from the start to u.
+  /// Length from the start to u; outside [0, parameter_end()] that of the nearer end.
   [[nodiscard]] Scalar length_at(Scalar u) const {
-    const auto i = static_cast<std::size_t>(
-        std::clamp(u / parameter_end() * Scalar(Intervals), Scalar(0), Scalar(Intervals - 1)));
+    if (!(u > Scalar(0))) return Scalar(0);
+    if (!(u < parameter_end())) return length();
+    const auto i =
+        static_cast<std::size_t>(std::min(u / parameter_end() * Scalar(Intervals), Scalar(Intervals - 1)));
     return lengths_[i] + arc_length(curve_, parameter(i), u);
   }
 
