@@ -1,5 +1,7 @@
 #include "cncplan/path/b_spline.hpp"
 
+#include <array>
+#include <type_traits>
 #include <vector>
 
 #include "cncplan/path/arc_length_table.hpp"
@@ -9,6 +11,14 @@
 
 using namespace cncplan;
 using path::BasicBSpline;
+
+// Controls are lent: by what outlives the expression.
+using Cubic = path::BSpline<3>;
+static_assert(std::is_constructible_v<Cubic, std::vector<Vector3>&>);
+static_assert(std::is_constructible_v<Cubic, std::span<Vector3>>);
+static_assert(!std::is_constructible_v<Cubic, std::vector<Vector3>>);
+static_assert(!std::is_constructible_v<Cubic, const std::array<Vector3, 4>>);
+static_assert(std::is_constructible_v<Cubic, const Cubic>);
 
 namespace {
 
@@ -88,4 +98,14 @@ TEST_CASE("Control points on a line make a line at constant speed") {
   const path::BSpline<3> spline(controls);
   CHECK(spline.length() == Approx(20.0).epsilon(1e-15));
   CHECK((spline.derivative(1.7) - Vector3(3, 4, 0)).norm() < 1e-14);
+}
+
+TEST_CASE("A B-spline of too few control points is refused") {
+  test::Random random;
+  const auto controls = random_controls<double>(random, 5);
+  const std::span<const Vector3> all(controls);
+  CHECK(Cubic::make({}).error() == Error{ErrorCode::below_limit, "number of control points", 0, 4});
+  CHECK(Cubic::make(all.first(3)).error() == Error{ErrorCode::below_limit, "number of control points", 3, 4});
+  CHECK(Cubic::make(all.first(4))->pieces() == 1);
+  CHECK(Cubic::make(controls)->length() == Cubic(controls).length());
 }

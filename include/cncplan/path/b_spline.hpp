@@ -9,6 +9,7 @@
 #include <span>
 
 #include "cncplan/core/curve_point.hpp"
+#include "cncplan/core/error.hpp"
 #include "cncplan/core/vector.hpp"
 #include "cncplan/path/quadrature.hpp"
 
@@ -76,18 +77,36 @@ struct BSplineWeights {
 /// Pieces between uniform knots, one for every Degree + 1 consecutive control points; the parameter u in
 /// [0, pieces] is the number of the piece plus t. Derivatives are continuous up to the (Degree - 1)-th. It
 /// does not go through its control points; its ends are position(0) and position(parameter_end()). The points
-/// (at least Degree + 1) belong to the caller.
+/// belong to the caller.
 template <std::floating_point S, int Degree>
 class BasicBSpline {
  public:
   using Scalar = S;
   using Vector = BasicVector3<S>;
 
+  static constexpr std::size_t fewest_controls = Degree + 1;
+
+  /// The curve, or `below_limit` for less than `fewest_controls`.
+  [[nodiscard]] static Expected<BasicBSpline> make(std::span<const Vector> controls) {
+    if (controls.size() >= fewest_controls) return BasicBSpline(controls);
+    return tl::unexpected(Error{ErrorCode::below_limit, "number of control points",
+                                static_cast<double>(controls.size()), static_cast<double>(fewest_controls)});
+  }
+
+  /// For controls that are known to be `fewest_controls` or more; `make` asks.
   explicit BasicBSpline(std::span<const Vector> controls) : controls_(controls) {
     constexpr int panels_per_piece = 16;
     for (std::size_t i = 0; i < pieces(); ++i)
       length_ += arc_length(*this, static_cast<S>(i), static_cast<S>(i + 1), panels_per_piece);
   }
+
+  /// A container that ends with the expression cannot lend its points.
+  template <std::convertible_to<std::span<const Vector>> Container>
+    requires(!std::ranges::enable_borrowed_range<Container>)
+  explicit BasicBSpline(const Container&&) = delete;
+  template <std::convertible_to<std::span<const Vector>> Container>
+    requires(!std::ranges::enable_borrowed_range<Container>)
+  static void make(const Container&&) = delete;
 
   [[nodiscard]] std::span<const Vector> controls() const { return controls_; }
   [[nodiscard]] std::size_t pieces() const { return controls_.size() - Degree; }
