@@ -40,13 +40,16 @@ TEMPLATE_TEST_CASE("rows: as long as the polygon of the tip's places", "[rows]",
     const auto any = [&](double low, double high) { return static_cast<S>(random.uniform(low, high)); };
     const Joints from(any(50, 300), any(0, 300), any(-1, 1), any(-6, 6));
     const Joints to(any(50, 300), any(0, 300), any(-1, 1), any(-6, 6));
-    const auto row = tire_mold_row(S(20), from, to);
+    const S aside = i % 2 == 0 ? S(0) : any(-30, 30);
+    const auto row = tire_mold_row(BasicTireMold<S>{.tool_length = S(20), .side_offset = aside}, from, to);
     const auto paths = paths_of(row);
     // the machine written out, in double
     const auto tip = [&](double part) {
       const Eigen::Vector4d q = from.template cast<double>() + part * (to - from).template cast<double>();
       const double r = q[0] + 20 * std::sin(q[2]);
-      return Vector3(r * std::cos(q[3]), r * std::sin(q[3]), q[1] - 20 * std::cos(q[2]));
+      const auto h = static_cast<double>(aside);
+      return Vector3(r * std::cos(q[3]) + h * std::sin(q[3]), r * std::sin(q[3]) - h * std::cos(q[3]),
+                     q[1] - 20 * std::cos(q[2]));
     };
     const auto polygon = [&](int n) {
       double sum = 0;
@@ -103,6 +106,10 @@ TEST_CASE("rows: a tool that turns about its tip shares the row evenly", "[rows]
     CHECK(rates.second.norm() < 1e-12);
   }
   CHECK(sum == Approx(row.even_length));
+  // a table that turns about an axis under the tip moves it by the side offset alone
+  const TireMold beside{.tool_length = 20, .side_offset = 30};
+  CHECK(tire_mold_row<double>(beside, {0, 0, 0, 0}, {0, 0, 0, 1}).even_length == 0.0);
+  CHECK(tire_mold_row<double>(20, {0, 0, 0, 0}, {0, 0, 0, 1}).even_length == Approx(0.1));
   // with no tool, only A
   CHECK(tire_mold_row<double>(0, {100, 0, 0, 0}, {100, 0, 1, 0}).even_length == Approx(0.1));
   // and where R turns round on the way of the tip

@@ -21,11 +21,11 @@ struct BasicTireMoldRow {
   using Scalar = S;
   using Joints = VectorN<S, 4>;
   static constexpr std::size_t joint_count = 4;
-  static constexpr bool keeps_length = false;
 
   Joints start = Joints::Zero();
   Joints way = Joints::Zero();
-  S tool_length{};
+  S tool_length{};  ///< mm, as all of `BasicTireMold`
+  S side_offset{};  ///< mm, likewise
   S even_length{};  ///< mm, > 0 if each part of the row counts the same
 
   [[nodiscard]] S reach(const std::array<S, 3>&) const {
@@ -43,7 +43,7 @@ struct BasicTireMoldRow {
   /// The tip, in the coordinates of the mold.
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> tip(const std::array<T, 3>& point) const {
-    return BasicTireMold<S>{.tool_length = tool_length}.tip(joints(point));
+    return BasicTireMold<S>{.tool_length = tool_length, .side_offset = side_offset}.tip(joints(point));
   }
 
   template <NumberOver<S> T>
@@ -57,16 +57,16 @@ using TireMoldRow = BasicTireMoldRow<double>;
 
 /// The row between two places. The tip stands nearly still where it goes less than a tenth (mm) of what some
 /// joint does (mm or rad); such a row is as long as that tenth, and no shorter than the tip's whole way.
+/// Looks at `most_places` of the row at most, which is work for the planner and not for each cycle.
 template <std::floating_point S>
-[[nodiscard]] BasicTireMoldRow<S> tire_mold_row(S tool_length, const VectorN<S, 4>& start,
+[[nodiscard]] BasicTireMoldRow<S> tire_mold_row(const BasicTireMold<S>& machine, const VectorN<S, 4>& start,
                                                 const VectorN<S, 4>& end) {
   constexpr S least_share = S(0.1);
   constexpr S places_per_turn = S(16);  // looked at in each rad
   constexpr S most_places = S(10000);
-  BasicTireMoldRow<S> row{start, end - start, tool_length, S(0)};
+  BasicTireMoldRow<S> row{start, end - start, machine.tool_length, machine.side_offset, S(0)};
   const S least = least_share * row.way.cwiseAbs().maxCoeff();
   const S places = std::min(places_per_turn * (S(1) + S(1) / row.reach({})), most_places);
-  const BasicTireMold<S> machine{.tool_length = tool_length};
   S slowest = std::numeric_limits<S>::infinity(), travelled(0);
   for (S i(0); i < places; i += S(1)) {
     const VectorN<S, 4> joints = start + row.way * ((i + S(0.5)) / places);
@@ -76,6 +76,13 @@ template <std::floating_point S>
   }
   if (!(slowest > least)) row.even_length = std::max(least, travelled);
   return row;
+}
+
+/// The row on a machine without a side offset.
+template <std::floating_point S>
+[[nodiscard]] BasicTireMoldRow<S> tire_mold_row(S tool_length, const VectorN<S, 4>& start,
+                                                const VectorN<S, 4>& end) {
+  return tire_mold_row(BasicTireMold<S>{.tool_length = tool_length}, start, end);
 }
 
 }  // namespace cncplan::kinematics
