@@ -29,7 +29,11 @@ TEST_CASE("a plain mill refuses tilted tools and leaves no travel", "[cartesian]
   const auto tilted = machine.inverse({{1, 1, -1}, Vector3(0.1, 0, 1).normalized()});
   REQUIRE(!tilted);
   CHECK(tilted.error().code == ErrorCode::unreachable);
-  CHECK(tilted.error().value == Approx(0.1).epsilon(0.01));
+  CHECK(tilted.error().value == Approx(std::atan(0.1)));
+  const auto upside_down = machine.inverse({{1, 1, -1}, -Vector3::UnitZ()});
+  REQUIRE(!upside_down);
+  CHECK(upside_down.error().value == std::numbers::pi);
+  CHECK(upside_down.error().bound < 1e-14);
   const auto low = machine.inverse({{1, -2, -1}, Vector3::UnitZ()});
   CHECK(low.error() == Error{ErrorCode::below_limit, "Y", -2, 0});
   const auto high = machine.inverse({{1, 2, 3}, Vector3::UnitZ()});

@@ -43,6 +43,10 @@ TEST_CASE("polar: the axis and tilted tools are out of reach", "[polar]") {
         Error{ErrorCode::below_limit, "radius", std::sqrt(2.0), 2});
   CHECK(machine.inverse({{0, 0, 0}, Vector3::UnitZ()}).error() ==
         Error{ErrorCode::below_limit, "radius", 0, 2});
-  CHECK(machine.inverse({{9, 9, 0}, Vector3::UnitX()}).error().code == ErrorCode::unreachable);
-  CHECK(machine.inverse({{9, 9, 0}, -Vector3::UnitZ()}).error().code == ErrorCode::unreachable);
+  for (const double angle : {-3.0, -1.0, 0.1, pi / 2, pi}) {
+    const auto refused = machine.inverse({{9, 9, 0}, {std::sin(angle), 0, std::cos(angle)}});
+    REQUIRE(!refused);
+    CHECK(refused.error().code == ErrorCode::unreachable);
+    CHECK(refused.error().value == Approx(std::abs(angle)));
+  }
 }

@@ -2,11 +2,25 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
 
 namespace cncplan::kinematics {
+
+/// Nothing, or `unreachable` for a tool that is not upright, to rounding; the value is its angle from there,
+/// rad.
+template <std::floating_point S>
+[[nodiscard]] Expected<void> upright(const BasicPose<S>& pose) {
+  const S sine = pose.direction.template head<2>().norm();
+  const S cosine = pose.direction.z();
+  constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
+  if (sine <= rounding && cosine > S(0)) return {};
+  return tl::unexpected(Error{ErrorCode::unreachable, "tool direction",
+                              static_cast<double>(std::atan2(sine, cosine)), static_cast<double>(rounding)});
+}
 
 /// Three linear axes X, Y, Z and an upright tool.
 template <std::floating_point S>
@@ -20,12 +34,9 @@ struct BasicCartesian {
     return {joints, BasicVector3<S>::UnitZ()};
   }
 
-  /// Errors: `unreachable` for a tilted tool (the value is its sine), and a joint beyond its travel.
+  /// Errors: those of `upright`, and a joint beyond its travel.
   [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
-    const S tilt = pose.direction.template head<2>().norm();
-    constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
-    if (!(tilt <= rounding && pose.direction.z() > S(0)))
-      return tl::unexpected(Error{ErrorCode::unreachable, "tool direction", static_cast<double>(tilt), 0.0});
+    if (auto ok = upright(pose); !ok) return tl::unexpected(ok.error());
     return within_travel(pose.position, limits, {"X", "Y", "Z"});
   }
 

@@ -3,10 +3,11 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
+#include "cncplan/kinematics/cartesian.hpp"
 
 namespace cncplan::kinematics {
 
@@ -25,13 +26,10 @@ struct BasicPolar {
     return {{r * std::cos(c), r * std::sin(c), z}, BasicVector3<S>::UnitZ()};
   }
 
-  /// C comes in (-pi, pi]. Errors: `unreachable` for a tilted tool (the value is its sine), `below_limit` for
-  /// a radius below the smallest, and a joint beyond its travel.
+  /// C comes in (-pi, pi]. Errors: those of `upright`, `below_limit` for a radius below the smallest, and
+  /// a joint beyond its travel.
   [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
-    const S tilt = pose.direction.template head<2>().norm();
-    constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
-    if (!(tilt <= rounding && pose.direction.z() > S(0)))
-      return tl::unexpected(Error{ErrorCode::unreachable, "tool direction", static_cast<double>(tilt), 0.0});
+    if (auto ok = upright(pose); !ok) return tl::unexpected(ok.error());
     const BasicVector3<S>& p = pose.position;
     const S radius = std::hypot(p.x(), p.y());
     if (!(radius >= smallest_radius))
