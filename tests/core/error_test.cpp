@@ -16,6 +16,10 @@ TEST_CASE("every error code has a sentence of its own") {
   }
 }
 
+// A constant expression reads nothing beyond the table.
+static_assert(!message(ErrorCode::count_).empty());
+static_assert(message(ErrorCode{255}) == message(ErrorCode::count_));
+
 TEST_CASE("limits are refused by name") {
   CHECK(validate(Limits{30.0, 1000.0, 10000.0}));
   CHECK(validate(Limits{30.0, INFINITY, 1.0}));

@@ -4,6 +4,7 @@
 #include <tl/expected.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -41,7 +42,8 @@ enum class ErrorCode : std::uint8_t {
   count_,  // number of codes
 };
 
-/// The one message table. The sentence reads after the field's name: "R: chord exceeds the arc's diameter".
+/// The one message table. The sentence reads after the field's name: "radius: must not be negative". A number
+/// that is no code has a sentence too.
 [[nodiscard]] constexpr std::string_view message(ErrorCode code) {
   constexpr std::array<std::string_view, static_cast<std::size_t>(ErrorCode::count_)> table{
       "is not a finite number",
@@ -72,7 +74,8 @@ enum class ErrorCode : std::uint8_t {
       "is there twice",
       "cannot be reached by the machine",
   };
-  return table[static_cast<std::size_t>(code)];
+  const auto row = static_cast<std::size_t>(code);
+  return row < table.size() ? table[row] : "is at fault for an unknown reason";
 }
 
 /// What went wrong, where and by how much. `field` names a parameter, word or axis and lives for ever (a
