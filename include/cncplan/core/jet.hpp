@@ -47,6 +47,7 @@ struct BasicJet {
             a.second * b.value + S(2) * a.first * b.first + a.value * b.second,
             a.third * b.value + S(3) * (a.second * b.first + a.first * b.second) + a.value * b.third};
   }
+  /// For b != 0.
   friend constexpr BasicJet operator/(const BasicJet& a, const BasicJet& b) {
     const S i = S(1) / b.value;
     return a * b.through(i, -i * i, S(2) * i * i * i, S(-6) * i * i * i * i);
@@ -56,6 +57,7 @@ struct BasicJet {
 
 using Jet = BasicJet<double>;
 
+/// For a > 0; at 0 the derivatives are not finite.
 template <std::floating_point S>
 [[nodiscard]] BasicJet<S> sqrt(const BasicJet<S>& a) {
   const S root = std::sqrt(a.value);
@@ -91,15 +93,5 @@ template <std::floating_point S>
 /// A scalar, or a jet of one.
 template <class T, class S>
 concept NumberOver = std::same_as<T, S> || std::same_as<T, BasicJet<S>>;
-
-/// The number itself, without derivatives.
-template <std::floating_point S>
-[[nodiscard]] constexpr S value_of(S number) {
-  return number;
-}
-template <std::floating_point S>
-[[nodiscard]] constexpr S value_of(const BasicJet<S>& number) {
-  return number.value;
-}
 
 }  // namespace cncplan
