@@ -43,6 +43,16 @@ TEST_CASE("a piece is the line or arc of the spec", "[profile_piece]") {
   CHECK(worst < 2e-12);
 }
 
+TEST_CASE("a tilt begins within half a turn, whatever turns the heading has", "[profile_piece]") {
+  for (const double turns : {-4 * pi, 0.0, 6 * pi}) {
+    const ProfilePiece line{{100, 0}, pi - 0.3 + turns, 0, 0, 50, 0};
+    CHECK(line.tilt(0.0) == Approx(-0.3));
+  }
+  // to the right along R the normal points down: half a turn, either way round
+  CHECK(std::abs(ProfilePiece{{100, 0}, 0, 0, 0, 50, 0}.tilt(0.0)) == pi);
+  CHECK(std::abs(ProfilePiece{{100, 0}, 2 * pi, 0, 0, 50, 0}.tilt(0.0)) == pi);
+}
+
 TEST_CASE("a kink turns the normal and stands still", "[profile_piece]") {
   const ProfilePiece before{{0, 0}, pi, 0, 0, 10, 0};
   const ProfilePiece after{{-10, 0}, pi - 0.5, 0, 0, 10, 10};

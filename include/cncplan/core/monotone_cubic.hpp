@@ -59,8 +59,8 @@ struct MonotoneCubic {
   }
 
   /// `solve` for each of `targets` in place, from one guess near them all. The rounds are those of `solve`,
-  /// for all at once and without branches, so that they are vectorised; what two of them leave open is solved
-  /// one by one.
+  /// for all at once and without branches, so that they are vectorised; if three of them leave a target open,
+  /// all are solved one by one.
   void solve_all(std::span<S> targets, S guess) const {
     constexpr std::size_t chunk = 32;
     for (; targets.size() > chunk; targets = targets.subspan(chunk)) solve_all(targets.first(chunk), guess);

@@ -1,7 +1,6 @@
 // The angle about the table's axis, without a jump.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <numbers>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -10,7 +9,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -251,15 +249,14 @@ class Chainer {
       chain.entities.push_back(entity);
     }
     const std::size_t n = chain.pieces.size();
-    std::vector<BasicVector2<S>> joints(n + 1);
-    for (std::size_t i = 1; i < n; ++i)
-      joints[i] = (chain.pieces[i - 1].end() + chain.pieces[i].start) / S(2);
-    joints[0] = chain.pieces[0].start;
-    joints[n] = chain.pieces[n - 1].end();
-    if (closed) joints[0] = joints[n] = (joints[0] + joints[n]) / S(2);
+    std::vector<BasicVector2<S>> meets(n + 1);
+    for (std::size_t i = 1; i < n; ++i) meets[i] = (chain.pieces[i - 1].end() + chain.pieces[i].start) / S(2);
+    meets[0] = chain.pieces[0].start;
+    meets[n] = chain.pieces[n - 1].end();
+    if (closed) meets[0] = meets[n] = (meets[0] + meets[n]) / S(2);
     S from = S(0);
     for (std::size_t i = 0; i < n; ++i) {
-      chain.pieces[i] = fitted(chain.pieces[i], joints[i], joints[i + 1]);
+      chain.pieces[i] = fitted(chain.pieces[i], meets[i], meets[i + 1]);
       chain.pieces[i].from = from;
       from += chain.pieces[i].length;
     }

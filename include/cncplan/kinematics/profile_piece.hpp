@@ -60,7 +60,7 @@ struct BasicProfilePiece {
     return {sin(angle), -cos(angle)};
   }
 
-  /// Tilt of a tool along the normal after q mm: the normal is (-sin tilt, cos tilt). In [-pi, pi) at the
+  /// Tilt of a tool along the normal after q mm: the normal is (-sin tilt, cos tilt). In [-pi, pi] at the
   /// start, and from there without a jump.
   template <NumberOver<S> T>
   [[nodiscard]] T tilt(const T& q) const {
