@@ -175,3 +175,21 @@ TEST_CASE("Sampling keeps off the heap") {
           room(0, 0) += sum;
         }) == 0);
 }
+
+TEST_CASE("A period that is none leaves the sample at the end") {
+  const path::Arc arc = helix(5, 4);
+  const auto profile = test::rest_to_rest<double>(arc);
+  const auto constant = profile::constant_speed(arc.length(), 30.0);
+  for (const double period : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto samples = interpolate::samples(arc, profile, period);
+    CHECK(samples.size() == 1);
+    int count = 0;
+    for (const auto& sample : samples) {
+      CHECK(sample.time == profile.duration());
+      CHECK((sample.position - Vector3(5, 0, 4)).norm() < 1e-12);
+      ++count;
+    }
+    CHECK(count == 1);
+    CHECK(interpolate::samples(arc, constant, period)[0].time == constant.duration());
+  }
+}

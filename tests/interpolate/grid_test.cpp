@@ -1,5 +1,8 @@
 #include "cncplan/interpolate/grid.hpp"
 
+#include <cstdint>
+#include <limits>
+
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -39,4 +42,29 @@ TEMPLATE_TEST_CASE("The first instant at or after a time is found whatever round
     if (!right) CHECK(right);
   }
   CHECK(right);
+}
+
+TEMPLATE_TEST_CASE("A period that is none leaves the last instant alone", "", float, double) {
+  using S = TestType;
+  constexpr S infinity = std::numeric_limits<S>::infinity();
+  for (const S period : {S(0), S(-0.0), S(-1e-3), -infinity, infinity, std::numeric_limits<S>::quiet_NaN()}) {
+    const BasicGrid<S> grid{period, S(1.5)};
+    CAPTURE(period);
+    CHECK(grid.size() == 1);
+    CHECK(grid.is_last(0));
+    CHECK(grid.time(0) == S(1.5));
+    CHECK(grid.first_at(S(1)) == 0);
+  }
+}
+
+TEMPLATE_TEST_CASE("Counting ends where numbers are no longer told apart", "", float, double) {
+  using S = TestType;
+  constexpr auto most = std::int64_t{1} << std::numeric_limits<S>::digits;
+  for (const S period : {std::numeric_limits<S>::denorm_min(), S(1e-30)}) {
+    const std::int64_t size = BasicGrid<S>{period, S(1e10)}.size();
+    CHECK(size >= most);
+    CHECK(size <= most + 3);
+  }
+  CHECK(BasicGrid<S>{S(1), S(1)}.first_at(S(-1e30)) == 0);
+  CHECK(BasicGrid<S>{S(1), S(1)}.first_at(std::numeric_limits<S>::quiet_NaN()) == 0);
 }

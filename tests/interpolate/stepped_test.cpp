@@ -1,5 +1,7 @@
 #include "cncplan/interpolate/stepped.hpp"
 
+#include <limits>
+
 #include "cncplan/path/b_spline.hpp"
 #include "cncplan/path/bezier.hpp"
 #include "cncplan/profile/constant_speed.hpp"
@@ -120,4 +122,19 @@ TEST_CASE("Feed along Bezier and B-spline stays within a thousandth of the profi
   };
   CHECK(worst_feed(bezier) < 1e-3);
   CHECK(worst_feed(spline) < 1e-3);
+}
+
+TEST_CASE("A period that is none leaves the end point, and no time for the next motion") {
+  const auto arc = half_circle(5.0);
+  const auto profile = test::rest_to_rest<double>(arc);
+  for (const double period : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto samples = taylor_samples(arc, profile, period);
+    int count = 0;
+    for (const auto& sample : samples) {
+      CHECK(sample.time == profile.duration());
+      ++count;
+    }
+    CHECK(count == 1);
+    CHECK(samples.carry() == 0.0);
+  }
 }

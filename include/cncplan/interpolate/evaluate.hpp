@@ -1,7 +1,6 @@
 // The point of a path in space and its motion there, from the state along the path.
 #pragma once
 
-#include <concepts>
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
@@ -34,7 +33,7 @@ void positions_at(const P& path, std::span<const typename P::Scalar> lengths,
   }
 }
 
-/// The frame at a travelled length, and those at up to Frames::capacity of them that ascend.
+/// The frame at a travelled length.
 template <Path P>
 [[nodiscard]] Frame<typename P::Vector> frame_at(const P& path, typename P::Scalar s) {
   if constexpr (requires { path.frame_at(s); }) {
@@ -43,6 +42,8 @@ template <Path P>
     return frame(curve_point(path, path.parameter_at(s)));
   }
 }
+/// The frames at up to `Frames::capacity` travelled lengths, which must ascend: a path's own loop may look
+/// for each from the place of the one before.
 template <Path P>
 void frames_at(const P& path, std::span<const typename P::Scalar> lengths,
                Frames<typename P::Scalar, P::Vector::RowsAtCompileTime>& out) {

@@ -72,7 +72,7 @@ class Samples {
     AllFrames frames_;
   };
 
-  /// `period` > 0, s.
+  /// `period` > 0, s; any other leaves the last sample alone.
   Samples(const P& path, const F& profile, Scalar period)
       : path_(&path), travel_(profile), grid_{period, profile.duration()} {}
 

@@ -1,6 +1,7 @@
 // Samples of a profile along any parametric curve, each parameter stepped from the one before.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,8 @@ namespace cncplan::interpolate {
 
 /// The samples at t = offset + k period while t < duration, and a last one at the duration itself, on the end
 /// point bit for bit. `offset` in [0, period) is the time that the motion before left of its last period: a
-/// first, shorter step. A range; the path must outlive it, and the profile too unless it consists of phases.
+/// first, shorter step. A `period` that is not positive leaves the last sample alone. A range; the path must
+/// outlive it, and the profile too unless it consists of phases.
 template <ParametricPath P, Profile F, StepRule<P> R = Taylor>
   requires std::same_as<typename P::Scalar, typename F::Scalar>
 class Stepped {
@@ -84,7 +86,7 @@ class Stepped {
   /// never; the sample at the duration itself belongs to the next motion where this is zero.
   [[nodiscard]] Scalar carry() const {
     if (!(grid_.end > Scalar(0))) return -grid_.end;
-    return static_cast<Scalar>(grid_.first_at(grid_.end)) * grid_.period - grid_.end;
+    return std::max(Scalar(0), static_cast<Scalar>(grid_.first_at(grid_.end)) * grid_.period - grid_.end);
   }
 
  private:
