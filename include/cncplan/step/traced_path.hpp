@@ -20,7 +20,8 @@ concept MeasuredPath = ParametricPath<P> &&(Path<P> || requires(const P& path, t
 
 /// Any curve as a `SteppablePath`, by bounded root finds: splines, machine axes behind kinematics, measured
 /// curves. No turning is missed as long as the second derivative of an axis changes sign at most once in each
-/// of `pieces` equal parts of the parameter range. The curve must outlive its tracing.
+/// of `pieces` >= 1 equal parts of the parameter range (fewer count as 1). The curve must outlive its
+/// tracing.
 template <MeasuredPath P>
 class TracedPath {
  public:
@@ -28,7 +29,9 @@ class TracedPath {
   using Vector = typename P::Vector;
 
   explicit TracedPath(const P& path, int pieces = 16)
-      : path_(&path), width_(path.parameter_end() / static_cast<Scalar>(pieces)) {}
+      : path_(&path),
+        pieces_(std::max(pieces, 1)),
+        width_(path.parameter_end() / static_cast<Scalar>(pieces_)) {}
 
   [[nodiscard]] Scalar length() const { return path_->length(); }
   [[nodiscard]] Scalar parameter_end() const { return path_->parameter_end(); }
@@ -43,8 +46,9 @@ class TracedPath {
     const Scalar end = parameter_end();
     Scalar sense = rate(axis, u);
     if (sense == Scalar(0)) sense = bend(axis, u);
+    Scalar low = u;
     Scalar number = std::floor(u / width_);
-    for (Scalar low = u; low < end;) {
+    for (int left = pieces_; left >= 0 && low < end; --left) {  // one more than there are: u is on one's end
       number += Scalar(1);
       Scalar high = std::min(number * width_, end);
       if (end - high < width_ / Scalar(2)) high = end;
@@ -118,7 +122,8 @@ class TracedPath {
     };
     const Scalar root = bracketed_root(slowing, low, high, low + (high - low) / Scalar(2));
     Scalar x = root;
-    for (Scalar step = std::numeric_limits<Scalar>::epsilon() * high; x < high; step *= Scalar(2)) {
+    Scalar step = std::numeric_limits<Scalar>::epsilon() * high;
+    for (; step > Scalar(0) && x < high; step *= Scalar(2)) {  // a bit of `high` each round
       if (sense * rate(axis, x) < Scalar(0)) break;
       x = std::min(root + step, high);
     }
@@ -126,6 +131,7 @@ class TracedPath {
   }
 
   const P* path_;
+  int pieces_;
   Scalar width_;
 };
 
