@@ -58,8 +58,20 @@ TEST_CASE("edges that the format cannot hold are refused") {
   CHECK(writer.accept({1e12, 0, 1}).error().code == ErrorCode::above_limit);
   CHECK(writer.accept({NAN, 0, 1}).error().field == "edge time");
   CHECK(writer.accept({3.0, 8, 1}).error() == Error{ErrorCode::above_limit, "edge axis", 8.0, 7.0});
-  CHECK(writer.accept({3.0, -1, 1}).error().field == "edge axis");
+  CHECK(writer.accept({3.0, -1, 1}).error() == Error{ErrorCode::negative, "edge axis", -1.0, 0.0});
+  for (const int direction : {0, 2, 5, -2})
+    CHECK(writer.accept({3.0, 0, direction}).error().field == "edge direction");
   CHECK(bytes.size() == 5 + 5);
+}
+
+TEST_CASE("an edge that rounds to time 0 falls on it, an earlier one is refused") {
+  Bytes bytes;
+  step::BinaryWriter writer(std::back_inserter(bytes));
+  CHECK(writer.accept({-0.6e-9, 0, 1}).error().code == ErrorCode::below_limit);
+  REQUIRE(writer.accept({-0.5e-9, 0, 1}));
+  REQUIRE(writer.accept({0.4e-9, 0, -1}));
+  CHECK(writer.accept({0.3e-9, 0, -1}).error() == Error{ErrorCode::below_limit, "edge time", 0.3e-9, 0.4e-9});
+  CHECK(bytes == Bytes{'C', 'N', 'C', 'S', 1, 0x01, 0x00});
 }
 
 TEST_CASE("a broken stream is an error with its place, never an edge") {

@@ -1,8 +1,14 @@
 // Exact step times against bisection in long double and against step counts known beforehand.
 #include "cncplan/step/crossing.hpp"
 
+#include <array>
+#include <concepts>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <random>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "cncplan/step/merge.hpp"
@@ -349,4 +355,53 @@ TEST_CASE("merged axes come in order of time, and leave their counts") {
   auto later = step::block_edges(path, step::PhaseClock(phases, 5.0), std::array{40.0, 25.0},
                                  std::array<std::int64_t, 2>{}, 6.0);
   CHECK(later.next()->time == 6.0);
+}
+
+TEST_CASE("a traced curve of no pieces is one of a single piece") {
+  const BareSine curve{{1.0, 0.0, 2.0, 0.0}};
+  for (const int pieces : {1, 0, -1, std::numeric_limits<int>::min()})
+    CHECK(step::TracedPath(curve, pieces).next_turning(0, 0.0) ==
+          Approx(std::numbers::pi / 2).epsilon(1e-14));
+  const step::TracedPath finest(curve, 1000);
+  CHECK(finest.next_turning(0, 0.0) == Approx(std::numbers::pi / 2).epsilon(1e-14));
+  CHECK(finest.next_turning(0, 1.6) == 2.0);
+  CHECK(finest.next_turning(0, -1e300) == 2.0);  // outside the curve, but an answer
+}
+
+TEST_CASE("a turning on a curve too short for rounding is found") {
+  // x = u (e - u): turns round in the middle.
+  struct Tiny {
+    using Scalar = double;
+    using Vector = VectorN<double, 1>;
+    [[nodiscard]] double length() const { return parameter_end(); }
+    [[nodiscard]] double parameter_end() const { return 1e-310; }
+    [[nodiscard]] double length_at(double u) const { return u; }
+    [[nodiscard]] Vector position(double u) const { return Vector(u * (parameter_end() - u)); }
+    [[nodiscard]] Vector derivative(double u) const { return Vector(parameter_end() / 2 - u); }
+    [[nodiscard]] Vector second_derivative(double) const { return Vector(-1.0); }
+  };
+  const Tiny curve;
+  CHECK(step::TracedPath(curve, 1).next_turning(0, 0.0) == Approx(0.5e-310));
+}
+
+TEST_CASE("positions beyond all counts and no positions at all are counted within bounds") {
+  constexpr std::int64_t most = std::int64_t{1} << 53;
+  for (const double far : {1e20, 1e300, std::numeric_limits<double>::infinity()}) {
+    CHECK(step::count_at(far) == most);
+    CHECK(step::count_at(-far) == -most);
+  }
+  CHECK(step::count_at(1e20F) == most);
+  CHECK(std::abs(step::count_at(std::numeric_limits<double>::quiet_NaN())) <= most);
+  const auto phases = test::steady(1e15, 1e15);
+  const Straight<double> away{0.0, 1e15}, back{0.0, -1e15};
+  step::StepCursor forward(away, step::PhaseClock(phases), 0, 1e5, most - 2);
+  int edges = 0;
+  while (forward.next() && edges < 10) ++edges;
+  CHECK(edges == 2);
+  step::StepCursor backward(back, step::PhaseClock(phases), 0, 1e5, 2 - most);
+  for (edges = 0; backward.next() && edges < 10;) ++edges;
+  CHECK(edges == 2);
+  const Straight<double> nowhere{0.0, std::numeric_limits<double>::quiet_NaN()};
+  step::StepCursor lost(nowhere, step::PhaseClock(phases), 0, 1e5, 0);
+  CHECK_FALSE(lost.next());
 }

@@ -51,4 +51,16 @@ TEST_CASE("an axis at rest has no timer, a move in no time is refused") {
   CHECK_FALSE(rest->next());
   CHECK(step::AxisTimer<double>::make(0, 1.0, 100.0, 0.0).error() ==
         Error{ErrorCode::not_positive, "duration", 0.0, 0.0});
+  CHECK(step::AxisTimer<double>::make(0, 1.0, 100.0, NAN).error().field == "duration");
+}
+
+TEST_CASE("a timer of more steps than can be counted is refused") {
+  const double most = std::ldexp(1.0, 53);
+  CHECK(step::AxisTimer<double>::make(0, 1e15, 1e5, 1.0).error() ==
+        Error{ErrorCode::above_limit, "steps", 1e20, most});
+  CHECK(step::AxisTimer<double>::make(0, -1e15, 1e5, 1.0).error().value == -1e20);
+  CHECK(step::AxisTimer<double>::make(0, NAN, 100.0, 1.0).error().code == ErrorCode::not_finite);
+  CHECK(step::AxisTimer<double>::make(0, 1.0, INFINITY, 1.0).error().field == "steps");
+  CHECK(step::AxisTimer<float>::make(0, 1e20F, 1e5F, 1.0F).error().bound == most);
+  CHECK(step::AxisTimer<double>::make(0, -most, 1.0, 1.0)->steps() == -(std::int64_t{1} << 53));
 }

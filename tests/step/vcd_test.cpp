@@ -117,7 +117,11 @@ TEST_CASE("many axes have codes of their own, wrong edges are refused") {
   auto writer = step::vcd_writer(out, traces);
   REQUIRE(writer.accept({1e-6, 99, 1}));
   CHECK(writer.accept({2e-6, 100, 1}).error() == Error{ErrorCode::above_limit, "edge axis", 100.0, 99.0});
-  CHECK(writer.accept({0.5e-6, 0, 1}).error().field == "edge time");
+  CHECK(writer.accept({2e-6, -1, 1}).error() == Error{ErrorCode::negative, "edge axis", -1.0, 0.0});
+  CHECK(writer.accept({2e-6, 0, 0}).error().field == "edge direction");
+  CHECK(writer.accept({0.5e-6, 0, 1}).error() == Error{ErrorCode::below_limit, "edge time", 0.5e-6, 1e-6});
+  CHECK(writer.accept({std::nan(""), 0, 1}).error().code == ErrorCode::not_finite);
+  CHECK(writer.accept({1e10, 0, 1}).error() == Error{ErrorCode::above_limit, "edge time", 1e10, 1e9});
   writer.finish();
   CHECK(parse(out.str()).size() == 2);
 }

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string_view>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/vector.hpp"
@@ -71,20 +70,12 @@ class SimulatedBackend {
     }
   }
 
-  /// An edge, no earlier than any before it; else the error names the time. An axis outside [0, N) or a
-  /// direction that is not +-1 is an error too.
+  /// An edge, no earlier than any before it. Errors: those of `check`.
   Expected<void> accept(const BasicEdge<S>& edge) { return accept(edge, edge.time); }
 
   /// The same for an edge that should have come at another time: the difference is its jitter.
   Expected<void> accept(const BasicEdge<S>& edge, S exact_time) {
-    const auto refuse = [](ErrorCode code, std::string_view field, S value, S bound) {
-      return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-    };
-    if (!(edge.time >= time_)) return refuse(ErrorCode::below_limit, "edge time", edge.time, time_);
-    if (edge.axis < 0) return refuse(ErrorCode::negative, "edge axis", S(edge.axis), S(0));
-    if (edge.axis >= N) return refuse(ErrorCode::above_limit, "edge axis", S(edge.axis), S(N - 1));
-    if (edge.direction != 1 && edge.direction != -1)
-      return refuse(ErrorCode::not_supported, "edge direction", S(edge.direction), S(1));
+    if (auto ok = check(edge, N, time_); !ok) return ok;
     Axis& axis = axes_[static_cast<std::size_t>(edge.axis)];
     if (edge.direction == axis.direction) axis.closest = std::min(axis.closest, edge.time - axis.time);
     const S jitter = std::abs(edge.time - exact_time);

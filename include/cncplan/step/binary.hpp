@@ -33,18 +33,13 @@ class BinaryWriter {
     for (const std::uint8_t byte : binary_signature) put(byte);
   }
 
-  /// An edge of axis 0 to 7, no earlier than the one before it or time 0.
+  /// An edge of axis 0 to 7, no earlier than the one before it or time 0 (less half a nanosecond, which falls
+  /// on it). Errors: those of `check`.
   Expected<void> accept(const BasicEdge<double>& edge) {
-    if (edge.axis < 0 || edge.axis >= binary_axes)
-      return tl::unexpected(
-          Error{ErrorCode::above_limit, "edge axis", static_cast<double>(edge.axis), binary_axes - 1.0});
-    constexpr double last = 5e8;  // s, 16 years: what nine bytes hold
-    if (!(edge.time <= last))
-      return tl::unexpected(Error{ErrorCode::above_limit, "edge time", edge.time, last});
-    const std::int64_t time = std::llround(std::max(edge.time, -1.0) * 1e9);
-    if (time < time_)
-      return tl::unexpected(
-          Error{ErrorCode::below_limit, "edge time", edge.time, static_cast<double>(time_) * 1e-9});
+    constexpr double latest = 5e8;  // s, 16 years: what nine bytes hold
+    if (auto ok = check(edge, binary_axes, not_before_, latest); !ok) return ok;
+    not_before_ = edge.time;
+    const std::int64_t time = std::max<std::int64_t>(std::llround(edge.time * 1e9), 0);
     const auto gap = static_cast<std::uint64_t>(time - time_);
     time_ = time;
     std::uint64_t value = gap << 4 | static_cast<std::uint64_t>(edge.axis) << 1 |
@@ -61,7 +56,8 @@ class BinaryWriter {
   void put(std::uint8_t byte) { *out_++ = byte; }
 
   Out out_;
-  std::int64_t time_ = 0;  // ns
+  double not_before_ = -0.5e-9;  // s
+  std::int64_t time_ = 0;        // ns
 };
 
 /// Reads such a stream back. The bytes must outlive the reader.

@@ -25,12 +25,6 @@ concept SteppablePath = ParametricPath<P> && requires(const P& path, int axis, t
   { path.length_at(x) } -> std::same_as<typename P::Scalar>;
 };
 
-/// The step count that belongs to a position in steps; half way between two the one farther from zero.
-template <std::floating_point S>
-[[nodiscard]] std::int64_t count_at(S steps) {
-  return static_cast<std::int64_t>(std::llround(steps));
-}
-
 /// The edges of one axis over one block, in order of time.
 ///
 ///   steps   n+1 |- - - - - - - - - - - - - - - -
@@ -50,8 +44,9 @@ class StepCursor {
   using Scalar = typename P::Scalar;
 
   /// `count` is the axis' count where the block before ended (`count_at` the start for the first),
-  /// `steps_per_unit` > 0. The path must outlive the cursor. `goes_on`: a path follows whose start is this
-  /// one's end but for rounding, as where a curve is cut; a boundary within rounding of it is left to that.
+  /// `steps_per_unit` > 0; counts stay within +-`most_steps`. The path must outlive the cursor. `goes_on`: a
+  /// path follows whose start is this one's end but for rounding, as where a curve is cut; a boundary within
+  /// rounding of it is left to that.
   StepCursor(const P& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count,
              bool goes_on = false)
       : path_(&path),
@@ -120,7 +115,7 @@ class StepCursor {
                              ? rounding * std::max(std::abs(origin_), std::abs(target_))
                              : Scalar(0);
     const Scalar reach = std::ceil(static_cast<Scalar>(direction_) * target_ - Scalar(0.5) - slack);
-    left_ = std::max<std::int64_t>(static_cast<std::int64_t>(reach) - direction_ * count_, 0);
+    left_ = std::max<std::int64_t>(count_at(reach) - direction_ * count_, 0);
     return true;
   }
 

@@ -79,7 +79,7 @@ template <std::floating_point S>
 /// Steps that make up for the backlash each time the axis turns round.
 template <std::floating_point S>
 [[nodiscard]] std::int64_t backlash_steps(const BasicDrive<S>& drive) {
-  return static_cast<std::int64_t>(std::llround(drive.backlash * drive.steps_per_unit));
+  return count_at(drive.backlash * drive.steps_per_unit);
 }
 
 /// A broken rule: `error` has its name, the figure found and the figure allowed.

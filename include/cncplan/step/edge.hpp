@@ -1,8 +1,15 @@
-// A step edge: one pulse of one axis at an exact time.
+// A step edge: one pulse of one axis at an exact time; its check, and the counts that edges add up to.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <string_view>
+
+#include "cncplan/core/error.hpp"
 
 namespace cncplan::step {
 
@@ -17,6 +24,35 @@ struct BasicEdge {
 };
 
 using Edge = BasicEdge<double>;
+
+/// What backends ask of an edge: a time in [not_before, latest] s, an axis in [0, axes), a direction of +-1.
+/// The error names the first of these that is another.
+template <std::floating_point S>
+[[nodiscard]] Expected<void> check(const BasicEdge<S>& edge, int axes, S not_before,
+                                   S latest = std::numeric_limits<S>::max()) {
+  const auto refuse = [](ErrorCode code, std::string_view field, S value, S bound) {
+    return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
+  };
+  if (std::isnan(edge.time)) return refuse(ErrorCode::not_finite, "edge time", edge.time, S(0));
+  if (edge.time < not_before) return refuse(ErrorCode::below_limit, "edge time", edge.time, not_before);
+  if (edge.time > latest) return refuse(ErrorCode::above_limit, "edge time", edge.time, latest);
+  if (edge.axis < 0) return refuse(ErrorCode::negative, "edge axis", S(edge.axis), S(0));
+  if (edge.axis >= axes) return refuse(ErrorCode::above_limit, "edge axis", S(edge.axis), S(axes - 1));
+  if (edge.direction != 1 && edge.direction != -1)
+    return refuse(ErrorCode::not_supported, "edge direction", S(edge.direction), S(1));
+  return {};
+}
+
+/// Most steps that are counted either way, 2^53: the doubles beyond are whole numbers of steps apart.
+inline constexpr std::int64_t most_steps = std::int64_t{1} << 53;
+
+/// The step count that belongs to a position in steps; half way between two the one farther from zero. Within
+/// +-`most_steps`, whatever the position.
+template <std::floating_point S>
+[[nodiscard]] std::int64_t count_at(S steps) {
+  constexpr S most = static_cast<S>(most_steps);
+  return static_cast<std::int64_t>(std::llround(std::min(std::max(-most, steps), most)));
+}
 
 /// Anything that yields edges in order of time, and then none for ever.
 template <class E>

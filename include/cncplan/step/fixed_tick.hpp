@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <optional>
 
@@ -29,7 +28,8 @@ class FixedTicks {
  public:
   using Scalar = typename E::Scalar;
 
-  /// Ticks per second, > 0. Before their first step all directions are positive.
+  /// Ticks per second, > 0; ticks count to +-`most_steps`. Before their first step all directions are
+  /// positive.
   FixedTicks(const E& source, Scalar frequency) : source_(source), frequency_(frequency) { pull(); }
 
   /// The next tick with a step, none behind the last. An error where an axis would step twice in one tick:
@@ -65,7 +65,7 @@ class FixedTicks {
 
  private:
   [[nodiscard]] std::int64_t index_of(const BasicEdge<Scalar>& edge) const {
-    return static_cast<std::int64_t>(std::llround(edge.time * frequency_));
+    return count_at(edge.time * frequency_);
   }
   void pull() { edge_ = source_.next(); }
 

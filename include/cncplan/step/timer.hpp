@@ -26,9 +26,8 @@ template <std::floating_point S>
   return steps_per_turn / circumference;
 }
 
-/// The angle of a chord of length `chord` (YO04: the sensitivity) in a circle, rad; chord and radius in mm, 0
-/// < chord
-/// <= 2 radius.
+/// The angle of a chord of length `chord` (YO04: the sensitivity) in a circle, rad; chord and radius in mm,
+/// 0 < chord <= 2 radius.
 template <std::floating_point S>
 [[nodiscard]] S chord_angle(S chord, S radius) {
   return S(2) * std::asin(chord / (S(2) * radius));
@@ -48,11 +47,17 @@ class AxisTimer {
  public:
   using Scalar = S;
 
-  /// From `start` (s), `distance` (signed, mm or rad) at `steps_per_unit`, within `duration` (s). An error
-  /// where the duration is not positive though there are steps to take.
+  /// From `start` (s), `distance` (signed, mm or rad) at `steps_per_unit`, within `duration` (s). Errors: a
+  /// number of steps that is not finite or beyond `most_steps`, a duration that is not positive though there
+  /// are steps to take.
   [[nodiscard]] static Expected<AxisTimer> make(int axis, S distance, S steps_per_unit, S duration,
                                                 S start = S(0)) {
-    const std::int64_t steps = std::llround(distance * steps_per_unit);
+    const S exact = distance * steps_per_unit;
+    constexpr S most = static_cast<S>(most_steps);
+    if (!(std::abs(exact) <= most))
+      return tl::unexpected(Error{std::isfinite(exact) ? ErrorCode::above_limit : ErrorCode::not_finite,
+                                  "steps", static_cast<double>(exact), static_cast<double>(most)});
+    const std::int64_t steps = count_at(exact);
     if (steps != 0 && !(duration > S(0)))
       return tl::unexpected(Error{ErrorCode::not_positive, "duration", static_cast<double>(duration), 0.0});
     return AxisTimer(axis, steps, duration, start);

@@ -50,16 +50,11 @@ class VcdWriter {
     put("$end\n");
   }
 
-  /// An edge, in order of time; axes are those of the traces.
+  /// An edge, in order of time, of one of the traces' axes. Errors: those of `check`.
   Expected<void> accept(const BasicEdge<double>& edge) {
-    if (edge.axis < 0 || static_cast<std::size_t>(edge.axis) >= axes_.size())
-      return tl::unexpected(Error{ErrorCode::above_limit, "edge axis", static_cast<double>(edge.axis),
-                                  static_cast<double>(axes_.size()) - 1.0});
+    if (auto ok = check(edge, static_cast<int>(axes_.size()), not_before_, latest); !ok) return ok;
+    not_before_ = edge.time;
     const std::int64_t time = std::max<std::int64_t>(nanoseconds(edge.time), 0);
-    if (time < time_)
-      return tl::unexpected(
-          Error{ErrorCode::below_limit, "edge time", edge.time, static_cast<double>(time_) * 1e-9});
-    time_ = time;
     const auto index = static_cast<std::size_t>(edge.axis);
     Axis& axis = axes_[index];
     const auto still_high = std::find_if(held_.begin(), held_.end(), [&](const Change& change) {
@@ -99,7 +94,11 @@ class VcdWriter {
     bool level{};
   };
 
-  static std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+  static constexpr double latest = 1e9;  // s, 31 years: sums of two times fit 63 bits of ns
+
+  static std::int64_t nanoseconds(double seconds) {
+    return std::llround(std::min(std::max(-latest, seconds), latest) * 1e9);
+  }
   static std::size_t step_signal(std::size_t axis) { return 2 * axis; }
   static std::size_t direction_signal(std::size_t axis) { return 2 * axis + 1; }
 
@@ -141,7 +140,7 @@ class VcdWriter {
   std::vector<Axis> axes_;
   std::vector<Change> held_;
   std::int64_t lead_ = 0;
-  std::int64_t time_ = 0;
+  double not_before_ = -std::numeric_limits<double>::infinity();
   std::int64_t written_ = 0;
 };
 
