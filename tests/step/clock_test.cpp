@@ -2,6 +2,7 @@
 #include "cncplan/step/clock.hpp"
 
 #include <array>
+#include <concepts>
 #include <span>
 #include <vector>
 
@@ -82,3 +83,6 @@ TEST_CASE("a clock without phases stands at its start") {
   clock.lengths_to_times(values);
   CHECK(values == std::array{3.0, 3.0});
 }
+
+static_assert(!std::constructible_from<step::ProfileClock<FourPhases>, FourPhases, double>);
+static_assert(std::constructible_from<step::ProfileClock<FourPhases>, const FourPhases&, double>);

@@ -405,3 +405,18 @@ TEST_CASE("positions beyond all counts and no positions at all are counted withi
   step::StepCursor lost(nowhere, step::PhaseClock(phases), 0, 1e5, 0);
   CHECK_FALSE(lost.next());
 }
+
+// What a clock or a cursor would only point to must stay.
+static_assert(!std::constructible_from<step::PhaseClock<double>, std::array<Phase, 7>>);
+static_assert(!std::constructible_from<step::PhaseClock<double>, std::vector<Phase>, double>);
+static_assert(std::constructible_from<step::PhaseClock<double>, std::span<const Phase>>);
+static_assert(std::constructible_from<step::PhaseClock<double>, const std::array<Phase, 7>&, double>);
+static_assert(!std::constructible_from<step::TracedPath<BareSine>, BareSine, int>);
+static_assert(std::constructible_from<step::TracedPath<BareSine>, const BareSine&, int>);
+static_assert(!std::constructible_from<step::StepCursor<Straight<double>, step::PhaseClock<double>>,
+                                       Straight<double>, step::PhaseClock<double>, int, double, int>);
+template <class P>
+constexpr bool has_edges = requires(P&& path, const step::PhaseClock<double>& clock) {
+  step::block_edges(std::forward<P>(path), clock, std::array{1.0});
+};
+static_assert(has_edges<const Straight<double>&> && !has_edges<Straight<double>>);

@@ -117,5 +117,11 @@ template <Path P, Profile F>
 [[nodiscard]] auto samples(const P& path, const F& profile, typename P::Scalar period) {
   return Samples<P, F>(path, profile, period);
 }
+/// A path, or a profile not of phases, that would be gone before the first sample.
+template <Path P, Profile F>
+void samples(const P&& path, const F& profile, typename P::Scalar period) = delete;
+template <Path P, Profile F>
+  requires(!PhasedProfile<F>)
+void samples(const P& path, const F&& profile, typename P::Scalar period) = delete;
 
 }  // namespace cncplan::interpolate

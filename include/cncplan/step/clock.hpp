@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -20,6 +19,13 @@ concept Clock = std::floating_point<typename C::Scalar> &&
   clock.lengths_to_times(lengths);
 };
 
+/// What its elements go with, as those of a span do not.
+template <class T>
+concept Container = requires {
+  typename T::value_type;
+}
+&&!requires { typename T::element_type; };
+
 /// Walks along the constant-jerk phases of a profile; each time is found from the one before it. The phases
 /// belong to the caller and must outlive the clock.
 template <std::floating_point S>
@@ -32,6 +38,9 @@ class PhaseClock {
       : phases_(phases), start_(start), origin_(origin) {
     if (!phases_.empty()) enter(0);
   }
+  /// Phases that would be gone before the first time is asked for.
+  template <Container Phases>
+  explicit PhaseClock(const Phases&& phases, S start = S(0), S origin = S(0)) = delete;
 
   /// The first times at which the motion is there. Lengths that rounding puts outside the phases fall on
   /// their ends.
@@ -82,13 +91,14 @@ PhaseClock(const Phases&, S) -> PhaseClock<S>;
 template <class Phases, std::floating_point S>
 PhaseClock(const Phases&, S, S) -> PhaseClock<S>;
 
-/// Any profile as a clock that starts at a given time.
+/// Any profile as a clock that starts at a given time. The profile must outlive the clock.
 template <Profile F>
 class ProfileClock {
  public:
   using Scalar = typename F::Scalar;
 
   explicit ProfileClock(const F& profile, Scalar start = Scalar(0)) : profile_(&profile), start_(start) {}
+  explicit ProfileClock(const F&& profile, Scalar start = Scalar(0)) = delete;
 
   void lengths_to_times(std::span<Scalar> lengths) const {
     for (Scalar& value : lengths) value = start_ + profile_->time_at(value);

@@ -57,6 +57,8 @@ class StepCursor {
         goes_on_(goes_on),
         parameter_end_(path.parameter_end()),
         target_(steps_at(Scalar(0))) {}
+  StepCursor(const P&& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count,
+             bool goes_on = false) = delete;
 
   /// The next edge, until the block's end.
   [[nodiscard]] std::optional<BasicEdge<Scalar>> next() {

@@ -81,6 +81,12 @@ template <SteppablePath P, Clock C, std::size_t N>
   }
   (std::make_index_sequence<N>());
 }
+/// A path that would be gone before the first edge.
+template <SteppablePath P, Clock C, std::size_t N>
+  requires std::same_as<typename P::Scalar, typename C::Scalar>
+void block_edges(const P&& path, const C& clock, const std::array<typename P::Scalar, N>& steps_per_unit,
+                 const std::array<std::int64_t, N>& counts = {},
+                 typename P::Scalar earliest = -std::numeric_limits<typename P::Scalar>::infinity()) = delete;
 
 /// The counts with which a block that has been read to its end leaves the axes.
 template <SteppablePath P, Clock C, std::size_t N>

@@ -32,6 +32,7 @@ class TracedPath {
       : path_(&path),
         pieces_(std::max(pieces, 1)),
         width_(path.parameter_end() / static_cast<Scalar>(pieces_)) {}
+  explicit TracedPath(const P&& path, int pieces = 16) = delete;
 
   [[nodiscard]] Scalar length() const { return path_->length(); }
   [[nodiscard]] Scalar parameter_end() const { return path_->parameter_end(); }
