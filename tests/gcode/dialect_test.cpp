@@ -1,5 +1,6 @@
 #include "cncplan/gcode/dialect.hpp"
 
+#include "cncplan/gcode/writer.hpp"
 #include "gcode/support.hpp"
 #include "support/catch.hpp"
 
@@ -87,4 +88,25 @@ TEST_CASE("a letter passes through with any number") {
   std::string many;
   for (int i = 0; i < 17; ++i) many += "D1";
   CHECK(test::read(many, dialect).error == "1:33: number of words to pass through is above the limit 16");
+}
+
+TEST_CASE("a reader or writer of an invalid dialect takes nothing") {
+  for (const auto& [letters, error] : {std::pair{"XYZABCU", "1:1: number of axes is above the limit 6"},
+                                       std::pair{"x", "1:1: axis letter: unknown character"}}) {
+    Dialect dialect;
+    dialect.axes.clear();
+    for (const char letter : std::string_view(letters)) dialect.axes.push_back({letter, AxisKind::linear});
+    CHECK(test::read("", dialect).error.empty());
+    CHECK(test::read("G0 X1\n", dialect).error == error);
+    gcode::Reader reader(dialect);
+    gcode::Item item;
+    CHECK_FALSE(reader.read_line("G0 X1", &item));
+    CHECK(reader.read_line("", &item).error().line == 2);
+    gcode::Writer writer(dialect);
+    std::string text;
+    for (const gcode::Item& refused : {gcode::Item(gcode::Motion()), gcode::Item(gcode::Stop{30, 1})})
+      CHECK(writer.write(refused, std::back_inserter(text)).error() == gcode::validate(dialect).error());
+    writer.finish(std::back_inserter(text));
+    CHECK(text.empty());
+  }
 }

@@ -196,7 +196,7 @@ TEST_CASE("words that belong together stay on one line") {
 TEST_CASE("what cannot be written is refused") {
   gcode::Writer writer;
   std::string text;
-  const auto error = [&](Motion motion) { return writer.write(motion, std::back_inserter(text)).error(); };
+  const auto error = [&](const Item& item) { return writer.write(item, std::back_inserter(text)).error(); };
   Motion motion;
   motion.end[1] = NAN;
   CHECK(error(motion).code == ErrorCode::not_finite);
@@ -212,6 +212,11 @@ TEST_CASE("what cannot be written is refused") {
   CHECK(error(motion).field == "F");
   motion.feed = 2e13;  // more than 1e15 mm/min
   CHECK(error(motion).code == ErrorCode::above_limit);
+  CHECK(error(gcode::Dwell{NAN, 1}).code == ErrorCode::not_finite);
+  CHECK(error(gcode::Dwell{INFINITY, 1}).field == "P");
+  CHECK(error(gcode::Dwell{-1.0, 1}) == Error{ErrorCode::negative, "P", -1.0, 0.0});
+  CHECK(error(gcode::Word{'S', INFINITY, 1, 1}) == Error{ErrorCode::not_finite, "S", INFINITY, 1e15});
+  CHECK(error(gcode::Word{'O', 1e16, 1, 1}).code == ErrorCode::above_limit);
   CHECK(text.empty());
 }
 

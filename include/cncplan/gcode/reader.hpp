@@ -36,8 +36,11 @@ inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 ///       if (auto end = reader.read_line(line, std::back_inserter(items)); !end) return end.error();
 class Reader {
  public:
-  /// The dialect should be one that `validate` accepts.
-  explicit Reader(const Dialect& dialect = {}) : dialect_(dialect), alphabet_(dialect) {
+  /// With a dialect that `validate` refuses every line is in error, with what is wrong with the dialect.
+  explicit Reader(const Dialect& dialect = {})
+      : readable_(validate(dialect).map([](const Dialect&) {})),
+        dialect_(readable_ ? dialect : Dialect{}),
+        alphabet_(dialect_) {
     offset_ = dialect_.work_offsets[0];
     for (std::size_t i = 0; i < axis_count(); ++i) current_[i] -= offset_[i];
   }
@@ -49,6 +52,7 @@ class Reader {
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
     ++line_;
+    if (!readable_) return tl::unexpected(Diagnostic{readable_.error(), line_, 1});
     if (finished_) return out;
     auto end = read(text, std::move(out));
     if (!end) end.error().line = line_;
@@ -335,6 +339,7 @@ class Reader {
     }
   }
 
+  Expected<void> readable_;
   Dialect dialect_;
   Alphabet alphabet_;
   Block block_;

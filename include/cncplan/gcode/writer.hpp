@@ -60,8 +60,9 @@ template <std::invocable<double> Read>
 ///     writer.finish(std::ostreambuf_iterator<char>(stream));
 class Writer {
  public:
-  /// For readers of the same dialect.
-  explicit Writer(Dialect dialect = {}) : dialect_(std::move(dialect)) {
+  /// For readers of the same dialect. With one that `validate` refuses every item is in error.
+  explicit Writer(const Dialect& dialect = {})
+      : writable_(validate(dialect).map([](const Dialect&) {})), dialect_(writable_ ? dialect : Dialect{}) {
     // A system with its origin at the machine's leaves the offset to G43.1 alone, and so exact.
     const auto& systems = dialect_.work_offsets;
     const auto zero = std::find(systems.begin(), systems.end(), Position{});
@@ -71,18 +72,16 @@ class Writer {
   }
 
   /// Writes one item and returns the iterator behind it. Errors, with nothing written: a number that is not
-  /// finite, or beyond `max_number`; a motion that does not begin where the last one ended.
+  /// finite, or beyond `max_number`; a dwell of less than no time; a motion that does not begin where the
+  /// last one ended.
   template <std::output_iterator<char> Out>
   Expected<Out> write(const Item& item, Out out) {
+    if (auto ok = check(item); !ok) return tl::unexpected(ok.error());
+    Pen pen{std::move(out)};
     if (const auto* motion = std::get_if<Motion>(&item)) {
-      if (auto ok = check(*motion); !ok) return tl::unexpected(ok.error());
-      Pen pen{std::move(out)};
       begin(pen);
       move(*motion, pen);
-      return std::move(pen.out);
-    }
-    Pen pen{std::move(out)};
-    if (const auto* word = std::get_if<Word>(&item)) {
+    } else if (const auto* word = std::get_if<Word>(&item)) {
       pass(*word, pen);
     } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
       begin(pen);
@@ -123,12 +122,23 @@ class Writer {
     return dialect_.axes[axis].kind == AxisKind::linear ? 1.0 : radians_per_degree;
   }
 
+  [[nodiscard]] static Expected<void> number(double value, std::string_view field) {
+    if (std::abs(value) <= max_number) return {};
+    const ErrorCode code = std::isfinite(value) ? ErrorCode::above_limit : ErrorCode::not_finite;
+    return tl::unexpected(Error{code, field, value, max_number});
+  }
+
+  [[nodiscard]] Expected<void> check(const Item& item) const {
+    if (!writable_) return writable_;
+    if (const auto* motion = std::get_if<Motion>(&item)) return check(*motion);
+    if (const auto* word = std::get_if<Word>(&item)) return number(word->number, name(word->letter));
+    const auto* dwell = std::get_if<Dwell>(&item);
+    if (dwell == nullptr) return {};
+    if (dwell->seconds < 0.0) return tl::unexpected(Error{ErrorCode::negative, "P", dwell->seconds, 0.0});
+    return number(dwell->seconds, "P");
+  }
+
   [[nodiscard]] Expected<void> check(const Motion& motion) const {
-    const auto number = [](double value, std::string_view field) -> Expected<void> {
-      if (std::abs(value) <= max_number) return {};
-      const ErrorCode code = std::isfinite(value) ? ErrorCode::above_limit : ErrorCode::not_finite;
-      return tl::unexpected(Error{code, field, value, max_number});
-    };
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const std::string_view axis = name(dialect_.axes[i].letter);
       if (auto ok = number(motion.end[i] / unit(i), axis); !ok) return ok;
@@ -264,6 +274,7 @@ class Writer {
     put(pen, "F", metric.number);
   }
 
+  Expected<void> writable_;
   Dialect dialect_;
   Modal modal_;
   Position current_{};
