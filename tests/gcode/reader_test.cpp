@@ -108,7 +108,10 @@ TEST_CASE("inverse time") {
   CHECK(read("G93 G1 X1 F30\nX2").error == "2:1: F: a required word is missing");
   CHECK(read("G93 G0 X1\nX2").error.empty());
   CHECK(read("G93 F10").error == "1:5: F is used by nothing on this line");
-  CHECK(read("G1 X1 F60\nG93 X2 F30\nG94 X3").error == "3:5: F must be greater than zero");
+  CHECK(read("G1 X1 F60\nG93 X2 F30\nG94 X3").error == "3:5: F: a required word is missing");
+  CHECK(read("G1 X1 F60\nG93\nG94\nX3").error == "4:1: F: a required word is missing");
+  CHECK(read("G93\nG94 F0\nG1 X3").error == "3:1: F must be greater than zero");
+  CHECK(*read("G93\nG94\nF60\nG1 X3").motions()[0].feed == 1.0);
   CHECK(*read("G93 G20 G1 X1 F60\nG94 X2 F60").motions()[1].feed == 25.4);
 }
 

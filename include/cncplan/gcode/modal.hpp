@@ -115,6 +115,7 @@ struct Modal {
   double millimetres_per_unit = 1.0;  ///< 25.4 under G20
   FeedMode feed_mode = FeedMode::per_minute;
   std::optional<double> feed{};  ///< mm/s; under inverse time this line's, 1/s
+  bool needs_feed = false;       ///< no feed move without an F on the way: a feed does not outlive its mode
   bool exact_stop = false;
 
   friend bool operator==(const Modal&, const Modal&) = default;

@@ -59,15 +59,14 @@ struct Alphabet {
   if (block.has(Group::feed_mode)) {
     const FeedMode mode =
         block.code(Group::feed_mode) == code(93) ? FeedMode::inverse_time : FeedMode::per_minute;
-    if (mode != modal.feed_mode)
-      modal.feed = 0.0;  // a feed does not outlive its mode: the next move must name one
+    modal.needs_feed = modal.needs_feed || mode != modal.feed_mode;
     modal.feed_mode = mode;
   }
-  if (modal.feed_mode == FeedMode::inverse_time) {
-    modal.feed = block.has('F') ? block.number('F') / 60.0 : 0.0;
-  } else if (block.has('F')) {
-    modal.feed = block.number('F') * modal.millimetres_per_unit / 60.0;
-  }
+  const bool inverse_time = modal.feed_mode == FeedMode::inverse_time;
+  modal.needs_feed = (modal.needs_feed || inverse_time) && !block.has('F');
+  if (modal.needs_feed) modal.feed.reset();
+  if (block.has('F'))
+    modal.feed = block.number('F') * (inverse_time ? 1.0 : modal.millimetres_per_unit) / 60.0;
   return modal;
 }
 
@@ -128,7 +127,7 @@ using Check = Expected<void, Diagnostic>;
 
 /// A feed where a feed move needs one.
 [[nodiscard]] inline Check check_feed(const Block& block, const Modal& modal, int column) {
-  if (modal.feed_mode == FeedMode::inverse_time && !block.has('F')) return missing("F", column);
+  if (modal.needs_feed) return missing("F", column);
   if (modal.feed && *modal.feed <= 0.0)
     return tl::unexpected(Diagnostic{
         {ErrorCode::not_positive, "F", *modal.feed, 0.0}, 0, block.has('F') ? block.column('F') : column});
