@@ -12,7 +12,7 @@ namespace cncplan::gcode {
 struct Diagnostic {
   Error error;
   int line{};    ///< counted from 1
-  int column{};  ///< in bytes, counted from 1
+  int column{};  ///< in bytes, counted from 1; a byte order mark is before the first, as editors have it
   std::string_view
       other{};  ///< letter of the word that excludes this one, where words do; its number is `error.bound`
 
