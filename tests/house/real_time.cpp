@@ -2,6 +2,7 @@
 // each job's heap allocations are counted. The results are checked elsewhere; here they are only kept from
 // the optimiser.
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <string_view>
 
@@ -13,6 +14,8 @@
 #include "cncplan/junction/minimum.hpp"
 #include "cncplan/junction/published_table.hpp"
 #include "cncplan/junction/tangent_step.hpp"
+#include "cncplan/kinematics/polar.hpp"
+#include "cncplan/kinematics/tire_mold_row.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
@@ -23,7 +26,11 @@
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/step/backend.hpp"
+#include "cncplan/step/backlash.hpp"
+#include "cncplan/step/binary.hpp"
+#include "cncplan/step/fixed_tick.hpp"
 #include "cncplan/step/merge.hpp"
+#include "cncplan/step/traced_path.hpp"
 #include "support/no_heap.hpp"
 
 using namespace cncplan;
@@ -106,6 +113,45 @@ void step_a_block() {
   sink = static_cast<double>(step::counts(edges)[0]);
 }
 
+void step_a_traced_curve() {
+  const path::Arc arc = helix();
+  const auto phases = profile::seven_phase(arc.length(), {.start = 0.0, .end = 0.0}, limits)->phases();
+  const step::TracedPath traced(arc);
+  const step::PhaseClock clock(phases);
+  const auto axis = [&](int i) {
+    return step::BacklashCompensation(step::StepCursor(traced, clock, i, 400.0, 0), 3, 0.0);
+  };
+  const auto edges = [&] { return step::Merge(std::array{axis(0), axis(1), axis(2)}, 0.0); };
+
+  step::FixedTicks ticks(edges(), 1e6);
+  for (auto tick = ticks.next(); tick && *tick; tick = ticks.next()) sink = (*tick)->steps;
+
+  std::array<std::uint8_t, 65536> bytes;
+  step::BinaryWriter writer(bytes.data());
+  auto source = edges();
+  sink = step::send(source, writer).has_value() ? static_cast<double>(writer.finish() - bytes.data()) : 0.0;
+}
+
+// Joints of a point, and of one that moves, with their derivatives.
+template <class C>
+double by_chart(const C& chart) {
+  double sum = 0.0;
+  for (int i = 0; i <= 100; ++i) {
+    const double u = i / 100.0;
+    for (const double joint : chart.joints(std::array{u, 1.0, 2.0})) sum += joint;
+    for (const Jet& joint : chart.joints(std::array{Jet(u, 1.0, 0.0, 0.0), Jet(1.0), Jet(2.0)}))
+      sum += joint.first + joint.third;
+  }
+  return sum;
+}
+
+void map_by_charts() {
+  const kinematics::TireMold machine{.tool_length = 134.0};
+  const auto row = kinematics::tire_mold_row(machine, {244.0, 134.0, 0.0, 0.1}, {245.0, 133.0, 0.2, 0.5});
+  sink = by_chart(kinematics::PolarChart{kinematics::Azimuth(0.0, 1.0, 0.0)}) + by_chart(row) +
+         row.measured(std::array{Jet(0.5, 1.0, 0.0, 0.0), Jet(), Jet()})[0].first;
+}
+
 // G-code to blocks, and each block with its caps to `take`.
 template <class Take>
 void make_blocks(gcode::Reader& program, const Take& take) {
@@ -165,7 +211,9 @@ constexpr std::array jobs{
     Job{"interpolate: the samples of a helix", sample_a_block},
     Job{"plan: G-code through look-ahead over a window", stream_a_program},
     Job{"plan: G-code played, tick by tick", play_a_program},
+    Job{"kinematics: joints of points and of motions, by charts", map_by_charts},
     Job{"step: the edges of a helix, simulated", step_a_block},
+    Job{"step: a curve traced, backlash made up, as ticks and bytes", step_a_traced_curve},
 };
 
 }  // namespace
