@@ -306,6 +306,27 @@ TEST_CASE("a dwell is waited for") {
   CHECK(ticks * 1e-3 == Approx(2 * move + 0.5).margin(2e-3));
 }
 
+TEST_CASE("a hold on the way down to a dwell does not swallow it") {
+  for (const double before_end : {0.02, 0.05, 0.08}) {
+    CAPTURE(before_end);
+    Rig rig(8);
+    auto block = straight(10.0);
+    block.caps.pause = 0.5;
+    rig.player.push(block);
+    rig.player.push(straight(1.0));
+    const double move = profile::seven_phase(10.0, {0.0, 0.0}, limits)->duration();
+    run(rig.player, move - before_end);
+    rig.player.hold();
+    run(rig.player, before_end + 0.4);
+    CHECK(rig.player.rested() == 0.0);
+    rig.player.resume();
+    CHECK(run(rig.player, 0.09).at_rest);
+    CHECK_FALSE(run(rig.player, 0.02).at_rest);
+    until_rest(rig.player);
+    CHECK(rig.player.finished());
+  }
+}
+
 TEST_CASE("ticks allocate nothing") {
   test::Random random;
   const auto program = test::random_played(random, 50).blocks;

@@ -318,11 +318,13 @@ class BasicPlayer {
   // The leg is over: the next one, or rest. True if it has planned, where that is allowed.
   bool next_leg(bool may_plan) {
     const BasicState<S> end = leg_.state();
+    const BasicSpot<S> from = at_;
     at_ = road_.snapped(road_.advance(at_, leg_.length()));
     if (next_gate_ == no_gate) {
       if (end.velocity > negligible_speed<S> && road_.ring.holds(at_.block))
         return follow(braking_on(road_, at_, end, memory_.ahead), at_, no_gate), false;
-      return rest(), false;
+      const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
+      return at_junction && !road_.asked.stopped ? rest_as_planned() : rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
     const bool plans = may_plan && more_ && !settled_behind(next_gate_);
@@ -340,7 +342,7 @@ class BasicPlayer {
     return memory_.gates[gate].settled;
   }
 
-  // The plan ends here, at a junction.
+  // The plan ends here, at a junction; or a brake does, which may be the plan's own.
   void rest_as_planned() {
     const std::int64_t done = at_.block - road_.direction;
     const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;
