@@ -1,6 +1,7 @@
 #include "cncplan/plan/player/player.hpp"
 
 #include <cmath>
+#include <concepts>
 #include <span>
 #include <vector>
 
@@ -16,19 +17,22 @@ namespace {
 
 constexpr Limits limits{30.0, 1000.0, 10000.0};
 
-struct Rig {
-  explicit Rig(std::size_t window, std::int64_t keep = 8)
+template <std::floating_point S>
+struct BasicRig {
+  explicit BasicRig(std::size_t window, std::int64_t keep = 8)
       : blocks(window + 16),
         ahead(window),
         gates(window + 1),
         spare(window + 1),
         player({blocks, ahead, gates, spare}, keep) {}
 
-  std::vector<plan::PlayedBlock> blocks;
-  std::vector<plan::BlockCaps> ahead;
-  std::vector<plan::Gate> gates, spare;
-  plan::Player player;
+  std::vector<plan::BasicPlayedBlock<S>> blocks;
+  std::vector<plan::BasicBlockCaps<S>> ahead;
+  std::vector<plan::BasicGate<S>> gates, spare;
+  plan::BasicPlayer<S> player;
 };
+
+using Rig = BasicRig<double>;
 
 plan::PlayedBlock straight(double length, int line = 0) {
   return {{length, 1e3, limits, 0.0}, 30.0, false, false, line};
@@ -290,6 +294,36 @@ TEST_CASE("a quick stop has limits of its own") {
   rig.player.resume();
   until_rest(rig.player);
   CHECK(rig.player.finished());
+}
+
+TEST_CASE("in float it holds, goes on, waits for dwells once and ends at the end") {
+  for (const float shortest : {0.3F, 1.1F, 2.3F, 4.7F, 9.1F}) {
+    CAPTURE(shortest);
+    BasicRig<float> rig(8);
+    const BasicLimits<float> narrow{30.0F, 1000.0F, 10000.0F};
+    constexpr int count = 12;
+    constexpr float dwell = 0.25F;
+    const auto length = [&](int i) { return shortest + 0.7F * static_cast<float>(i % 5); };
+    for (int i = 0; i < count; ++i)
+      rig.player.push({{length(i), 1e3F, narrow, i % 4 == 3 ? dwell : 0.0F}, 30.0F});
+    int waited = 0;
+    float before = 0.0F, fastest = 0.0F, hardest = 0.0F;
+    for (int tick = 0; tick < 20000 && !rig.player.finished(); ++tick) {
+      if (tick == 80 || tick == 1000) rig.player.hold();
+      if (tick == 300 || tick == 1200) rig.player.resume();
+      const float speed = rig.player.tick(1e-3F).velocity;
+      waited += speed == 0.0F && !(rig.player.rested() > 0.0F) ? 1 : 0;
+      fastest = std::max(fastest, speed);
+      hardest = std::max(hardest, std::abs(speed - before) / 1e-3F);
+      before = speed;
+    }
+    CHECK(waited == Approx(3 * dwell / 1e-3F).margin(8));
+    CHECK(fastest < 30.0F * (1 + 1e-5F));
+    CHECK(hardest < 1000.0F * (1 + 1e-2F));
+    const auto end = rig.player.tick(1e-3F);
+    CHECK(end.block == count - 1);
+    CHECK(end.along == length(count - 1));
+  }
 }
 
 TEST_CASE("a dwell is waited for") {

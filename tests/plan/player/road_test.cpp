@@ -52,11 +52,11 @@ TEST_CASE("spots go on across junctions, in both directions") {
   CHECK(road.snapped(Spot{1, 1.0}) == Spot{1, 1.0});
   CHECK(road.junction_cap(2) == 12.0);
   road.asked.direction = -1;
-  CHECK(road.turned_round(Spot{1, 0.5}) == Spot{1, 1.5});
+  CHECK(road.turn_round(Spot{1, 0.5}) == Spot{1, 1.5});
   CHECK(road.advance(Spot{1, 1.5}, 1.0) == Spot{0, 0.5});
   CHECK(road.junction_cap(1) == 12.0);  // it enters block 1 from block 2
   road.asked.direction = 1;
-  CHECK(road.turned_round(Spot{-1, 0.0}) == Spot{0, 0.0});  // it had run back behind the first
+  CHECK(road.turn_round(Spot{-1, 0.0}) == Spot{0, 0.0});  // it had run back behind the first
 }
 
 TEST_CASE("a look-ahead ends at stops, at blocks that are held, and where it matters no more") {
@@ -97,4 +97,30 @@ TEST_CASE("zones join blocks of equal limits") {
   CHECK(out[0].length == Approx(0.15));
   CHECK(out[1].length == Approx(0.2));
   CHECK(out[1].limits.jerk == 5000.0);
+  CHECK(road.strongest({0, 0.05}, 30.0) == Limits{0.0, 1000.0, 10000.0});
+  CHECK(road.strongest({2, 0.05}, 1.0) == Limits{0.0, 500.0, 5000.0});  // it rests before the last
+}
+
+TEST_CASE("where there is no room for all zones the last is as weak as all the rest") {
+  std::vector<plan::PlayedBlock> memory(8);
+  plan::BasicRoad<double> road(memory);
+  for (const double share : {1.0, 0.9, 0.5, 0.8})
+    road.ring.push({{0.1, 30.0, {30.0, 1000.0 * share, 10000.0 / share}, 0.0}, 30.0});
+  std::vector<plan::BlockCaps> out(2);
+  REQUIRE(road.zones({0, 0.0}, 30.0, out) == 2);
+  CHECK(out[0].limits.acceleration == 1000.0);
+  CHECK(out[1].limits.acceleration == 500.0);
+  CHECK(out[1].limits.jerk == 10000.0 / 0.9);
+}
+
+TEST_CASE("in float a spot is a junction but for rounding too") {
+  std::vector<plan::BasicPlayedBlock<float>> memory(8);
+  plan::BasicRoad<float> road(memory);
+  for (int i = 0; i < 8; ++i) road.ring.push({{12.7F, 30.0F, {30.0F, 1e3F, 1e4F}, 0.0F}, 30.0F});
+  using Spot = plan::BasicSpot<float>;
+  for (int blocks = 1; blocks < 8; ++blocks) {
+    CAPTURE(blocks);
+    CHECK(road.snapped(road.advance(Spot{0, 0.0F}, 12.7F * static_cast<float>(blocks))) ==
+          Spot{blocks, 0.0F});
+  }
 }

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "cncplan/plan/caps.hpp"
@@ -37,7 +36,7 @@ class BasicBrake {
 
   /// Whether there is a way out of a state, to within rounding.
   [[nodiscard]] bool safe(const BasicState<S>& now) const {
-    constexpr S rounding = S(1e-9);
+    constexpr S rounding = std::max(S(1e-9), S(8) * exact);
     return -now.acceleration <= zones_[0].limits.acceleration * (S(1) + rounding) && safe(now, 0, rounding);
   }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -22,7 +21,14 @@ inline constexpr S negligible_speed = S(1e5) * std::numeric_limits<S>::epsilon()
 
 /// By how much rounding may exceed the cap of a junction.
 template <std::floating_point S>
-inline constexpr S junction_tolerance = S(1) + S(1e-9);
+inline constexpr S junction_tolerance = S(1) + road_rounding<S>;
+
+/// The highest speed that braking at once leaves ahead of a state at a spot.
+template <std::floating_point S>
+[[nodiscard]] S fastest_ahead(const BasicRoad<S>& road, const BasicSpot<S>& at, const BasicState<S>& now) {
+  const profile::BasicStartState<S> state{now.velocity, now.acceleration};
+  return std::max(now.velocity, profile::settled_speed(state, road.ring[at.block].caps.limits));
+}
 
 /// The motion towards rest from a spot, under the limits of each block, up to where they change. Nothing
 /// where no brake from this state keeps them. `zones` is room to work in.
@@ -31,11 +37,11 @@ template <std::floating_point S>
                                                    const BasicState<S>& now,
                                                    std::span<BasicBlockCaps<S>> zones, bool going_on) {
   const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-  const S fastest = std::max(now.velocity, profile::settled_speed(state, road.ring[at.block].caps.limits));
-  zones = zones.first(road.zones(at, fastest, zones));
+  zones = zones.first(road.zones(at, fastest_ahead(road, at, now), zones));
   const auto ramp = profile::stop(state, zones[0].limits);
-  constexpr S rounding = S(1e-9);  // mm, of a plan that rests at the end of the zone
-  if (ramp && (zones.size() == 1 || ramp->length() < zones[0].length + rounding)) return BasicLeg<S>(*ramp);
+  // it may rest at the end of the zone
+  if (ramp && (zones.size() == 1 || ramp->length() < zones[0].length + road_rounding<S>))
+    return BasicLeg<S>(*ramp);
   const BasicBrake<S> brake(zones);
   if (!going_on && !brake.safe(now)) return {};
   return brake.leg(now);
@@ -54,9 +60,8 @@ template <std::floating_point S>
                                    const BasicState<S>& start) {
   const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
   const S fastest = start.velocity + rising * rising / (S(2) * road.ring[from.block].caps.limits.jerk);
-  constexpr S rounding = S(1e-9);  // mm, of a leg that ends at a junction
   S position = road.ring.length(from.block) - from.along;
-  for (std::int64_t block = from.block; position < leg.length() - rounding;) {
+  for (std::int64_t block = from.block; position < leg.length() - road_rounding<S>;) {
     if (!road.ring.holds(block + road.direction)) return true;
     block += road.direction;
     const S cap = road.junction_cap(block);

@@ -236,7 +236,7 @@ class BasicPlayer {
 
   void start() {
     if (road_.asked.held || road_.asked.stopped || road_.ring.end() == road_.ring.oldest()) return;
-    at_ = road_.turned_round(at_);
+    at_ = road_.turn_round(at_);
     if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
   }
 

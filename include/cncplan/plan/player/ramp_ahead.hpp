@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <optional>
 
 #include "cncplan/plan/player/road.hpp"
@@ -40,15 +41,15 @@ template <std::floating_point S>
   BasicLimits<S> limits = road.ring[from.block].caps.limits;
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    if (std::abs(now.acceleration) > limits.acceleration * (S(1) + S(1e-9))) return {};
+    if (std::abs(now.acceleration) > limits.acceleration * (S(1) + road_rounding<S>)) return {};
     const S settled = profile::settled_speed(start, limits);
-    if (settled < -S(1e-9)) return {};
+    if (settled < -road_rounding<S>) return {};
     const profile::BasicProfile<S> ramp = detail::ramp_profile(start, target, limits);
     const S whole = ramp.length();
     const bool crests = now.acceleration > S(0) && target < settled;  // goes above both speeds
     const BasicState<S> crest = crests ? ramp.at(now.acceleration / limits.jerk) : BasicState<S>{S(-1)};
     const S fastest = std::max({now.velocity, target, crest.velocity});
-    constexpr S tolerance = S(1) + S(1e-12);
+    constexpr S tolerance = S(1) + std::max(S(1e-12), S(64) * std::numeric_limits<S>::epsilon());
     BasicLimits<S> touched = limits;
     BasicSpot<S> at = from;
     S position = S(0);
@@ -64,7 +65,7 @@ template <std::floating_point S>
       const S allowed = std::max(there.velocity, at.block == from.block ? now.velocity : S(0));
       if (fastest > allowed * tolerance && highest > allowed * tolerance) return {};
       if (last) break;
-      if (!road.ring.holds(at.block + road.direction) || road.stops_behind(at.block, from.block)) return {};
+      if (!road.ring.holds(at.block + road.direction) || road.stops_behind(at.block)) return {};
       at.block += road.direction;
       if (next_speed > road.junction_cap(at.block) * tolerance) return {};
       position = until;

@@ -13,6 +13,10 @@
 
 namespace cncplan::plan {
 
+/// What rounding may amount to, in mm and mm/s and relative to limits: over some hundred mm of path.
+template <std::floating_point S>
+inline constexpr S road_rounding = std::max(S(1e-9), S(512) * std::numeric_limits<S>::epsilon());
+
 /// What is asked of a machine that runs, and stands until something else is asked.
 template <std::floating_point S>
 struct BasicRequests {
@@ -57,11 +61,11 @@ class BasicRoad {
     return asked.held || asked.stopped || asked.direction != direction || !(wanted_speed(block) > S(0));
   }
 
-  /// Whether the motion that begins in block `first` rests behind a block.
-  [[nodiscard]] bool stops_behind(std::int64_t block, std::int64_t first) const {
+  /// Whether the motion rests behind a block.
+  [[nodiscard]] bool stops_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return b.caps.pause > S(0) || (asked.single_step && block >= first) ||
-           (asked.optional_stops && b.optional_stop) || pauses_before(block + 1, b.line);
+    return b.caps.pause > S(0) || asked.single_step || (asked.optional_stops && b.optional_stop) ||
+           pauses_before(block + 1, b.line);
   }
 
   /// Whether a pause at its line is to be made before a block, which lies behind one of the given line.
@@ -88,14 +92,13 @@ class BasicRoad {
 
   /// A spot that is a junction but for rounding, at the junction.
   [[nodiscard]] Spot snapped(Spot spot) const {
-    constexpr S near = S(1e-9);
     if (!ring.holds(spot.block)) return spot;
-    if (spot.along > ring.length(spot.block) - near) return {spot.block + direction, S(0)};
-    return {spot.block, spot.along < near ? S(0) : spot.along};
+    if (spot.along > ring.length(spot.block) - road_rounding<S>) return {spot.block + direction, S(0)};
+    return {spot.block, spot.along < road_rounding<S> ? S(0) : spot.along};
   }
 
-  /// The same spot with the direction that is asked for.
-  [[nodiscard]] Spot turned_round(Spot spot) {
+  /// Takes the direction that is asked for; where a spot is in that one.
+  Spot turn_round(Spot spot) {
     if (asked.direction == direction) return spot;
     direction = asked.direction;
     if (!ring.holds(spot.block)) return {spot.block + direction, S(0)};
@@ -115,29 +118,50 @@ class BasicRoad {
       if (!(caps.limits.velocity > S(0))) return ahead;
       caps.entry = first ? speed : junction_cap(at.block);
       out[ahead.blocks++] = caps;
-      if (stops_behind(at.block, from.block)) return ahead;
+      if (stops_behind(at.block)) return ahead;
       horizon.take(caps.limits, caps.length);
     }
     return ahead;
   }
 
   /// The zones of equal limits from a spot on, as far as it takes to come to rest from `speed`; how many.
+  /// When `out` (room for one at least) is full, the last goes on under the lowest limits of all that follow.
   std::size_t zones(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     std::size_t count = 0;
+    to_rest(from, speed, [&](S length, BasicLimits<S> limits) {
+      limits.velocity = S(1);  // plays no part
+      if (count == 0 || (out[count - 1].limits != limits && count < out.size()))
+        out[count++] = {S(0), S(0), limits, S(0)};
+      BasicBlockCaps<S>& zone = out[count - 1];
+      zone.length += length;
+      zone.limits.acceleration = std::min(zone.limits.acceleration, limits.acceleration);
+      zone.limits.jerk = std::min(zone.limits.jerk, limits.jerk);
+    });
+    return count;
+  }
+
+  /// The highest limits of acceleration and jerk from a spot on, likewise.
+  [[nodiscard]] BasicLimits<S> strongest(const Spot& from, S speed) const {
+    BasicLimits<S> highest{};
+    to_rest(from, speed, [&](S, const BasicLimits<S>& limits) {
+      highest.acceleration = std::max(highest.acceleration, limits.acceleration);
+      highest.jerk = std::max(highest.jerk, limits.jerk);
+    });
+    return highest;
+  }
+
+ private:
+  // Calls with the length and the limits of each block, from a spot on, that coming to rest from `speed` may
+  // touch.
+  template <class Visit>
+  void to_rest(const Spot& from, S speed, Visit&& visit) const {
     Horizon<S> horizon;
     for (Spot at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
-      BasicLimits<S> limits = ring[at.block].caps.limits;
+      const BasicLimits<S>& limits = ring[at.block].caps.limits;
       const S length = std::max(ring.length(at.block) - at.along, S(0));
       horizon.take({speed, limits.acceleration, limits.jerk}, length);
-      limits.velocity = S(1);  // plays no part
-      if (count > 0 && out[count - 1].limits == limits)
-        out[count - 1].length += length;
-      else if (count < out.size())
-        out[count++] = {length, S(0), limits, S(0)};
-      else
-        break;
+      visit(length, limits);
     }
-    return count;
   }
 };
 
