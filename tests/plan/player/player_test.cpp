@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -166,6 +167,8 @@ TEST_CASE("it begins at any block, and goes on elsewhere after a stop") {
   CHECK_FALSE(rig.player.skip_to(7));  // not in motion
   rig.player.stop();
   rig.player.tick(1.0);
+  CHECK_FALSE(rig.player.skip_to(-1));
+  CHECK(rig.player.stopped());
   REQUIRE(rig.player.skip_to(7));
   CHECK_FALSE(rig.player.stopped());
   rig.player.push(fast);
@@ -244,6 +247,36 @@ TEST_CASE("half the feed is half the speed, none is a hold") {
   CHECK(rig.player.tick(1e-3).velocity == Approx(30.0));
 }
 
+TEST_CASE("an override that is not a number is a hold") {
+  Rig rig(8);
+  rig.player.push(straight(100.0));
+  run(rig.player, 1.0);
+  rig.player.feed_override(std::numeric_limits<double>::quiet_NaN());
+  run(rig.player, 0.5);
+  const auto rest = rig.player.tick(1e-3);
+  CHECK(rest.at_rest);
+  CHECK(rest.along < 50.0);
+  rig.player.feed_override(1.0);
+  until_rest(rig.player);
+  CHECK(rig.player.finished());
+}
+
+TEST_CASE("blocks go on coming however many are to be kept behind") {
+  for (const std::int64_t keep : {std::int64_t{-5}, std::int64_t{24}, std::int64_t{1} << 60}) {
+    CAPTURE(keep);
+    Rig rig(8, keep);  // memory for 24 blocks
+    int pushed = 0;
+    for (int tick = 0; tick < 20000 && pushed < 100; ++tick) {
+      while (pushed < 100 && rig.player.push(straight(0.5))) ++pushed;
+      rig.player.tick(1e-3);
+    }
+    CHECK(pushed == 100);
+    until_rest(rig.player);
+    CHECK(rig.player.finished());
+    CHECK(rig.player.tick(1e-3).block == 99);
+  }
+}
+
 TEST_CASE("backwards as far as blocks are kept, and forwards again") {
   Rig rig(8, 4);
   for (int i = 0; i < 4; ++i) rig.player.push(straight(5.0));
@@ -294,6 +327,38 @@ TEST_CASE("a quick stop has limits of its own") {
   rig.player.resume();
   until_rest(rig.player);
   CHECK(rig.player.finished());
+}
+
+TEST_CASE("a quick stop with weaker limits than the blocks' is no later than the plan's end") {
+  const auto place = [](const plan::Played& now) {
+    return 50.0 * static_cast<double>(now.block) + now.along;
+  };
+  for (const double at : {20.0, 97.9, 98.5, 99.5}) {
+    CAPTURE(at);
+    Rig rig(8);
+    rig.player.push(straight(50.0));
+    auto last = straight(50.0);
+    last.caps.limits.acceleration /= 2;
+    rig.player.push(last);
+    plan::Played now;
+    do now = rig.player.tick(1e-4);
+    while (place(now) < at);
+    const auto best = profile::stop({now.velocity, now.acceleration}, at < 50.0 ? limits : last.caps.limits);
+    REQUIRE(best);
+    const double from = place(now);
+    double moved = 0.0;
+    rig.player.quick_stop(50.0, std::numeric_limits<double>::quiet_NaN());
+    while (!now.at_rest) {
+      const double before = now.velocity;
+      now = rig.player.tick(1e-4);
+      moved += (before + now.velocity) / 2 * 1e-4;
+    }
+    CHECK(place(now) - from == Approx(moved).margin(1e-3));
+    CHECK(moved == Approx(best->length()).margin(1e-3));
+    rig.player.resume();
+    until_rest(rig.player);
+    CHECK(rig.player.finished());
+  }
 }
 
 TEST_CASE("in float it holds, goes on, waits for dwells once and ends at the end") {

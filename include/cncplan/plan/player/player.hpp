@@ -61,11 +61,15 @@ class BasicPlayer {
   using Block = BasicPlayedBlock<S>;
   using Gate = BasicGate<S>;
 
-  /// `keep_behind` blocks stay in memory for running backwards.
+  /// `keep_behind` blocks stay in memory for running backwards; fewer where that would not leave room for
+  /// `memory.ahead`, none where it is negative.
   explicit BasicPlayer(const BasicPlayerMemory<S>& memory, std::int64_t keep_behind = 0)
-      : memory_(memory), road_(memory.blocks), keep_behind_(keep_behind) {}
+      : memory_(memory), road_(memory.blocks) {
+    const std::int64_t room = road_.ring.capacity() - static_cast<std::int64_t>(memory.ahead.size());
+    keep_behind_ = std::max(std::min(keep_behind, room), std::int64_t{0});
+  }
 
-  /// Takes the next block of the program. False when there is no room.
+  /// Takes the next block of the program. False when there is no room. What a block may be is said there.
   bool push(const Block& block) {
     BlockRing<S>& ring = road_.ring;
     const std::int64_t first_needed = std::max(at_.block - keep_behind_, ring.oldest());
@@ -86,23 +90,29 @@ class BasicPlayer {
     ask(road_.asked.stopped, true);
   }
 
-  /// Comes to rest with acceleration and jerk limits of its own, which may be higher; then it is held.
+  /// Comes to rest with acceleration and jerk limits of its own, not both infinite; then it is held. Limits
+  /// below the highest of the blocks on the way to rest are raised to those: it is never slower than the
+  /// plan, which ends on the path there is.
   void quick_stop(S acceleration, S jerk) {
     hold();
     if (idle_) return;
     const BasicState<S> now = leg_.state();
-    const auto ramp =
-        profile::stop(profile::BasicStartState<S>{now.velocity, now.acceleration},
-                      BasicLimits<S>{S(1), std::max(acceleration, std::abs(now.acceleration)), jerk});
+    const BasicSpot<S> at = locate();
+    const profile::BasicStartState<S> state{now.velocity, now.acceleration};
+    BasicLimits<S> limits = road_.strongest(at, fastest_ahead(road_, at, now));
+    limits.velocity = S(1);  // plays no part
+    limits.acceleration = std::max({limits.acceleration, acceleration, std::abs(now.acceleration)});
+    limits.jerk = std::max(limits.jerk, jerk);
+    const auto ramp = profile::stop(state, limits);
     if (!ramp) return;
-    follow(BasicLeg<S>(*ramp), locate(), no_gate);
+    follow(BasicLeg<S>(*ramp), at, no_gate);
     pending_ = false;
   }
 
-  /// Share of the programmed feed, 0 to 2; 0 is a hold. Values outside are cut.
-  void feed_override(S share) { ask(road_.asked.feed_share, std::clamp(share, S(0), S(2))); }
-  /// Share of the rapid rate, 0 to 1.
-  void rapid_override(S share) { ask(road_.asked.rapid_share, std::clamp(share, S(0), S(1))); }
+  /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is NaN. Values outside are cut.
+  void feed_override(S share) { ask(road_.asked.feed_share, share_up_to(S(2), share)); }
+  /// Share of the rapid rate, 0 to 1, likewise.
+  void rapid_override(S share) { ask(road_.asked.rapid_share, share_up_to(S(1), share)); }
 
   /// Runs backwards along the path, as far as blocks are kept, or forwards again. It comes to rest in
   /// between.
@@ -117,9 +127,10 @@ class BasicPlayer {
 
   /// At rest: forgets all blocks; the next one that is pushed has this number, and the motion begins at its
   /// start. The way there is the caller's, as is all that the blocks before would have brought about (tools,
-  /// offsets, spindle). A program that was stopped can begin anew so. False, and nothing done, in motion.
+  /// offsets, spindle). A program that was stopped can begin anew so. False, and nothing done, in motion or
+  /// for a number below 0.
   bool skip_to(std::int64_t block) {
-    if (!idle_) return false;
+    if (!idle_ || block < 0) return false;
     road_.ring.restart(block);
     road_.asked.direction = road_.direction = 1;
     road_.asked.stopped = false;
@@ -185,6 +196,8 @@ class BasicPlayer {
  private:
   static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
   static constexpr int most_plans = 16;  // in one tick
+
+  [[nodiscard]] static S share_up_to(S most, S share) { return share > S(0) ? std::min(share, most) : S(0); }
 
   template <class T>
   void ask(T& value, const T& wanted) {
@@ -366,7 +379,7 @@ class BasicPlayer {
 
   BasicPlayerMemory<S> memory_;
   BasicRoad<S> road_;
-  std::int64_t keep_behind_;
+  std::int64_t keep_behind_ = 0;
   BasicSpot<S> at_;  // where the leg started, seen from the block the machine is in; at rest, where that is
   BasicLeg<S> leg_;
   std::size_t gate_count_ = 0;

@@ -52,7 +52,7 @@ class Queue {
     }
     return &items_[head % capacity];
   }
-  /// For the consumer: lets the item go that `front` has shown.
+  /// For the consumer, only after `front` has shown an item: lets it go.
   void pop() { head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
   /// How many there are, for either side: the other one may change it at any time.
