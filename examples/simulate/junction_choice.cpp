@@ -10,6 +10,7 @@
 
 namespace simulate {
 
+namespace junction = cncplan::junction;
 using support::Exit;
 using support::Failure;
 
@@ -29,27 +30,18 @@ double bound(std::string_view item, std::string_view number) {
   return value;
 }
 
-void add(JunctionChoice& choice, std::string_view item) {
+JunctionPolicy policy(std::string_view item) {
   const auto equals = item.find('=');
   const std::string_view name = item.substr(0, equals);
   const bool has_number = equals != std::string_view::npos;
   const auto number = [&] { return bound(item, has_number ? item.substr(equals + 1) : std::string_view{}); };
-  if (name == "tangent")
-    choice.tangent = {number()};
-  else if (name == "deviation")
-    choice.deviation = {number()};
-  else if (name == "acceleration-step")
-    choice.acceleration_step = {number()};
-  else if (has_number)
-    refuse(item, "is not a policy that takes a number");
-  else if (name == "table")
-    choice.table = {cncplan::junction::Norm::rotation};
-  else if (name == "table-absolute")
-    choice.table = {cncplan::junction::Norm::absolute};
-  else if (name == "stop")
-    choice.stop = cncplan::junction::ExactStop{};
-  else
-    refuse(item, "is not one of table, table-absolute, stop, tangent=, deviation=, acceleration-step=");
+  if (name == "tangent") return junction::TangentStep{number()};
+  if (name == "deviation") return junction::Deviation{number()};
+  if (name == "acceleration-step") return junction::AccelerationStep{number()};
+  if (item == "table") return junction::PublishedTable{junction::Norm::rotation};
+  if (item == "table-absolute") return junction::PublishedTable{junction::Norm::absolute};
+  if (item == "stop") return junction::ExactStop{};
+  refuse(item, "is not one of table, table-absolute, stop, tangent=, deviation=, acceleration-step=");
 }
 
 }  // namespace
@@ -58,7 +50,7 @@ JunctionChoice junction_choice(std::string_view text) {
   JunctionChoice choice;
   for (;;) {
     const auto plus = text.find('+');
-    add(choice, text.substr(0, plus));
+    choice.policies.push_back(policy(text.substr(0, plus)));
     if (plus == std::string_view::npos) return choice;
     text.remove_prefix(plus + 1);
   }

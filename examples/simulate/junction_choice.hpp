@@ -3,32 +3,26 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "cncplan/cncplan.hpp"
 
 namespace simulate {
 
-/// The minimum of the policies that are set. A junction policy of our own: it has `speed_sq`, and that is all
-/// it takes.
+using JunctionPolicy = std::variant<cncplan::junction::PublishedTable, cncplan::junction::ExactStop,
+                                    cncplan::junction::TangentStep, cncplan::junction::Deviation,
+                                    cncplan::junction::AccelerationStep>;
+
+/// The lowest of several policies. A junction policy of our own: it has `speed_sq`, and that is all it takes.
 struct JunctionChoice {
-  std::optional<cncplan::junction::PublishedTable> table;
-  std::optional<cncplan::junction::ExactStop> stop;
-  std::optional<cncplan::junction::TangentStep> tangent;
-  std::optional<cncplan::junction::Deviation> deviation;
-  std::optional<cncplan::junction::AccelerationStep> acceleration_step;
+  std::vector<JunctionPolicy> policies;
 
   [[nodiscard]] double speed_sq(const cncplan::junction::Geometry& junction) const {
     double lowest = std::numeric_limits<double>::infinity();
-    const auto consider = [&](const auto& policy) {
-      if (policy) lowest = std::min(lowest, policy->speed_sq(junction));
-    };
-    consider(table);
-    consider(stop);
-    consider(tangent);
-    consider(deviation);
-    consider(acceleration_step);
+    for (const JunctionPolicy& policy : policies)
+      lowest = std::min(lowest, std::visit([&](const auto& p) { return p.speed_sq(junction); }, policy));
     return lowest;
   }
 };

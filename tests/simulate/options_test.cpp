@@ -54,6 +54,9 @@ TEST_CASE("every policy plans its own way, and several their minimum") {
   CHECK(both >= time_of("--junction tangent=1"));
   CHECK(both >= time_of("--junction deviation=0.01"));
   CHECK(time_of("--junction stop+table+deviation=5") == time_of("--junction stop"));
+  const double low = time_of("--junction deviation=0.001");
+  CHECK(time_of("--junction deviation=1+deviation=0.001") == low);
+  CHECK(time_of("--junction deviation=0.001+deviation=1") == low);
 }
 
 TEST_CASE("the seven-phase law is faster where the acceleration binds, the same where not") {
