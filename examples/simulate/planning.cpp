@@ -21,20 +21,11 @@ using support::Failure;
 
 using Caps = std::vector<plan::BlockCaps>;
 
-template <class Rule>
-Caps block_caps(const Program& program, const JunctionChoice& policy, const Rule& rule) {
-  Caps caps;
-  caps.reserve(program.blocks.size());
-  for (std::size_t i = 0; i < program.blocks.size(); ++i)
-    caps.push_back(i == 0 ? plan::caps_from_rest(program.blocks[i], rule)
-                          : plan::caps(program.blocks[i - 1], program.blocks[i], policy, rule));
-  return caps;
-}
-
 // Published planning knows limits along the path only; ramps that cross blocks keep the vector sums as well.
 Caps block_caps(const Program& program, const Options& options) {
-  return options.planning == Planning::block ? block_caps(program, options.junction, plan::CapSpeed{})
-                                             : block_caps(program, options.junction, plan::ShareLimits{});
+  return options.planning == Planning::block
+             ? plan::all_caps(program.blocks, options.junction, plan::CapSpeed{})
+             : plan::all_caps(program.blocks, options.junction, plan::ShareLimits{});
 }
 
 // A mill's pieces are the program's blocks.

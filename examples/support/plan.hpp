@@ -87,10 +87,8 @@ inline Plan plan_of(std::vector<cncplan::plan::BlockCaps> caps, std::vector<cncp
   for (const auto& block : plan.caps) plan.lengths.push_back(block.length);
   cncplan::plan::block_timings(std::span<const cncplan::plan::Span>(plan.spans),
                                std::span<const double>(plan.lengths), std::back_inserter(plan.timings));
-  for (const auto& span : plan.spans) {
-    plan.length += span.profile.length();
-    plan.duration += span.profile.duration();
-  }
+  for (const auto& span : plan.spans) plan.length += span.profile.length();
+  plan.duration = duration(std::span<const cncplan::plan::Span>(plan.spans));
   plan.end = {plan.lengths.size() - 1, plan.lengths.back(), {plan.length, 0.0, 0.0, 0.0}};
   return plan;
 }
@@ -98,14 +96,11 @@ inline Plan plan_of(std::vector<cncplan::plan::BlockCaps> caps, std::vector<cncp
 /// Ramps that cross pieces. Throws `Failure`.
 template <class Law>
 std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps, const Law& law) {
-  std::vector<cncplan::plan::Span> spans;
-  std::vector<cncplan::plan::Gate> gates(caps.size() + 1);
-  const auto planned = cncplan::plan::plan_spans(std::span<const cncplan::plan::BlockCaps>(caps), law,
-                                                 std::span(gates), std::back_inserter(spans));
+  auto planned = cncplan::plan::whole_plan(caps, law);
   if (!planned)
     throw Failure(Exit::other,
                   fmt::format("planning: {} {}", planned.error().field, message(planned.error().code)));
-  return spans;
+  return std::move(planned->spans);
 }
 
 }  // namespace support

@@ -28,6 +28,17 @@ const plan::Block second = line({10, 0, 0}, {10, 5, 0}, {25, 800, 10000});
 
 }  // namespace
 
+TEST_CASE("a policy's speed that is negative or not a number is a stop") {
+  struct Fixed {
+    double value;
+    double speed_sq(const junction::Geometry&) const { return value; }
+  };
+  const plan::Block block{path::Line({0, 0, 0}, {10, 0, 0}), {30, 1000, 10000}, junction::Kind::line};
+  for (const double value : {-1.0, std::numeric_limits<double>::quiet_NaN(), 0.0})
+    CHECK(plan::caps(block, block, Fixed{value}, plan::ShareLimits{}).entry == 0.0);
+  CHECK(plan::caps(block, block, Fixed{9.0}, plan::ShareLimits{}).entry == 3.0);
+}
+
 TEST_CASE("a junction is judged under the lower limits of both blocks") {
   const plan::CapSpeed rule;
   CHECK(plan::caps(first, second, Shown{&Limits::velocity}, rule).entry == 20.0);

@@ -56,6 +56,29 @@ TEST_CASE("feeds: programmed, none so far, too fast, inverse time, rapid") {
   CHECK(plan::block(m, limits, 25.0)->kind == junction::Kind::rapid);
 }
 
+TEST_CASE("limits, rapid rates and feeds that are not positive are refused") {
+  auto m = motion(gcode::MotionKind::line);
+  const auto field = [&](const Limits& l, double rapid) { return plan::block(m, l, rapid).error().field; };
+  CHECK(field({0, 1000, 10000}, 25) == "velocity limit");
+  CHECK(field({30, -1, 10000}, 25) == "acceleration limit");
+  CHECK(field({30, 1000, std::nan("")}, 25) == "jerk limit");
+  CHECK(field(limits, 0) == "rapid rate");
+  CHECK(field(limits, std::nan("")) == "rapid rate");
+  m.feed = 0.0;
+  CHECK(field(limits, 25) == "velocity limit");
+  m.end = m.start;
+  CHECK(plan::block(m, limits, 25.0)->limits == limits);  // no way, no feed
+}
+
+TEST_CASE("an axis beyond the third has no place in space") {
+  auto m = motion(gcode::MotionKind::line);
+  m.end[3] = 0.5;
+  const auto block = plan::block(m, limits, 25.0);
+  REQUIRE(!block);
+  CHECK(block.error().code == ErrorCode::not_supported);
+  CHECK(block.error().value == 0.5);
+}
+
 TEST_CASE("both forms of an arc are moved by the offset, and feeds follow their length") {
   auto m = motion(gcode::MotionKind::arc_center);
   m.turn = Turn::counterclockwise;

@@ -1,4 +1,5 @@
 // Whole programs: the sampler and the timeline of plan/, over lines and arcs that follow each other.
+#include <array>
 #include <memory>
 #include <sstream>
 #include <variant>
@@ -144,4 +145,12 @@ TEST_CASE("Sampling a program keeps off the heap") {
           while (batch.positions(points(room)) == room.cols()) {
           }
         }) == 0);
+}
+
+TEST_CASE("a program without blocks has no samples") {
+  plan::Sampler sampler({}, {}, {}, 1e-3);
+  CHECK(sampler.size() == 0);
+  CHECK(!sampler.next());
+  std::array<double, 12> points{};
+  CHECK(sampler.positions(Points(points.data(), 3, 4)) == 0);
 }

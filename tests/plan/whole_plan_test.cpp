@@ -66,6 +66,25 @@ TEST_CASE("a program in machine space keeps to its joints' limits") {
   CHECK(plan->duration <= (2 * x + 2 * y) * 1.022);  // speeds are rounded down, by 2.2 % at most
 }
 
+TEST_CASE("limits that are not positive are refused before anything is planned") {
+  for (const Limits& bad : {Limits{0, 1000, 10000}, Limits{30, 0, 10000}, Limits{30, std::nan(""), 10000},
+                            Limits{30, 1000, -1}}) {
+    const auto plan = plan::whole_plan(std::vector<plan::BlockCaps>{{10.0, 0.0, bad, 0.0}});
+    REQUIRE(!plan);
+    CHECK(plan.error().field.find("limit") != std::string_view::npos);
+  }
+  plan::JointCourse course{plan::OneChart(kinematics::CartesianChart{})};
+  REQUIRE(course.append(path::Line({0, 0, 0}, {10, 0, 0}), 30.0));
+  BasicJointLimits<double, 3> limits;
+  limits.velocity << 30, 30, 30;
+  limits.acceleration << 1000, -1000, 1000;
+  limits.jerk << 10000, 10000, 10000;
+  const auto plan = plan::whole_plan(course.blocks(), limits, 0.0);
+  REQUIRE(!plan);
+  CHECK(plan.error().field == "joint acceleration limit");
+  CHECK(plan.error().value == -1000);
+}
+
 TEST_CASE("a program without blocks is a plan of no time") {
   const auto plan = plan::whole_plan(std::vector<plan::Block>{}, junction::ExactStop{});
   REQUIRE(plan);

@@ -41,7 +41,8 @@ using Geometry = BasicGeometry<double>;
 
 namespace cncplan {
 
-/// The square of the highest speed at which a junction may be passed, mm^2/s^2; infinity for no limit of its
+/// The square of the highest speed at which a junction may be passed, mm^2/s^2; what is negative or not a
+/// number is a stop; infinity for no limit of its
 /// own.
 template <class P, class S = double>
 concept JunctionPolicy = requires(const P& policy, const junction::BasicGeometry<S>& junction) {

@@ -20,7 +20,7 @@ class BlockMaker {
       : limits_(limits), rapid_rate_(rapid_rate), tolerance_(tolerance) {}
 
   /// Takes the next item; gives the block before, if the item begins a new one. Errors, at their place: those
-  /// of arcs.
+  /// of `plan::block`.
   Expected<std::optional<Block>, gcode::Diagnostic> take(const gcode::Item& item) {
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
       const auto made = block(*motion, limits_, rapid_rate_, tolerance_);

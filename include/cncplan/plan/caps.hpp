@@ -40,7 +40,8 @@ template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule>
   junction.limits.velocity = std::min(before.limits.velocity, block.limits.velocity);
   junction.limits.acceleration = std::min(before.limits.acceleration, block.limits.acceleration);
   junction.limits.jerk = std::min(before.limits.jerk, block.limits.jerk);
-  result.entry = std::sqrt(policy.speed_sq(junction));
+  const S speed_sq = policy.speed_sq(junction);
+  result.entry = speed_sq > S(0) ? std::sqrt(speed_sq) : S(0);
   return result;
 }
 

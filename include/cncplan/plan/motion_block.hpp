@@ -18,9 +18,14 @@ namespace cncplan::plan {
   return {position[0], position[1], position[2]};
 }
 
-/// The path of a motion in machine coordinates. Errors: those of the arcs.
+/// The path of a motion in machine coordinates. Errors: those of the arcs; not_supported for a motion of axes
+/// beyond the third, which has no place in space.
 [[nodiscard]] inline Expected<path::Segment> segment(const gcode::Motion& motion,
                                                      const path::ArcTolerance<double>& tolerance = {}) {
+  for (std::size_t axis = 3; axis < motion.end.size(); ++axis)
+    if (motion.end[axis] != motion.start[axis])
+      return tl::unexpected(Error{ErrorCode::not_supported, "motion of an axis beyond the third",
+                                  motion.end[axis], motion.start[axis]});
   const Vector3 offset = xyz(motion.offset);
   const Vector3 start = xyz(motion.start) + offset;
   const Vector3 end = xyz(motion.end) + offset;
@@ -50,14 +55,18 @@ namespace cncplan::plan {
   return std::min(wanted, fastest);
 }
 
-/// The block of a motion under limits along the path.
+/// The block of a motion under limits along the path. Errors: those of `segment` and of `validate`, and
+/// not_positive for the rapid rate (mm/s) or a feed of zero.
 [[nodiscard]] inline Expected<Block> block(const gcode::Motion& motion, const Limits& limits,
                                            double rapid_rate,
                                            const path::ArcTolerance<double>& tolerance = {}) {
+  if (!(rapid_rate > 0.0))
+    return tl::unexpected(Error{ErrorCode::not_positive, "rapid rate", rapid_rate, 0.0});
   const auto way = segment(motion, tolerance);
   if (!way) return tl::unexpected(way.error());
   Block result{*way, limits, junction::Kind::line, motion.exact_stop, 0.0};
-  result.limits.velocity = feed(motion, way->length(), limits.velocity, rapid_rate);
+  if (way->length() > 0.0) result.limits.velocity = feed(motion, way->length(), limits.velocity, rapid_rate);
+  if (const auto ok = validate(result.limits); !ok) return tl::unexpected(ok.error());
   if (motion.kind == gcode::MotionKind::rapid) result.kind = junction::Kind::rapid;
   if (way->arc() != nullptr) result.kind = junction::Kind::arc;
   return result;

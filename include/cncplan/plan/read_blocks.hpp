@@ -10,7 +10,7 @@
 namespace cncplan::plan {
 
 /// The blocks of a program under limits along the path; rapids run at `rapid_rate`. Errors, at their place:
-/// the reader's and those of arcs.
+/// the reader's and those of `plan::block`.
 template <gcode::LineSource Lines>
 [[nodiscard]] Expected<std::vector<Block>, gcode::Diagnostic> read_blocks(Lines&& lines,
                                                                           gcode::Reader& reader,

@@ -17,14 +17,6 @@
 
 namespace cncplan::plan {
 
-/// How long the spans take, added up as a cursor does.
-template <std::floating_point S>
-[[nodiscard]] S duration(std::span<const BasicSpan<S>> spans) {
-  S sum = S(0);
-  for (const BasicSpan<S>& span : spans) sum += span.profile.duration();
-  return sum;
-}
-
 /// A sample, and the block it lies in. `sample.along.position` counts from the start of the program.
 template <std::floating_point S>
 struct BasicProgramSample {
@@ -36,8 +28,8 @@ using ProgramSample = BasicProgramSample<double>;
 
 /// Walks a planned program on the grid k period from its first to its last block: unused time goes from block
 /// to block by itself, as times are never counted within a block. The last sample stands at the program's end
-/// on its end point. Blocks (at least one), spans and lengths belong to the caller. No heap; a call takes as
-/// long as it passes blocks and spans.
+/// on its end point; without blocks there is none. Blocks, spans and lengths belong to the caller. No heap; a
+/// call takes as long as it passes blocks and spans.
 template <std::floating_point S>
 class BasicSampler {
  public:
@@ -45,7 +37,10 @@ class BasicSampler {
 
   BasicSampler(std::span<const BasicBlock<S>> blocks, std::span<const BasicSpan<S>> spans,
                std::span<const S> lengths, S period)
-      : blocks_(blocks), cursor_(spans, lengths), grid_{period, plan::duration(spans)}, size_(grid_.size()) {}
+      : blocks_(blocks),
+        cursor_(spans, lengths),
+        grid_{period, plan::duration(spans)},
+        size_(blocks.empty() ? 0 : grid_.size()) {}
 
   [[nodiscard]] const interpolate::BasicGrid<S>& grid() const { return grid_; }
   [[nodiscard]] std::int64_t size() const { return size_; }

@@ -25,17 +25,20 @@ struct BasicPlan {
 
 using Plan = BasicPlan<double>;
 
-/// The plan of blocks that are known by their caps, from rest to rest. Errors: those of profiles.
+/// The plan of blocks that are known by their caps, from rest to rest. Errors: those of `validate` for the
+/// limits of each block, and those of profiles.
 template <std::floating_point S, RampLaw<S> Law = SevenPhase>
 [[nodiscard]] Expected<BasicPlan<S>> whole_plan(const std::vector<BasicBlockCaps<S>>& caps,
                                                 const Law& law = {}) {
+  for (const BasicBlockCaps<S>& block : caps)
+    if (const auto ok = validate(block.limits); !ok) return tl::unexpected(ok.error());
   BasicPlan<S> plan;
   std::vector<BasicGate<S>> gates(caps.size() + 1);
   const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(caps), law, std::span(gates),
                                   std::back_inserter(plan.spans));
   if (!planned) return tl::unexpected(planned.error());
   for (const BasicBlockCaps<S>& block : caps) plan.lengths.push_back(block.length);
-  for (const BasicSpan<S>& span : plan.spans) plan.duration += span.profile.duration();
+  plan.duration = duration(std::span<const BasicSpan<S>>(plan.spans));
   return plan;
 }
 
@@ -44,6 +47,7 @@ template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule = S
 [[nodiscard]] std::vector<BasicBlockCaps<S>> all_caps(const std::vector<BasicBlock<S>>& blocks,
                                                       const Policy& policy, const Rule& rule = {}) {
   std::vector<BasicBlockCaps<S>> all;
+  all.reserve(blocks.size());
   for (std::size_t i = 0; i < blocks.size(); ++i)
     all.push_back(i == 0 ? caps_from_rest(blocks[i], rule) : caps(blocks[i - 1], blocks[i], policy, rule));
   return all;
@@ -59,11 +63,13 @@ template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule = S
 }
 
 /// The plan of a program in machine space, within the limits of its joints; see `joint_caps`.
+/// Errors: those of `validate` for the joints' limits, and of the plan.
 template <JointPath P, RampLaw<typename P::Scalar> Law = SevenPhase>
 [[nodiscard]] Expected<BasicPlan<typename P::Scalar>> whole_plan(
     const std::vector<JointBlock<P>>& blocks,
     const BasicJointLimits<typename P::Scalar, P::Vector::RowsAtCompileTime>& joints,
     std::type_identity_t<typename P::Scalar> corner_time, const Law& law = {}) {
+  if (const auto ok = validate(joints); !ok) return tl::unexpected(ok.error());
   std::vector<BasicBlockCaps<typename P::Scalar>> caps;
   joint_caps(std::span<const JointBlock<P>>(blocks), joints, corner_time, std::back_inserter(caps));
   return whole_plan(caps, law);
