@@ -1,6 +1,6 @@
-// A small controller: lines of G-code come in, set points go out at every millisecond, and a hold takes
-// effect at once. Compiled with -fno-exceptions -fno-rtti; once it runs (the reader's tables are made before
-// main) there is no allocation.
+// A small controller: lines of G-code come in, set points go out at every millisecond; a hold takes effect at
+// once, and so does an override of 150 %. Compiled with -fno-exceptions -fno-rtti; once it runs (the reader's
+// tables are made before main) there is no allocation.
 #include <array>
 #include <cncplan/gcode/reader.hpp>
 #include <cncplan/junction/deviation.hpp>
@@ -32,21 +32,25 @@ int ticks = 0;
 void tick() {
   if (ticks == 300) player.hold();
   if (ticks == 500) player.resume();
+  if (ticks == 700) player.feed_override(1.5);
   const plan::Played now = player.tick(0.001);
   if (now.block >= 0 && ticks % 50 == 0) {
     const path::Segment& path = blocks[static_cast<std::size_t>(now.block) % room].segment;
-    const Vector3 point = path.position(path.parameter_at(now.along));
+    const Vector3 point = path.position_at(now.along);
     std::printf("%5d ms %9.4f %9.4f mm %8.3f mm/s\n", ticks, point.x(), point.y(), now.velocity);
   }
   ++ticks;
 }
 
-// Waits for room, while the machine runs.
-void run(const plan::Block& block) {
+// Waits for room, while the machine runs. Caps say what the machine bears, whatever the program's feed: so
+// far an override may go.
+void run(plan::Block block) {
+  const double feed = block.limits.velocity;
+  block.limits.velocity = limits.velocity;
   const plan::Block& before = blocks[(pushed + room - 1) % room];
   const auto caps = pushed == 0 ? plan::caps_from_rest(block, plan::ShareLimits{})
                                 : plan::caps(before, block, junction::Deviation{0.01}, plan::ShareLimits{});
-  while (!player.push({.caps = caps, .feed = block.limits.velocity})) tick();
+  while (!player.push({.caps = caps, .feed = feed})) tick();
   blocks[pushed++ % room] = block;
 }
 

@@ -57,6 +57,8 @@ class BasicSegment {
   [[nodiscard]] CurvePoint<Vector> at(S u) const {
     return visit([u](const auto& p) { return p.at(u); });
   }
+  /// The point at so many mm from the start.
+  [[nodiscard]] Vector position_at(S length) const { return position(parameter_at(length)); }
   void positions_at(std::span<const S> lengths, BasicPoints<S> out) const {
     visit([&](const auto& p) { p.positions_at(lengths, out); });
   }
