@@ -134,7 +134,7 @@ class Collector {
     const auto* arc = std::get_if<DrawnArc>(&drawn);
     if (arc != nullptr && !(arc->radius > 0.0)) refuse("has no radius greater than zero");
     drawing_.drawn.push_back(drawn);
-    drawing_.names.push_back(name);
+    drawing_.origins.push_back({name, entity_->line});
   }
 
   void add(const std::vector<Corner>& corners, bool closed) {
@@ -164,9 +164,10 @@ class Collector {
 };
 
 std::string sentence(const std::string& file, const kinematics::ChainError& error, const Drawing& drawing) {
-  if (drawing.names.empty()) return fmt::format("{}: there is no line and no arc in it", file);
-  std::string text = fmt::format("{}: {} ", file, drawing.names[error.entity]);
-  const std::string other = error.other ? drawing.names[*error.other] : "";
+  if (drawing.origins.empty()) return fmt::format("{}:1:1: error: there is no line and no arc in it", file);
+  const Origin& entity = drawing.origins[error.entity];
+  const std::string text = fmt::format("{}:{}:1: error: {} ", file, entity.line, entity.name);
+  const std::string other = error.other ? drawing.origins[*error.other].name : "";
   switch (error.error.code) {
     case ErrorCode::unconnected:
       return text + fmt::format("is not connected to the others: the nearest is {}, {:.6g} mm away", other,
@@ -198,9 +199,12 @@ kinematics::ProfileChain profile_of(const std::string& file, const kinematics::C
   for (std::size_t i = 0; i + 1 < chain->pieces.size(); ++i) {
     const double angle = kinematics::kink_angle(chain->pieces[i], chain->pieces[i + 1]);
     if (std::abs(angle) < plan::SidewallGuide::smooth_angle) continue;
+    const Origin& before = drawing.origins[chain->entities[i]];
+    const Origin& behind = drawing.origins[chain->entities[i + 1]];
     fmt::print(
-        stderr, "{}: warning: a kink of {:.4g} degrees between {} and {}: the tool stops and turns there\n",
-        file, angle / radians, drawing.names[chain->entities[i]], drawing.names[chain->entities[i + 1]]);
+        stderr,
+        "{}:{}:1: warning: a kink of {:.4g} degrees between {} and {}: the tool stops and turns there\n",
+        file, behind.line, angle / radians, before.name, behind.name);
   }
   return std::move(*chain);
 }

@@ -8,9 +8,15 @@
 
 namespace tire_mold {
 
+/// What to call a part of a drawing, "entity 3 (LINE)", and the line of the file that it begins in.
+struct Origin {
+  std::string name;
+  int line{};
+};
+
 struct Drawing {
   std::vector<cncplan::kinematics::Drawn> drawn;
-  std::vector<std::string> names;  ///< what to call each: "entity 3 (LINE)"
+  std::vector<Origin> origins;  ///< of each
 };
 
 /// Reads the lines, arcs, circles and polylines of a drawing; X is the radius and Y the height. Text and the

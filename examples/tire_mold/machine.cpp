@@ -26,6 +26,8 @@ Machine of_the_thesis() {
                   axis('Z', 400.0, 0.0, 600.0, {100.0, 500.0, 5000.0}, false),
                   axis('A', 200.0, -90.0, 90.0, {60.0, 300.0, 3000.0}, true),
                   axis('C', 1000.0, -infinite, infinite, {60.0, 300.0, 3000.0}, true)};
+  machine.rapid_rate = 150.0;
+  machine.smallest_radius = 5.0;
   machine.dialect.pass_through = {{'G', 251.0}, {'G', 8.0}, {'G', 5.0}};
   return machine;
 }

@@ -26,18 +26,20 @@ TEST_CASE("bad input is refused with file, line or entity", "[tire_mold]") {
   const std::string other_entity = "  0\nSPLINE\n  8\n0\n";
   const std::vector<Case> cases{
       {"no drawing", "hello\n", good_art, "", "wall.dxf:1:1: error: "},
-      {"nothing drawn", dxf(""), good_art, "", "error: wall.dxf: there is no line and no arc in it"},
+      {"nothing drawn", dxf(""), good_art, "", "wall.dxf:1:1: error: there is no line and no arc in it"},
       {"a gap", dxf(dxf_line(300, 100, 250, 100) + dxf_line(249, 100, 200, 100)), good_art, "",
-       "error: wall.dxf: entity 2 (LINE) is not connected to the others: the nearest is entity 1 (LINE), 1 "
+       "wall.dxf:18:1: error: entity 2 (LINE) is not connected to the others: the nearest is entity 1 "
+       "(LINE), 1 "
        "mm away"},
       {"a branch",
        dxf(dxf_line(300, 100, 250, 100) + dxf_line(250, 100, 200, 100) + dxf_line(250, 100, 250, 0)),
        good_art, "",
-       "error: wall.dxf: entity 1 (LINE) meets more than one other at one end, entity 3 (LINE) among them"},
+       "wall.dxf:6:1: error: entity 1 (LINE) meets more than one other at one end, entity 3 (LINE) among "
+       "them"},
       {"twice", dxf(dxf_line(300, 100, 250, 100) + dxf_line(300, 100, 250, 100)), good_art, "",
-       "error: wall.dxf: entity 2 (LINE) is there twice: entity 1 (LINE) is the same"},
+       "wall.dxf:18:1: error: entity 2 (LINE) is there twice: entity 1 (LINE) is the same"},
       {"a point for a line", dxf(dxf_line(300, 100, 250, 100) + dxf_line(250, 100, 250, 100)), good_art, "",
-       "error: wall.dxf: entity 2 (LINE) is 0 mm long, no more than the chain tolerance"},
+       "wall.dxf:18:1: error: entity 2 (LINE) is 0 mm long, no more than the chain tolerance"},
       {"no radius", dxf(dxf_arc(0, 0, 0, 0, 90)), good_art, "",
        "wall.dxf:6:1: error: entity 1 (ARC) has no radius greater than zero"},
       {"a spline", dxf(dxf_line(300, 100, 200, 100) + other_entity), good_art, "",
