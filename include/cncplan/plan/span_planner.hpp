@@ -62,6 +62,14 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
   return count;
 }
 
+/// The next knot behind a gate. The last gate is one.
+template <std::floating_point S>
+[[nodiscard]] std::size_t next_knot(std::span<const BasicGate<S>> gates, std::size_t gate) {
+  do ++gate;
+  while (!gates[gate].knot);
+  return gate;
+}
+
 /// Plans between gates. A gate is a knot (zero acceleration, at its cap) where its cap is within reach of the
 /// knots on both sides; the others are passed in mid-ramp. Where a ramp would pass one too fast, the gate
 /// becomes a fixed knot, at no more than what is within reach, and the speeds are found anew.
@@ -85,13 +93,6 @@ class GatePlanner {
       pass_forward();
       if (!fix_violations(round)) return;
     }
-  }
-
-  /// The next knot after a gate that is one.
-  [[nodiscard]] std::size_t next_knot(std::size_t gate) const {
-    do ++gate;
-    while (!gates_[gate].knot);
-    return gate;
   }
 
   /// The profile from one knot to the next.
@@ -170,7 +171,7 @@ class GatePlanner {
   bool fix_violations(int round) {
     bool any = false;
     for (std::size_t from = 0; from + 1 < gates_.size();) {
-      const std::size_t to = next_knot(from);
+      const std::size_t to = next_knot<S>(gates_, from);
       if (to - from > 1) any = fix_violations(from, to, round) || any;
       from = to;
     }
@@ -238,7 +239,7 @@ Expected<Out> plan_spans(std::span<const BasicBlockCaps<S>> blocks, const Law& l
   GatePlanner<S, Law> planner(gates, law);
   planner.solve();
   for (std::size_t from = 0; from + 1 < gates.size();) {
-    const std::size_t to = planner.next_knot(from);
+    const std::size_t to = next_knot<S>(gates, from);
     const auto profile = planner.profile(from, to);
     if (!profile) return tl::unexpected(profile.error());
     *out++ = BasicSpan<S>{gates[from].block, gates[to].block - gates[from].block, *profile};

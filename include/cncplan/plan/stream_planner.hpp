@@ -137,9 +137,7 @@ class StreamPlanner {
 
   [[nodiscard]] const Gate& held(std::size_t gate) const { return memory_.held_gates[gate]; }
   [[nodiscard]] std::size_t next_knot(std::size_t gate) const {
-    do ++gate;
-    while (!held(gate).knot);
-    return gate;
+    return plan::next_knot<S>(memory_.held_gates, gate);
   }
 
   BasicStreamMemory<S> memory_;

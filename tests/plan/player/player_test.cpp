@@ -214,6 +214,22 @@ TEST_CASE("random requests break no limit, and the end stays exact") {
   }
 }
 
+TEST_CASE("gates that are too few shorten the look-ahead") {
+  std::vector<plan::PlayedBlock> blocks(16);
+  std::vector<plan::BlockCaps> ahead(16);
+  std::vector<plan::Gate> gates(20), spare(20);
+  for (auto* guarded : {&gates, &spare})
+    for (plan::Gate& gate : *guarded) gate.block = 77;
+  plan::Player player({blocks, ahead, std::span(gates).first(8), std::span(spare).first(3)});
+  for (int i = 0; i < 12; ++i)
+    REQUIRE(player.push({.caps = {1.0, i == 0 ? 0.0 : 1e3, limits, 0.0}, .feed = 20.0 + i % 2}));
+  int ticks = 0;
+  while (!player.finished() && ticks < 10000) player.tick(1e-3), ++ticks;
+  CHECK(player.finished());
+  CHECK(gates[8].block == 77);
+  CHECK(spare[3].block == 77);
+}
+
 TEST_CASE("the same requests at the same ticks give the same samples bit for bit") {
   const auto run = [] {
     test::Random random(7);

@@ -21,7 +21,8 @@
 namespace cncplan::plan {
 
 /// What a player works in; all of it belongs to the caller. `ahead` and the gates bound the look-ahead:
-/// `ahead` blocks, and one gate more than that in each buffer.
+/// `ahead` blocks, at least one, and one gate more than that in each buffer. Of what is more than its
+/// neighbours serve, nothing is used.
 template <std::floating_point S>
 struct BasicPlayerMemory {
   std::span<BasicPlayedBlock<S>> blocks;
@@ -65,7 +66,9 @@ class BasicPlayer {
   /// `memory.ahead`, none where it is negative.
   explicit BasicPlayer(const BasicPlayerMemory<S>& memory, std::int64_t keep_behind = 0)
       : memory_(memory), road_(memory.blocks) {
-    const std::int64_t room = road_.ring.capacity() - static_cast<std::int64_t>(memory.ahead.size());
+    const std::size_t gates = std::min(memory.gates.size(), memory.spare_gates.size());
+    memory_.ahead = memory.ahead.first(std::min(memory.ahead.size(), std::max<std::size_t>(gates, 1) - 1));
+    const std::int64_t room = road_.ring.capacity() - static_cast<std::int64_t>(memory_.ahead.size());
     keep_behind_ = std::max(std::min(keep_behind, room), std::int64_t{0});
   }
 
@@ -321,7 +324,7 @@ class BasicPlayer {
 
   void begin_span(std::size_t gate) {
     GatePlanner planner(memory_.gates.first(gate_count_));
-    const std::size_t next = planner.next_knot(gate);
+    const std::size_t next = next_knot<S>(memory_.gates, gate);
     if (const auto profile = planner.profile(gate, next)) return follow(BasicLeg<S>(*profile), at_, next);
     const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
                                     memory_.gates[gate].limits);
@@ -340,19 +343,13 @@ class BasicPlayer {
       return at_junction && !road_.asked.stopped ? rest_as_planned() : rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
-    const bool plans = may_plan && more_ && !settled_behind(next_gate_);
+    // nothing that comes can change where a span ends that is settled
+    const bool plans = may_plan && more_ && !memory_.gates[next_knot<S>(memory_.gates, next_gate_)].settled;
     if (plans && plan_from(at_, memory_.gates[next_gate_].speed))
       adopt(at_);
     else
       begin_span(next_gate_);
     return plans;
-  }
-
-  // Whether the span behind a gate ends where nothing that comes can change it.
-  [[nodiscard]] bool settled_behind(std::size_t gate) const {
-    do ++gate;
-    while (!memory_.gates[gate].knot);
-    return memory_.gates[gate].settled;
   }
 
   // The plan ends here, at a junction; or a brake does, which may be the plan's own.
