@@ -51,7 +51,7 @@ enum class ErrorCode : std::uint8_t {
       "must not be negative",
       "is above the limit",
       "is below the limit",
-      "end speed cannot be reached within the length",
+      "cannot be reached within the length",
       "the end point is farther away than the arc's diameter",
       "start and end point coincide",
       "radii at start and end point differ",
