@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/profile/seven_phase.hpp"
@@ -23,8 +24,10 @@ namespace cncplan::profile {
 /// speed. So the ramps may fit near the end speeds and again near a standstill, where any time can be had.
 /// Where they fit, the time falls as the middle speed grows: between a crest and a speed beside it that fits,
 /// halving finds the time or the last speed that fits.
-template <std::floating_point S>
-[[nodiscard]] Expected<BasicProfile<S>> stretched(S length, const BasicBoundarySpeeds<S>& speeds, S duration,
+template <std::floating_point S = double>
+[[nodiscard]] Expected<BasicProfile<S>> stretched(std::type_identity_t<S> length,
+                                                  const BasicBoundarySpeeds<S>& speeds,
+                                                  std::type_identity_t<S> duration,
                                                   const BasicLimits<S>& limits) {
   const auto fastest = seven_phase(length, speeds, limits);
   if (!fastest) return fastest;
