@@ -125,7 +125,7 @@ double searched(const Move& move, test::Random& random) {
   return time;
 }
 
-Move draw(test::Random& random) {
+Move draw_move(test::Random& random) {
   for (;;) {
     Move move{};
     move.limits = {random.log_uniform(1.0, 100.0), random.log_uniform(10.0, 3000.0),
@@ -152,7 +152,7 @@ TEST_CASE("no motion that a search finds is faster than from_state's") {
   double fastest = 2.0;
   Move where{};
   for (int n = 0; n < moves; ++n) {
-    const Move move = draw(random);
+    const Move move = draw_move(random);
     const auto profile = profile::from_state(move.length, move.start, move.end, move.limits);
     const double ratio = searched(move, random) / profile->duration();
     if (ratio < fastest) fastest = ratio, where = move;

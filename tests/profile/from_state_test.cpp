@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cncplan/profile/five_phase.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/profile/stretch.hpp"
 #include "profile/state_case.hpp"
 #include "support/catch.hpp"
 #include "support/profile_oracle.hpp"
@@ -11,36 +14,10 @@ using namespace cncplan;
 
 namespace {
 
+using test::integrate;
 using test::Real;
 using test::StateCase;
-
-struct Travelled {
-  Real position = 0, velocity = 0, acceleration = 0, lowest = 0, highest = 0, steepest = 0, duration = 0;
-};
-
-// Integrates jerks over times, from a state.
-Travelled integrate(const StateCase& c, const profile::Profile& p) {
-  Travelled t;
-  t.velocity = t.lowest = t.highest = c.start.velocity;
-  t.acceleration = c.start.acceleration;
-  for (const Phase& phase : p.phases()) {
-    const Real d = phase.duration, j = phase.jerk;
-    const Real last = t.acceleration + j * d;
-    if (t.acceleration * last < 0) {
-      const Real extremum = t.velocity - t.acceleration * t.acceleration / (2 * j);
-      t.lowest = std::min(t.lowest, extremum);
-      t.highest = std::max(t.highest, extremum);
-    }
-    t.position += d * (t.velocity + d * (t.acceleration / 2 + d * j / 6));
-    t.velocity += d * (t.acceleration + d * j / 2);
-    t.acceleration = last;
-    t.duration += d;
-    t.lowest = std::min(t.lowest, t.velocity);
-    t.highest = std::max(t.highest, t.velocity);
-    t.steepest = std::max(t.steepest, std::abs(t.acceleration));
-  }
-  return t;
-}
+using test::Travelled;
 
 StateCase draw_state(test::Random& random) {
   StateCase c{};
@@ -70,7 +47,7 @@ TEST_CASE("random stops come to rest within the limits, and no later than any ot
     const auto p = profile::stop(c.start, c.limits);
     INFO(c.literal());
     REQUIRE(p);
-    const Travelled t = integrate(c, *p);
+    const Travelled t = integrate(c.start, *p);
     const double v = c.limits.velocity;
     worst_speed = std::max(worst_speed, static_cast<double>(std::abs(t.velocity)) / v);
     worst_excess = std::max(worst_excess, static_cast<double>(t.steepest / c.limits.acceleration - 1));
@@ -112,7 +89,7 @@ TEST_CASE("random moves from any state cover the length exactly within the limit
       continue;
     }
     ++solved;
-    const Travelled t = integrate(c, *p);
+    const Travelled t = integrate(c.start, *p);
     const double v = c.limits.velocity;
     const auto grow = [](double& worst, Real value) {
       const bool grew = static_cast<double>(value) > worst;
@@ -197,4 +174,33 @@ TEST_CASE("a start above the speed limit is brought down to it") {
   CHECK(p->top_velocity() == 10.0);
   CHECK(p->parts().cruise > 1.0);
   CHECK(p->parts().up.acceleration < 0.0);
+}
+
+TEST_CASE("a start whose acceleration cannot end in time passes the speed limit, and the peak tells") {
+  const Limits limits{30.0, 1000.0, 10000.0};
+  const auto p = profile::from_state(20.0, {29.0, 300.0}, 0.0, limits);
+  REQUIRE(p);
+  CHECK(p->peak().velocity == Approx(29.0 + 300.0 * 300.0 / 20000.0).epsilon(1e-14));
+}
+
+TEST_CASE("slower end speeds than the bound of a refusal may be had") {
+  const Limits limits{30.0, 1000.0, 10000.0};
+  const double to_rest = profile::stop({20.0, 0.0}, limits)->length();
+  const auto refused = profile::from_state(to_rest, {20.0, 0.0}, 20.0 / 3.0, limits);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().bound > 20.0 / 3.0);
+  CHECK(profile::from_state(to_rest, {20.0, 0.0}, 0.0, limits));
+}
+
+TEST_CASE("whole numbers may stand for scalars, and braces for all else") {
+  const Limits limits{30.0, 1000.0, 10000.0};
+  CHECK(*profile::from_state(5, {20.0, 300.0}, 0, limits) ==
+        *profile::from_state(5.0, profile::StartState{20.0, 300.0}, 0.0, limits));
+  CHECK(*profile::five_phase(5, {0, 0}, limits) == *profile::five_phase(5.0, {0.0, 0.0}, limits));
+  CHECK(*profile::seven_phase(5, {0, 0}, {30, 1000, 10000}) ==
+        *profile::seven_phase(5.0, {0.0, 0.0}, limits));
+  CHECK(*profile::stretched(5, {0, 0}, 2, limits) == *profile::stretched(5.0, {0.0, 0.0}, 2.0, limits));
+  CHECK(
+      profile::from_state(5, profile::BasicStartState<float>{20, 300}, 0, BasicLimits<float>{30, 1000, 10000})
+          ->length() == 5.0F);
 }

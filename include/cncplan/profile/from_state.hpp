@@ -5,6 +5,8 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <optional>
+#include <type_traits>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/limits.hpp"
@@ -67,35 +69,67 @@ template <std::floating_point S>
 
 namespace detail {
 
-// Nothing, or what is wrong with a state: not finite, running backwards, accelerating beyond the limit, or
-// bound to run backwards because it brakes too hard (bound: the speed at which its acceleration is gone).
+// The highest speed that limits and a state tell of: what rounding is measured by. It comes from the speeds
+// that a profile has on the way, so it stays as the speed vanishes.
 template <std::floating_point S>
-[[nodiscard]] Expected<void> check(const BasicStartState<S>& start, const BasicLimits<S>& limits) {
+[[nodiscard]] S fastest_known(const BasicStartState<S>& start, const BasicLimits<S>& limits) {
+  return std::max({limits.velocity, start.velocity, settled_speed(start, limits)});
+}
+
+// How far from the exact motion the speed of a state may be that was read off a profile.
+template <std::floating_point S>
+[[nodiscard]] S speed_rounding(const BasicStartState<S>& start, const BasicLimits<S>& limits) {
+  return S(16) * std::numeric_limits<S>::epsilon() * fastest_known(start, limits);
+}
+
+// Likewise, as a share, its acceleration and the length left. These have the rounding of the profile's whole
+// time and length, which are not known here: it is taken for 10^4 times the way to rest.
+template <std::floating_point S>
+inline constexpr S share_rounding = std::max(S(1e-11), S(64) * std::numeric_limits<S>::epsilon());
+
+template <std::floating_point S>
+[[nodiscard]] S length_rounding(S length, const BasicStartState<S>& start, const BasicLimits<S>& limits) {
+  const S way_to_rest = seven_phase_law(limits).distance(fastest_known(start, limits), S(0));
+  return share_rounding<S> * (length + way_to_rest);
+}
+
+// The state itself, or what is wrong with it: not finite, running backwards, accelerating beyond the limit,
+// or bound to run backwards because it brakes too hard (bound: the speed at which its acceleration is gone).
+// One that is so by no more than a profile's rounding is moved to the limit.
+template <std::floating_point S>
+[[nodiscard]] Expected<BasicStartState<S>> check(const BasicStartState<S>& start,
+                                                 const BasicLimits<S>& limits) {
   if (auto valid = validate(limits); !valid) return tl::unexpected(valid.error());
   const auto [v, a] = start;
   if (!std::isfinite(v)) return refusal(ErrorCode::not_finite, "start speed", v, S(0));
   if (!std::isfinite(a)) return refusal(ErrorCode::not_finite, "start acceleration", a, S(0));
-  if (v < S(0)) return refusal(ErrorCode::negative, "start speed", v, S(0));
-  constexpr S rounding = S(1) + S(16) * std::numeric_limits<S>::epsilon();
-  if (std::abs(a) > limits.acceleration * rounding)
-    return refusal(ErrorCode::above_limit, "start acceleration", a, limits.acceleration);
   const S settled = settled_speed(start, limits);
-  if (settled < -S(16) * std::numeric_limits<S>::epsilon() * v)
-    return refusal(ErrorCode::below_limit, "start acceleration", a, settled);
-  return {};
+  constexpr S own_rounding = S(16) * std::numeric_limits<S>::epsilon();
+  if (v >= S(0) && std::abs(a) <= limits.acceleration * (S(1) + own_rounding) && settled >= -own_rounding * v)
+    return start;
+  const S rounding = speed_rounding(start, limits);
+  if (v < -rounding) return refusal(ErrorCode::negative, "start speed", v, S(0));
+  if (std::abs(a) > limits.acceleration * (S(1) + share_rounding<S>))
+    return refusal(ErrorCode::above_limit, "start acceleration", a, limits.acceleration);
+  const S held = std::clamp(a, -limits.acceleration, limits.acceleration);
+  const S lost = -settled_speed({S(0), held}, limits);
+  if (v - lost < -rounding) return refusal(ErrorCode::below_limit, "start acceleration", a, settled);
+  return BasicStartState<S>{std::max({v, lost, S(0)}), held};
 }
 
 }  // namespace detail
 
 /// To rest as soon as the limits allow, wherever that is: what a feed hold does. The profile's length is the
-/// distance that it takes. Errors: a state that is not finite, goes backwards, or must come to do so.
+/// distance that it takes. Any state of a profile is accepted, to rounding: see `from_state`. Errors: a state
+/// that is not finite, goes backwards, or must come to do so.
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicProfile<S>> stop(const BasicStartState<S>& start, const BasicLimits<S>& limits) {
-  if (auto valid = detail::check(start, limits); !valid) return tl::unexpected(valid.error());
-  const BasicRamp<S> ramp = ramp_from(start, S(0), limits);
-  return BasicProfile<S>({.length = distance(start, ramp),
-                          .start_velocity = start.velocity,
-                          .start_acceleration = start.acceleration,
+  const auto state = detail::check(start, limits);
+  if (!state) return tl::unexpected(state.error());
+  const BasicRamp<S> ramp = ramp_from(*state, S(0), limits);
+  return BasicProfile<S>({.length = distance(*state, ramp),
+                          .start_velocity = state->velocity,
+                          .start_acceleration = state->acceleration,
                           .top_velocity = S(0),
                           .end_velocity = S(0),
                           .cruise = S(0),
@@ -104,15 +138,34 @@ template <std::floating_point S>
 }
 
 /// The fastest motion from a state to an end speed (zero acceleration) over exactly `length` mm. A start
-/// above the speed limit is brought down to it as fast as the other limits allow.
+/// above the speed limit is brought down to it as fast as the other limits allow; one below it whose
+/// acceleration cannot end in time (`settled_speed` above the limit) passes it first: `peak()` tells.
+///
+/// Any state of a profile (`s = p.at(t)`) of any solver within the same limits is accepted, with the length
+/// left (`p.length() - s.position`) and the profile's end speed. Where it would be refused for rounding
+///
+/// - motion begins up to 16 eps of the highest speed beside the state, so that it ends in the limit case;
+/// - its way may be longer than `length`, or `length` less than 0, by a share of 1e-11 (`float`: 64 eps) of
+///   `length` and the way to rest from the speed limit: the position steps back by that at the end, to
+///   `length`;
+/// - the acceleration may exceed its limit by that share, and is cut.
+///
+/// This holds for profiles up to 10^4 times (`float`: 10 times) as long as that way in mm and as A / J in s.
+/// For the length left of a longer one add 4 eps of the whole length. Any motion that reaches a speed v with
+/// hardly any acceleration left may step likewise by up to 4 v sqrt(eps v / J): what it takes to make up for
+/// the rounding of v.
 ///
 /// Three families, by growing length: braking all the way, with the brake released for a while at first; from
 /// the settled speed (or the end speed, if that is higher) up to a top speed and down again; and the same
 /// with a cruise at the speed limit. Within each the distance grows with one parameter, which is found by
 /// halving an interval eight times more often than there are digits, at most. Errors: as `stop`, as the other
-/// solvers; `end_speed_unreachable`, where the length is too short, with the bound that they give.
-template <std::floating_point S>
-[[nodiscard]] Expected<BasicProfile<S>> from_state(S length, const BasicStartState<S>& start, S end_velocity,
+/// solvers; `end_speed_unreachable`, where the length is too short, with the bound that they give. A slower
+/// end speed than the bound, rest among them, may be reachable again: the shortest way does not always grow
+/// as its end speed falls.
+template <std::floating_point S = double>
+[[nodiscard]] Expected<BasicProfile<S>> from_state(std::type_identity_t<S> length,
+                                                   const BasicStartState<S>& start,
+                                                   std::type_identity_t<S> end_velocity,
                                                    const BasicLimits<S>& limits);
 
 namespace detail {
@@ -125,6 +178,16 @@ class FromState {
       : length_(length), start_(start), end_(end_velocity), limits_(limits), law_(seven_phase_law(limits)) {}
 
   [[nodiscard]] Expected<BasicProfile<S>> solve() const {
+    if (const auto exact = fitting()) return *exact;
+    const BasicStartState<S> near = nearer();
+    if (const auto moved = FromState(length_, near, end_, limits_).fitting()) return *moved;
+    if (const auto rounded = directly(near)) return *rounded;
+    return refusal(ErrorCode::end_speed_unreachable, "end speed", end_, reachable());
+  }
+
+ private:
+  // The three families.
+  [[nodiscard]] std::optional<BasicProfile<S>> fitting() const {
     const S settled = std::max(settled_speed(start_, limits_), S(0));
     const S least_top = std::max(settled, end_);
     if (covered(least_top) <= length_ || least_top > limits_.velocity) {
@@ -140,10 +203,45 @@ class FromState {
         return release(least, length_);
       }
     }
-    return refusal(ErrorCode::end_speed_unreachable, "end speed", end_, reachable());
+    return {};
   }
 
- private:
+  // The settled speed is at the end speed, to rounding. There a ramp for what lacks would have to begin anew,
+  // and its length grows with the root of that: it must not be driven.
+  [[nodiscard]] bool settles_at_end() const {
+    return std::abs(end_ - settled_speed(start_, limits_)) <= speed_rounding(start_, limits_);
+  }
+
+  // The state within rounding that is nearest to one that settles at the end speed: its way is shorter.
+  [[nodiscard]] BasicStartState<S> nearer() const {
+    const S rounding = speed_rounding(start_, limits_);
+    const S gained = settled_speed({S(0), start_.acceleration}, limits_);
+    const S speed = settles_at_end()
+                        ? end_ - gained
+                        : start_.velocity + std::copysign(rounding, end_ - settled_speed(start_, limits_));
+    return {std::max(speed, S(0)), start_.acceleration};
+  }
+
+  // The shortest way from such a state, longer than the length by rounding.
+  [[nodiscard]] std::optional<BasicProfile<S>> directly(const BasicStartState<S>& near) const {
+    const S jerk = std::isfinite(limits_.jerk) ? limits_.jerk : S(0);
+    const S release = std::abs(near.acceleration) / limits_.jerk;
+    const BasicRamp<S> ramp =
+        settles_at_end() ? BasicRamp<S>{release, S(0), S(0), S(0), -std::copysign(jerk, near.acceleration)}
+                         : ramp_from(near, end_, limits_);
+    const S left = length_ - distance(near, ramp);
+    const S rounding = length_rounding(length_, start_, limits_);
+    if (left < -rounding || (left > rounding && end_ == S(0))) return {};
+    return BasicProfile<S>({.length = length_,
+                            .start_velocity = near.velocity,
+                            .start_acceleration = near.acceleration,
+                            .top_velocity = end_,
+                            .end_velocity = end_,
+                            .cruise = left > rounding ? left / end_ : S(0),
+                            .up = ramp,
+                            .down = {}});
+  }
+
   // The largest parameter in [low, high] for which a condition holds that holds at `low`.
   template <class Condition>
   [[nodiscard]] static S highest(const Condition& holds, S low, S high) {
@@ -216,19 +314,21 @@ class FromState {
 }  // namespace detail
 
 template <std::floating_point S>
-Expected<BasicProfile<S>> from_state(S length, const BasicStartState<S>& start, S end_velocity,
-                                     const BasicLimits<S>& limits) {
-  if (auto valid = detail::check(start, limits); !valid) return tl::unexpected(valid.error());
+Expected<BasicProfile<S>> from_state(std::type_identity_t<S> length, const BasicStartState<S>& start,
+                                     std::type_identity_t<S> end_velocity, const BasicLimits<S>& limits) {
+  const auto state = detail::check(start, limits);
+  if (!state) return tl::unexpected(state.error());
   const auto check = [](S value, S bound, std::string_view field) -> Expected<void> {
     if (!std::isfinite(value)) return detail::refusal(ErrorCode::not_finite, field, value, S(0));
     if (value < S(0)) return detail::refusal(ErrorCode::negative, field, value, S(0));
     if (value > bound) return detail::refusal(ErrorCode::above_limit, field, value, bound);
     return {};
   };
-  if (auto ok = check(length, std::numeric_limits<S>::max(), "length"); !ok)
-    return tl::unexpected(ok.error());
+  const bool behind = length < S(0) && length >= -detail::length_rounding(S(0), *state, limits);
+  const S ahead = behind ? S(0) : length;
+  if (auto ok = check(ahead, std::numeric_limits<S>::max(), "length"); !ok) return tl::unexpected(ok.error());
   if (auto ok = check(end_velocity, limits.velocity, "end speed"); !ok) return tl::unexpected(ok.error());
-  return detail::FromState<S>(length, start, end_velocity, limits).solve();
+  return detail::FromState<S>(ahead, *state, end_velocity, limits).solve();
 }
 
 }  // namespace cncplan::profile
