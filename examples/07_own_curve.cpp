@@ -24,7 +24,8 @@ struct Ellipse {
 static_assert(ParametricPath<Ellipse>);
 
 int main() {
-  const path::ArcLengthTable ellipse{Ellipse{}};  // knows the parameter of every length: a Path
+  const Ellipse curve;
+  const path::ArcLengthTable ellipse{curve};  // knows the parameter of every length: a Path
   const auto profile =
       profile::seven_phase(ellipse.length(), {.start = 0.0, .end = 0.0},
                            Limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0});
@@ -33,7 +34,7 @@ int main() {
   double worst = 0.0;
   const auto exact = interpolate::samples(ellipse, *profile, 1e-3);
   std::int64_t k = 0;
-  for (const auto& sample : interpolate::taylor_samples(Ellipse{}, *profile, 1e-3))
+  for (const auto& sample : interpolate::taylor_samples(curve, *profile, 1e-3))
     worst = std::max(worst, (sample.position - exact[k++].position).norm());
   std::printf("ellipse of %.6f mm in %.3f s: %ld samples\n", ellipse.length(), profile->duration(),
               static_cast<long>(exact.size()));

@@ -107,7 +107,10 @@ template <ParametricPath P, Profile F>
                                   typename P::Scalar offset = {}) {
   return Stepped<P, F>(path, profile, period, offset);
 }
-/// A profile that would be gone before the first sample.
+/// A path or a profile that would be gone before the first sample.
+template <ParametricPath P, Profile F>
+void taylor_samples(const P&& path, const F& profile, typename P::Scalar period,
+                    typename P::Scalar offset = {}) = delete;
 template <ParametricPath P, Profile F>
   requires(!PhasedProfile<F>)
 void taylor_samples(const P& path, const F&& profile, typename P::Scalar period,
