@@ -22,9 +22,6 @@ using namespace cncplan::kinematics;
 namespace {
 
 template <class S>
-constexpr S pi = std::numbers::pi_v<S>;
-
-template <class S>
 path::BasicSegment<S> line(S x0, S y0, S z0, S x1, S y1, S z1) {
   return path::BasicLine<S>({x0, y0, z0}, {x1, y1, z1});
 }
