@@ -16,13 +16,14 @@ using namespace cncplan;
 int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
   using F = test::PlayerFaults;
   using Worst = test::Worst<F, std::uint64_t>;
+  // jerks have 1e-6: a leg that ends by rounding short of a junction leaves its last 1e-10 s to the next tick
   Worst all[] = {{"jerk (relative)", &F::jerk, 1e-6},
                  {"acceleration (relative)", &F::acceleration, 1e-9},
                  {"speed (relative)", &F::speed, 1e-9},
                  {"speed at junctions (mm/s)", &F::junction, 1e-9},
                  {"travel (mm)", &F::travel, 1e-9},
                  {"acceleration in space (relative)", &F::sum_acceleration, 1e-9},
-                 {"jerk in space (relative)", &F::sum_jerk, 1e-9},
+                 {"jerk in space (relative)", &F::sum_jerk, 1e-6},
                  {"end (mm)", &F::end, 1e-9}};
   std::uint64_t ticks = 0, blocks = 0, requests = 0, unfinished = 0;
   for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {
