@@ -178,7 +178,10 @@ TEST_CASE("random programs in float keep their limits to float's digits") {
     worst.worst_of(errors);
   }
   INFO("worst: " << test::literal(where));
-  CHECK(worst.cap < 1e-2);
+  CHECK(worst.cap < 1e-4);
+  CHECK(worst.length < 1e-5);
+  CHECK(worst.speed_jump < 1e-5);
+  CHECK(worst.backward < 1e-4);
   CHECK(worst.velocity < 1e-4);
   CHECK(worst.acceleration < 1e-4);
   CHECK(worst.jerk < 1e-4);

@@ -13,7 +13,7 @@ using namespace cncplan;
 
 TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
   test::Random random;
-  double gap = 0.0, travel = 0.0, junction = 0.0, total = 0.0, peak = 0.0, top = 0.0;
+  double gap = 0.0, travel = 0.0, junction = 0.0, total = 0.0, peak = 0.0, top = 0.0, above = 0.0;
   std::vector<plan::BlockCaps> where;
   for (int draws = 0; draws < 500; ++draws) {
     const auto blocks = test::random_program(random, test::LimitSpread::wide, 100);
@@ -47,8 +47,13 @@ TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
         for (int k = 0; k <= 40; ++k)
           highest = std::max(highest, span.profile.at(start + timings[i].duration * k / 40.0).velocity);
         start += timings[i].duration;
-        const double off = (highest - timings[i].peak_velocity) / blocks[i].limits.velocity;
+        const double fastest = blocks[i].limits.velocity;
+        const double off = (highest - timings[i].peak_velocity) / fastest;
         if (off > top) top = off, where = blocks;
+        // between two samples a speed rises by no more than its bend allows
+        const double step = timings[i].duration / 40.0;
+        const double hidden = blocks[i].limits.jerk * step * step / 8.0;
+        above = std::max(above, (timings[i].peak_velocity - highest - hidden) / fastest);
       }
     }
   }
@@ -59,6 +64,7 @@ TEST_CASE("blocks follow each other in time and meet their spans' profiles") {
   CHECK(total < 1e-12);
   CHECK(peak < 1e-9);
   CHECK(top < 1e-9);
+  CHECK(above < 1e-9);
 }
 
 TEST_CASE("a block's peak lies within it") {
