@@ -93,6 +93,7 @@
 #include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/plan/player/brake.hpp"
 #include "cncplan/plan/player/brake_ahead.hpp"
+#include "cncplan/plan/player/horizon.hpp"
 #include "cncplan/plan/player/leg.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "cncplan/plan/player/queue.hpp"

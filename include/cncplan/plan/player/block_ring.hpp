@@ -1,16 +1,12 @@
-// What lies ahead of a machine that runs: blocks in a ring, seen from where it stands, in the direction it
-// goes.
+// The blocks of a machine that runs, in a ring, and places on them.
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "cncplan/plan/caps.hpp"
-#include "cncplan/profile/seven_phase.hpp"
 
 namespace cncplan::plan {
 
@@ -70,29 +66,6 @@ class BlockRing {
   std::span<Block> memory_;
   std::int64_t oldest_ = 0;
   std::int64_t end_ = 0;
-};
-
-/// How far a plan has to look ahead: the way from rest to the highest speed and back. Beyond that nothing can
-/// slow what comes next, as the motion can still come to rest before it. Each block is taken in as it is met.
-template <std::floating_point S>
-class Horizon {
- public:
-  void take(const BasicLimits<S>& limits, S length) {
-    travelled_ += length;
-    if (limits.velocity <= limits_.velocity && limits.acceleration >= limits_.acceleration &&
-        limits.jerk >= limits_.jerk)
-      return;
-    limits_ = {std::max(limits_.velocity, limits.velocity),
-               std::min(limits_.acceleration, limits.acceleration), std::min(limits_.jerk, limits.jerk)};
-    enough_ = S(2) * profile::seven_phase_law(limits_).distance(S(0), limits_.velocity);
-  }
-
-  [[nodiscard]] bool reached() const { return travelled_ > enough_; }
-
- private:
-  BasicLimits<S> limits_{S(0), std::numeric_limits<S>::infinity(), std::numeric_limits<S>::infinity()};
-  S travelled_{};
-  S enough_{};
 };
 
 }  // namespace cncplan::plan

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "cncplan/plan/player/block_ring.hpp"
-#include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/plan/player/horizon.hpp"
 
 namespace cncplan::plan {
 
