@@ -89,6 +89,7 @@
 #include "cncplan/plan/joint/sidewall_rows.hpp"
 #include "cncplan/plan/joint/stretch.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/machine.hpp"
 #include "cncplan/plan/motion_block.hpp"
 #include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/plan/player/brake.hpp"

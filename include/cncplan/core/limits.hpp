@@ -3,18 +3,19 @@
 
 #include <cmath>
 #include <concepts>
+#include <limits>
 
 #include "cncplan/core/error.hpp"
 
 namespace cncplan {
 
-/// Largest magnitudes allowed along the path. Infinity in `acceleration` or in `jerk` means "no such limit";
-/// in both, the speed would jump.
+/// Largest magnitudes allowed. A limit that is not given is infinite: there is no such limit. Motion needs a
+/// finite velocity, and an acceleration or a jerk that is finite.
 template <std::floating_point S>
 struct BasicLimits {
-  S velocity{};      ///< mm/s, > 0, finite
-  S acceleration{};  ///< mm/s^2, > 0
-  S jerk{};          ///< mm/s^3, > 0
+  S velocity = std::numeric_limits<S>::infinity();      ///< mm/s, > 0
+  S acceleration = std::numeric_limits<S>::infinity();  ///< mm/s^2, > 0
+  S jerk = std::numeric_limits<S>::infinity();          ///< mm/s^3, > 0
 
   friend bool operator==(const BasicLimits&, const BasicLimits&) = default;
 };

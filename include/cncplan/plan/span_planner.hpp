@@ -43,7 +43,7 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
                        std::span<BasicGate<S>> gates, std::size_t divide = 0) {
   if (blocks.empty()) return 0;
   std::size_t count = 0;
-  BasicLimits<S> low{}, high{};  // since the last knot by force
+  BasicLimits<S> low = blocks.front().limits, high = low;  // since the last knot by force
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicLimits<S>& limits = blocks[i].limits;
     const BasicLimits<S>& before = i == 0 ? limits : blocks[i - 1].limits;

@@ -142,7 +142,7 @@ class BasicRoad {
 
   /// The highest limits of acceleration and jerk from a spot on, likewise.
   [[nodiscard]] BasicLimits<S> strongest(const Spot& from, S speed) const {
-    BasicLimits<S> highest{};
+    BasicLimits<S> highest{S(0), S(0), S(0)};
     to_rest(from, speed, [&](S, const BasicLimits<S>& limits) {
       highest.acceleration = std::max(highest.acceleration, limits.acceleration);
       highest.jerk = std::max(highest.jerk, limits.jerk);
