@@ -63,7 +63,7 @@ BENCHMARK(parameter_at)->Name("path/parameter_at/spiral");
 
 void bounds(benchmark::State& state) {
   const Arc arc = half_circle(0);
-  run(state, 0, 1, [&arc](double) { return arc.bounds().high; });
+  run(state, 0, 1, [&arc](double) { return arc.box().high; });
 }
 BENCHMARK(bounds)->Name("path/bounds/circle");
 

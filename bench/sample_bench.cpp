@@ -26,9 +26,9 @@ path::Arc turns(double rise) {
 }
 path::Arc arc() { return turns(0.0); }
 path::Arc helix() { return turns(10.0); }
-path::Line line() { return {{0, 0, 0}, {100, 70, 10}}; }
+path::Line<3> line() { return {{0, 0, 0}, {100, 70, 10}}; }
 
-template <Path P>
+template <CurveByLength P>
 profile::Profile profile_of(const P& path) {
   return profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0},
                               Limits{.velocity = 29.8, .acceleration = 1000.0, .jerk = 10000.0})
@@ -38,7 +38,7 @@ profile::Profile profile_of(const P& path) {
 // Positions alone, into the buffer.
 template <auto make>
 void batch(benchmark::State& state) {
-  const path::Segment path = make();
+  const path::Segment<3> path = make();
   const auto samples = interpolate::samples(path, profile_of(path), 1e-3);
   if (samples.size() < buffer_points) state.SkipWithError("the motion is too short");
   for (auto _ : state) {

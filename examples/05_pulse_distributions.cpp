@@ -53,7 +53,7 @@ Pulses timer_pulses(const Counts& counts) {
 
 Pulses exact_pulses(const Counts& counts) {
   Pulses pulses;
-  const path::Line line(Vector3::Zero(), target(counts));
+  const path::Line<3> line(Vector3::Zero(), target(counts));
   const std::array<Phase, 1> steady{{{.duration = 1.0, .velocity = line.length()}}};
   for (int axis = 0; axis < 3; ++axis)
     pulses[static_cast<std::size_t>(axis)] =

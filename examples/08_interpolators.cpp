@@ -40,7 +40,7 @@ struct Walk {
   double end{};
 };
 
-template <Path P>
+template <CurveByLength P>
 Walk walk(Method method, const P& path, const profile::Profile& profile, double period) {
   const interpolate::Grid grid{period, profile.duration()};
   const std::int64_t size = grid.size();
@@ -82,7 +82,7 @@ std::vector<Vector3> accelerations(std::vector<Vector3> positions, double period
   return result;
 }
 
-template <Path P>
+template <CurveByLength P>
 std::vector<Vector3> positions(const P& path, const Walk& way) {
   std::vector<Vector3> result;
   for (const double u : way.parameters) result.push_back(path.position(std::min(u, path.parameter_end())));
@@ -90,14 +90,14 @@ std::vector<Vector3> positions(const P& path, const Walk& way) {
   return result;
 }
 
-template <Path P>
+template <CurveByLength P>
 profile::Profile profile_for(Method method, const P& path, double curvature) {
   Limits capped = plan::CapSpeed{}({curvature}, limits);
   if (method == Method::constant) return profile::constant_speed(path.length(), capped.velocity);
   return profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0}, capped).value();
 }
 
-template <Path P>
+template <CurveByLength P>
 Errors measure(Method method, const P& path, double curvature, double period) {
   const profile::Profile profile = profile_for(method, path, curvature);
   const Walk way = walk(method, path, profile, period);
@@ -133,7 +133,7 @@ Errors measure(Method method, const P& path, double curvature, double period) {
   return errors;
 }
 
-template <Path P>
+template <CurveByLength P>
 void compare(const char* what, const P& path, double curvature) {
   for (const double period : {0.25e-3, 1e-3, 4e-3})
     for (const Method method : methods) {
@@ -149,7 +149,7 @@ path::Arc circle(double radius, double rise = 0.0) {
       .value();
 }
 
-template <Path P>
+template <CurveByLength P>
 double largest_curvature(const P& path) {
   double largest = 0.0;
   for (int i = 0; i <= 1000; ++i)

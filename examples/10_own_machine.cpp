@@ -40,7 +40,7 @@ int main() {
   const Scara machine;
   const BasicJointLimits<double, 3> limits{
       .velocity = {2, 3, 100}, .acceleration = {10, 15, 500}, .jerk = {100, 150, 5000}};
-  const path::Line line({250, -180, 0}, {180, 200, 10});
+  const path::Line<3> line({250, -180, 0}, {180, 200, 10});
 
   plan::JointCourse course{plan::OneChart(machine)};
   if (!course.append(line, 150.0)) return 1;  // mm/s, where the joints allow

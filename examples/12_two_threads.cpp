@@ -37,7 +37,7 @@ plan::Block block(int number) {
   const auto corner = [&](int i) {
     return Vector3(radius * std::cos(i * turn), radius * std::sin(i * turn), 0);
   };
-  return {path::Line(corner(number), corner(number + 1)), limits, junction::Kind::line};
+  return {path::Line<3>(corner(number), corner(number + 1)), limits, junction::Kind::line};
 }
 
 // Not bound to any time: it runs ahead as far as the queue has room.

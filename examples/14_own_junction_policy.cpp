@@ -27,7 +27,7 @@ int main() {
   for (int i = 0; i < 24; ++i) {  // a zigzag whose corners get sharper
     const double x = 8.0 * i, y = i * (i % 2 == 0 ? 1.0 : -1.0);
     const double next = (i + 1) * (i % 2 == 0 ? -1.0 : 1.0);
-    blocks.push_back({path::Line({x, y, 0}, {x + 8.0, next, 0}), limits, junction::Kind::line});
+    blocks.push_back({path::Line<3>({x, y, 0}, {x + 8.0, next, 0}), limits, junction::Kind::line});
   }
   print("exact stop", blocks, junction::ExactStop{});
   print("by angle", blocks, ByAngle{});

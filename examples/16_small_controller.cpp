@@ -35,7 +35,7 @@ void tick() {
   if (ticks == 700) player.feed_override(1.5);
   const plan::Played now = player.tick(0.001);
   if (now.block >= 0 && ticks % 50 == 0) {
-    const path::Segment& path = blocks[static_cast<std::size_t>(now.block) % room].segment;
+    const path::Segment<3>& path = blocks[static_cast<std::size_t>(now.block) % room].segment;
     const Vector3 point = path.position_at(now.along);
     std::printf("%5d ms %9.4f %9.4f mm %8.3f mm/s\n", ticks, point.x(), point.y(), now.velocity);
   }

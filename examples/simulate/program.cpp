@@ -66,7 +66,7 @@ class Builder {
       const Vector3 start =
           rows() ? tip(row, 0.0) : Vector3(-machine_.table_center[0], -machine_.table_center[1], 0.0);
       if (rows()) program_.rows.push_back(row);
-      add({path::Line(start, start), limits_, junction::Kind::rapid, true, 0.0},
+      add({path::Line<3>(start, start), limits_, junction::Kind::rapid, true, 0.0},
           {line, 1, Plane::xy, Vector3::Zero(), 0.0, 0.0});
     }
     return program_.blocks.back();
@@ -88,7 +88,7 @@ class Builder {
     auto block = plan::block(motion, limits, rapid_rate);
     if (!block) support::refuse(program_.file, {block.error(), motion.line, motion.column, {}});
     if (machine_.kinematics == Kinematics::cartesian) {
-      const auto bounds = block->segment.bounds();
+      const auto bounds = block->segment.box();
       check_travel<3>(motion, bounds.low, bounds.high);
       block->limits = limits_along(machine_, *block);
     }
@@ -110,7 +110,7 @@ class Builder {
     limits.velocity = plan::feed(motion, length, limits.velocity, rapid_rate);
     program_.rows.push_back(row);
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
-    add({path::Line(tip(row, 0.0), tip(row, 1.0)), limits,
+    add({path::Line<3>(tip(row, 0.0), tip(row, 1.0)), limits,
          rapid ? junction::Kind::rapid : junction::Kind::line, motion.exact_stop, 0.0},
         {motion.line, motion.column, motion.plane, Vector3::Zero(), 0.0, length});
   }

@@ -51,7 +51,7 @@ Route<RowPath> row_route(const Program& program) {
   // a wait before the first motion: no way, on any row
   TireMoldRow standing = program.rows.front();
   standing.even_length = 1.0;
-  const RowPath path(path::Line(Vector3::Zero(), Vector3::UnitX()), standing, 0.0, 0.0);
+  const RowPath path(path::Line<3>(Vector3::Zero(), Vector3::UnitX()), standing, 0.0, 0.0);
   route.insert(route.begin(), {path, 0});
   return route;
 }
@@ -61,7 +61,7 @@ Route<PolarPath> polar_route(const Program& program, const Machine& machine) {
   plan::JointCourse course{plan::PolarGuide(smallest)};
   Route<PolarPath> route;
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    const path::Segment& segment = program.blocks[i].segment;
+    const path::Segment<3>& segment = program.blocks[i].segment;
     const auto followed = course.append(segment, 1.0, i);
     if (!followed)
       refuse(program, i,
@@ -72,7 +72,7 @@ Route<PolarPath> polar_route(const Program& program, const Machine& machine) {
     const Vector3 place = segment.start();
     kinematics::PolarChart chart;
     chart.azimuth = {place.x(), place.y(), 0.0};
-    route.push_back({PolarPath(path::Line(place, place + Vector3::UnitZ()), chart, 0.0, 0.0), i});
+    route.push_back({PolarPath(path::Line<3>(place, place + Vector3::UnitZ()), chart, 0.0, 0.0), i});
   }
   for (const auto& block : course.blocks()) route.push_back({block.path, block.motion});
   for (const auto& piece : route) check_travel(program, machine, piece);

@@ -12,7 +12,7 @@
 
 namespace simulate {
 
-using MillPath = cncplan::path::Segment;
+using MillPath = cncplan::path::Segment<3>;
 using PolarPath = cncplan::plan::MappedPath<cncplan::kinematics::PolarChart>;
 using RowPath = cncplan::plan::MappedPath<TireMoldRow>;
 
@@ -40,8 +40,8 @@ using Route = std::vector<Piece<P>>;
 template <std::invocable<const RowPath&> Add>
 void cut_row(const TireMoldRow& row, Add&& add) {
   constexpr double longest = 2.0;  // mm
-  const cncplan::path::Segment whole(
-      cncplan::path::Line(cncplan::Vector3::Zero(), cncplan::Vector3::UnitX()));
+  const cncplan::path::Segment<3> whole(
+      cncplan::path::Line<3>(cncplan::Vector3::Zero(), cncplan::Vector3::UnitX()));
   double no_table = 0.0;
   cncplan::plan::cut(cncplan::plan::Stretch<TireMoldRow>{whole, row, 0.0, whole.parameter_end(), false},
                      longest, no_table, add);
@@ -64,7 +64,7 @@ void cut_row(const TireMoldRow& row, Add&& add) {
 
 /// The path of the program beneath a piece, and its parameter there: what the tool should follow.
 struct Programmed {
-  const cncplan::path::Segment* segment;
+  const cncplan::path::Segment<3>* segment;
   double parameter;
 };
 [[nodiscard]] inline Programmed programmed(const MillPath& path, double u) { return {&path, u}; }

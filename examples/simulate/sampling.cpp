@@ -28,7 +28,7 @@ class TaylorFollower {
       along_ = plan_.timings[block_].entry;
       time_ = plan_.timings[block_].start;
     }
-    const path::Segment& segment = route_[block_].path;
+    const path::Segment<3>& segment = route_[block_].path;
     if (segment.length() > 0.0)
       parameter_ =
           interpolate::taylor_step(segment, parameter_, along_.velocity, along_.acceleration, time - time_);
@@ -50,7 +50,7 @@ class TaylorFollower {
 // Distance of a point from a segment: the nearest parameter by Newton's method, from a guess that is close.
 double distance(const Programmed& programmed, const Vector3& point) {
   if (programmed.segment == nullptr) return 0.0;
-  const path::Segment& segment = *programmed.segment;
+  const path::Segment<3>& segment = *programmed.segment;
   double u = programmed.parameter;
   for (int step = 0; step < 3; ++step) {
     const Vector3 gap = segment.position(u) - point;

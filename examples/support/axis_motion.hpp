@@ -14,7 +14,7 @@
 namespace support {
 
 /// Position, velocity and acceleration of each axis where the state's length has been travelled.
-template <cncplan::Path P>
+template <cncplan::CurveByLength P>
 [[nodiscard]] cncplan::interpolate::BasicSample<double, typename P::Vector> axis_motion(
     const P& path, const cncplan::State& along, double time = 0.0) {
   if constexpr (cncplan::plan::JointPath<P>) {
@@ -29,7 +29,7 @@ template <cncplan::Path P>
 }
 
 /// Velocity of each axis at the start or the end of a path.
-template <cncplan::Path P>
+template <cncplan::CurveByLength P>
 [[nodiscard]] typename P::Vector end_velocity(const P& path, bool at_end, double speed) {
   const double length = at_end ? path.length() : 0.0;
   return axis_motion(path, {length, speed, 0.0, 0.0}).velocity;
@@ -37,7 +37,7 @@ template <cncplan::Path P>
 
 /// In how many parts a stretch of a path is looked at, so that a maximum between two of them is found by the
 /// parabola through three: a twentieth of a radian of an arc each.
-inline double parts_of(const cncplan::path::Segment& path, double travelled) {
+inline double parts_of(const cncplan::path::Segment<3>& path, double travelled) {
   constexpr double most_angle = 0.05;
   const cncplan::path::Arc* const arc = path.arc();
   const double angle = arc == nullptr ? 0.0 : std::abs(arc->sweep()) * std::abs(travelled) / path.length();

@@ -81,7 +81,7 @@ class Converter {
     ++result_.points;
     const Vector3 end = move.segment.end();
     if (!here_) {
-      const path::Segment standing{path::Line(end, end)};
+      const path::Segment<3> standing{path::Line<3>(end, end)};
       std::vector<Stretch> none;
       if (auto ok = guide_.follow(standing, none); !ok) refuse_move(artwork_, index_, move, ok.error());
       const auto joints = sidewall_.joints(end);
@@ -113,7 +113,7 @@ class Converter {
 
   // The length of fixed rows along a move: K17 measures on the surface, so moves up and down are not cut.
   // Arcs that stand upright count in full.
-  [[nodiscard]] double length_of_rows(const path::Segment& segment) const {
+  [[nodiscard]] double length_of_rows(const path::Segment<3>& segment) const {
     const Vector3 way = segment.derivative(0.0);
     const bool upright = segment.arc() != nullptr && segment.arc()->plane() != Plane::xy;
     const double share = upright ? 1.0 : std::hypot(way.x(), way.y()) / way.norm();
@@ -135,7 +135,7 @@ class Converter {
   }
 
   // As plan::chord_error, for a row that may cross from one piece of the profile to the next.
-  [[nodiscard]] double wall_error(const path::Segment& segment, const Joints& joints, double to) const {
+  [[nodiscard]] double wall_error(const path::Segment<3>& segment, const Joints& joints, double to) const {
     const kinematics::TireMold machine{.tool_length = sidewall_.tool_length()};
     double worst = 0.0;
     for (int k = 1; k < 8; ++k) {

@@ -5,7 +5,7 @@
 using namespace cncplan;
 
 profile::Profile travel;
-path::Line line;
+path::Line<3> line;
 plan::Block block;
 gcode::Reader reader;
 std::array<Phase, 7> phases;
@@ -117,7 +117,7 @@ plan::Queue<Immovable, 4>* queue;
 struct NoState {
   double operator()(double, double) const;
 };
-interpolate::Stepped<path::Line, profile::Profile, NoState>* stepped;
+interpolate::Stepped<path::Line<3>, profile::Profile, NoState>* stepped;
 
 // expect Strings, LineSource: lines.next()
 struct Strings {

@@ -62,7 +62,7 @@ void make_arcs() {
 }
 
 void evaluate_a_segment() {
-  const path::Segment segment = helix();
+  const path::Segment<3> segment = helix();
   double sum = 0.0;
   for (int i = 0; i <= 100; ++i) {
     const double u = segment.parameter_at(segment.length() * i / 100.0);

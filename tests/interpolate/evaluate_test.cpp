@@ -18,7 +18,7 @@ struct Parabola {
   Vector derivative(double u) const { return {1.0, 2.0 * u, 0.0}; }
   Vector second_derivative(double) const { return {0.0, 2.0, 0.0}; }
 };
-static_assert(ParametricPath<Parabola> && !Path<Parabola>);
+static_assert(ParametricPath<Parabola> && !CurveByLength<Parabola>);
 
 }  // namespace
 
@@ -36,7 +36,7 @@ TEST_CASE("Velocity and acceleration follow the chain rule on a curve of varying
 }
 
 TEST_CASE("A motion that goes nowhere has no velocity") {
-  const path::Line point({1, 2, 3}, {1, 2, 3});
+  const path::Line<3> point({1, 2, 3}, {1, 2, 3});
   const auto sample = evaluate(point, State{});
   CHECK(sample.position == Vector3(1, 2, 3));
   CHECK(sample.velocity == Vector3(0, 0, 0));

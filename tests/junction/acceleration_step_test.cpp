@@ -56,7 +56,7 @@ TEST_CASE("one circle in two arcs, far from the origin, is not slowed") {
 }
 
 TEST_CASE("a line into an arc runs at the root of step times radius") {
-  const plan::Block line{path::Line({-5, 0, 0}, {0, 0, 0}), test::kk22, junction::Kind::line};
+  const plan::Block line{path::Line<3>({-5, 0, 0}, {0, 0, 0}), test::kk22, junction::Kind::line};
   const plan::Block curve{arc({0, 0, 0}, {2, 2, 0}, {0, 2, 0}), test::kk22, junction::Kind::arc};
   const junction::Geometry junction{plan::side(line, true), plan::side(curve, false), test::kk22};
   CHECK(junction::AccelerationStep{50.0}.speed_sq(junction) == Approx(100.0).epsilon(1e-14));

@@ -66,8 +66,8 @@ TEST_CASE("straight junctions are free, rounded ones too") {
     const Vector3 direction = test::random_direction(random);
     const Vector3 middle = start + random.log_uniform(1e-3, 100) * direction;
     const Vector3 end = middle + random.log_uniform(1e-3, 100) * direction;
-    const auto junction = test::corner<double>(path::Line(start, middle).end_tangent(),
-                                               path::Line(middle, end).start_tangent());
+    const auto junction = test::corner<double>(path::Line<3>(start, middle).end_tangent(),
+                                               path::Line<3>(middle, end).start_tangent());
     held += policy.speed_sq(junction) < 1e6 * 1e6;
   }
   CHECK(held == 0);

@@ -145,7 +145,7 @@ TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
     REQUIRE(arc);
     blocks.push_back({*arc, test::kk22, Kind::arc});
   }
-  blocks.push_back({path::Line(points[5], points[0]), test::kk22, Kind::line});
+  blocks.push_back({path::Line<3>(points[5], points[0]), test::kk22, Kind::line});
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
     CAPTURE(i);
     const junction::Geometry junction{plan::side(blocks[i], true), plan::side(blocks[i + 1], false),

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-path::Segment line(const Vector3& a, const Vector3& b) { return path::Line(a, b); }
+path::Segment<3> line(const Vector3& a, const Vector3& b) { return path::Line<3>(a, b); }
 
 template <class Course, class Joints>
 plan::Plan planned(const Course& course, const Joints& limits, double corner_time) {
@@ -94,15 +94,15 @@ TEST_CASE("joints keep their limits over wall, kink and corners", "[motion]") {
   const auto arc =
       path::arc_from_center<double>({70, 30, 0}, {70, 30, 0}, {80, 30, 0}, Turn::clockwise, Plane::xy);
   REQUIRE(arc);
-  std::vector<path::Segment> art{line({60, 0, 5}, {70, 30, 5}),
-                                 line({70, 30, 5}, {70, 30, 0}),
-                                 *arc,
-                                 line({70, 30, 0}, {40, 80, 0}),
-                                 line({40, 80, 0}, {-30, 90, 0}),
-                                 line({-30, 90, 0}, {-60, 60, 0}),
-                                 line({-60, 60, 0}, {-60, -40, 0}),
-                                 line({-60, -40, 0}, {-125, -20, 0}),
-                                 line({-125, -20, 0}, {-60, -30, 2})};
+  std::vector<path::Segment<3>> art{line({60, 0, 5}, {70, 30, 5}),
+                                    line({70, 30, 5}, {70, 30, 0}),
+                                    *arc,
+                                    line({70, 30, 0}, {40, 80, 0}),
+                                    line({40, 80, 0}, {-30, 90, 0}),
+                                    line({-30, 90, 0}, {-60, 60, 0}),
+                                    line({-60, 60, 0}, {-60, -40, 0}),
+                                    line({-60, -40, 0}, {-125, -20, 0}),
+                                    line({-125, -20, 0}, {-60, -30, 2})};
   for (std::size_t i = 0; i < art.size(); ++i) REQUIRE(course.append(art[i], 60, i));
   // the kink is crossed twice, and each time the tool stops before it and behind it
   int kinks = 0, stops = 0;

@@ -50,7 +50,7 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
     const double r = random.uniform(55, 130), c = random.uniform(-pi, pi);
     const Vector3 to(r * std::cos(c), r * std::sin(c), random.uniform(-1, 1));
     std::vector<plan::SidewallStretch<double>> stretches;
-    if (!guide.follow(path::Line(at, to), stretches)) continue;
+    if (!guide.follow(path::Line<3>(at, to), stretches)) continue;
     at = to;
     for (const auto& stretch : stretches) {
       const double tolerance = random.log_uniform(1e-3, 0.1);
@@ -79,7 +79,7 @@ TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]")
   plan::SidewallGuide guide(sidewall, 1.0);
   std::vector<plan::SidewallStretch<double>> out;
   // out over all three pieces and back: 90 and 122 mm are the borders, the outer one a kink
-  REQUIRE(guide.follow(path::Line({60, 0, 3}, {130, 0, 3}), out));
+  REQUIRE(guide.follow(path::Line<3>({60, 0, 3}, {130, 0, 3}), out));
   REQUIRE(out.size() == 4);
   CHECK(out[0].to == Approx(30));
   CHECK(out[1].to == Approx(62));
@@ -89,7 +89,7 @@ TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]")
   CHECK(out[3].to == 70);
   CHECK(guide.piece() == 2U);
   out.clear();
-  REQUIRE(guide.follow(path::Line({130, 0, 3}, {60, 0, 3}), out));
+  REQUIRE(guide.follow(path::Line<3>({130, 0, 3}, {60, 0, 3}), out));
   CHECK(out.size() == 4);
   CHECK(out[1].kink);
   CHECK(guide.piece() == 0U);
@@ -112,7 +112,7 @@ TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]")
   CHECK(out.size() == 3);
   // one that ends on a border has not left its piece
   out.clear();
-  REQUIRE(guide.follow(path::Line({80, 0, 0}, {90, 0, 0}), out));
+  REQUIRE(guide.follow(path::Line<3>({80, 0, 0}, {90, 0, 0}), out));
   CHECK(out.size() == 1);
   CHECK(guide.piece() == 0U);
 }
@@ -122,13 +122,13 @@ TEST_CASE("segments that leave the wall are refused", "[rows]") {
   const Sidewall sidewall(chain.pieces, 50, 20.8);
   plan::SidewallGuide guide(sidewall, 60.0);
   std::vector<plan::SidewallStretch<double>> out;
-  const auto inside = guide.follow(path::Line({-70, 40, 0}, {70, 40, 0}), out);
+  const auto inside = guide.follow(path::Line<3>({-70, 40, 0}, {70, 40, 0}), out);
   REQUIRE(!inside);
   CHECK(inside.error() == Error{ErrorCode::below_limit, "radius", 40, 50});
   CHECK(out.empty());
-  const auto near = guide.follow(path::Line({-70, 55, 0}, {70, 55, 0}), out);
+  const auto near = guide.follow(path::Line<3>({-70, 55, 0}, {70, 55, 0}), out);
   CHECK(near.error() == Error{ErrorCode::below_limit, "radius", 55, 60});
-  const auto beyond = guide.follow(path::Line({100, 0, 0}, {200, 0, 0}), out);
+  const auto beyond = guide.follow(path::Line<3>({100, 0, 0}, {200, 0, 0}), out);
   CHECK(beyond.error() == Error{ErrorCode::above_limit, "radius", 200, sidewall.end_radius()});
   CHECK(!guide.piece());
 }

@@ -126,7 +126,7 @@ TEMPLATE_TEST_CASE("Boxes hold every point and touch the arc on all sides", "", 
   for (const test::ArcKind kind : test::arc_kinds)
     for (int i = 0; i < 60; ++i) {
       const auto arc = test::random_arc<S>(random, kind);
-      const auto box = arc.bounds();
+      const auto box = arc.box();
       BasicVector3<S> low = arc.start();
       BasicVector3<S> high = arc.start();
       const int samples = 1000 * (1 + static_cast<int>(arc.parameter_end() / S(6.3)));
@@ -230,7 +230,7 @@ TEST_CASE("A quarter circle and a helix give the figures of the textbook") {
   CHECK((quarter.end_tangent() - Vector3(-1, 0, 0)).norm() < 1e-15);
   CHECK(quarter.next_turning(0, 0.0) == quarter.parameter_end());
   CHECK(quarter.crossing(2, 0.0, 0.5, 1.0) == 0.5);
-  CHECK(quarter.bounds() == Box{{0, 0, 0}, {r, r, 0}});
+  CHECK(quarter.box() == Box{{0, 0, 0}, {r, r, 0}});
   CHECK(quarter.chord() == Vector3(-r, r, 0));
 
   g.end = {r, 0, 12};

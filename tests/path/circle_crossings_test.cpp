@@ -78,7 +78,7 @@ TEST_CASE("a batch on a line, on an arc's third axis and on a spiral is that of 
   const auto spiral = path::arc_from_center(Vector3(10, 0, 0), Vector3(0, 10.001, 5), Vector3(0, 0, 0),
                                             Turn::counterclockwise, Plane::xy);
   REQUIRE(spiral);
-  const path::Line line({0, 0, 0}, {3, 4, 0});
+  const path::Line<3> line({0, 0, 0}, {3, 4, 0});
   std::vector<double> values{9.0, 5.0, 0.5};
   spiral->crossings(0, values, 0.0, spiral->parameter_end());
   CHECK(values[1] == Approx(spiral->crossing(0, 5.0, 0.0, spiral->parameter_end())).epsilon(1e-15));

@@ -37,21 +37,21 @@ TEMPLATE_TEST_CASE("A line obeys the laws of paths and ends on its ends", "", fl
 }
 
 TEST_CASE("A line's box, tangents and turnings") {
-  const Line line({1, 5, -2}, {4, 1, -2});
+  const Line<3> line({1, 5, -2}, {4, 1, -2});
   CHECK(line.length() == 5);
-  CHECK(line.bounds() == Box{{1, 1, -2}, {4, 5, -2}});
+  CHECK(line.box() == Box{{1, 1, -2}, {4, 5, -2}});
   CHECK(line.start_tangent() == line.end_tangent());
   CHECK((line.start_tangent() - Vector3(0.6, -0.8, 0)).norm() < 1e-15);
   CHECK(line.chord() == Vector3(3, -4, 0));
   CHECK(line.next_turning(0, 1.0) == line.parameter_end());
   CHECK(line.max_curvature() == 0);
   CHECK(line.crossing(2, -2.0, 1.0, 3.0) == 1.0);
-  CHECK(line == Line({1, 5, -2}, {4, 1, -2}));
-  CHECK_FALSE(line == Line());
+  CHECK(line == Line<3>({1, 5, -2}, {4, 1, -2}));
+  CHECK_FALSE(line == Line<3>());
 }
 
 TEST_CASE("A line of length zero stands still") {
-  const Line point({1, 2, 3}, {1, 2, 3});
+  const Line<3> point({1, 2, 3}, {1, 2, 3});
   CHECK(point.length() == 0);
   CHECK(point.position(0.0) == Vector3(1, 2, 3));
   CHECK(point.start_tangent() == Vector3(0, 0, 0));

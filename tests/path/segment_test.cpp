@@ -10,7 +10,8 @@ using namespace cncplan;
 using namespace cncplan::path;
 
 static_assert(Path<BasicSegment<float>> && Path<BasicSegment<double>>);
-static_assert(std::is_nothrow_move_constructible_v<Segment> && std::is_trivially_destructible_v<Segment>);
+using Three = BasicSegment<double>;
+static_assert(std::is_nothrow_move_constructible_v<Three> && std::is_trivially_destructible_v<Three>);
 template class cncplan::path::BasicSegment<float>;
 template class cncplan::path::BasicSegment<double>;
 
@@ -31,7 +32,7 @@ bool forwards(const BasicSegment<S>& segment, const Inside& inside) {
          segment.end_tangent() == inside.end_tangent();
   same = same && segment.curvature(u) == inside.curvature(u) &&
          segment.max_curvature() == inside.max_curvature();
-  same = same && segment.bounds() == inside.bounds();
+  same = same && segment.box() == inside.box();
   for (int axis = 0; axis < 3; ++axis) {
     const S high = inside.next_turning(axis, S(0));
     const S value = inside.position(high / 2)(axis);
@@ -66,7 +67,7 @@ TEMPLATE_TEST_CASE("A segment answers as what it holds", "", float, double) {
 }
 
 TEST_CASE("The default segment is a point at the origin") {
-  const Segment none;
+  const Segment<3> none;
   CHECK(none.length() == 0);
   CHECK(none.end() == Vector3(0, 0, 0));
 }

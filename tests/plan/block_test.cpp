@@ -9,7 +9,7 @@ using namespace cncplan;
 
 namespace {
 
-plan::Block block(const path::Segment& segment) {
+plan::Block block(const path::Segment<3>& segment) {
   return {segment, {30, 1000, 10000}, segment.arc() != nullptr ? junction::Kind::arc : junction::Kind::line};
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("tangents and curvature vectors at both ends are those of differences 
 }
 
 TEST_CASE("a line shows its direction and no curvature") {
-  const auto side = plan::side(block(path::Line({1, 2, 3}, {1, 2, 8})), true);
+  const auto side = plan::side(block(path::Line<3>({1, 2, 3}, {1, 2, 8})), true);
   CHECK(side.kind == junction::Kind::line);
   CHECK(side.tangent == Vector3(0, 0, 1));
   CHECK(side.chord == Vector3(0, 0, 5));

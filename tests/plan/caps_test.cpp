@@ -20,7 +20,7 @@ struct Shown {
 };
 
 plan::Block line(const Vector3& from, const Vector3& to, const Limits& limits) {
-  return {path::Line(from, to), limits, junction::Kind::line};
+  return {path::Line<3>(from, to), limits, junction::Kind::line};
 }
 
 const plan::Block first = line({0, 0, 0}, {10, 0, 0}, {20, 500, 30000});
@@ -33,7 +33,7 @@ TEST_CASE("a policy's speed that is negative or not a number is a stop") {
     double value;
     double speed_sq(const junction::Geometry&) const { return value; }
   };
-  const plan::Block block{path::Line({0, 0, 0}, {10, 0, 0}), {30, 1000, 10000}, junction::Kind::line};
+  const plan::Block block{path::Line<3>({0, 0, 0}, {10, 0, 0}), {30, 1000, 10000}, junction::Kind::line};
   for (const double value : {-1.0, std::numeric_limits<double>::quiet_NaN(), 0.0})
     CHECK(plan::caps(block, block, Fixed{value}, plan::ShareLimits{}).entry == 0.0);
   CHECK(plan::caps(block, block, Fixed{9.0}, plan::ShareLimits{}).entry == 3.0);

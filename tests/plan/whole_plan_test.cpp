@@ -53,7 +53,7 @@ TEST_CASE("a whole plan is the plan of its caps") {
 TEST_CASE("a program in machine space keeps to its joints' limits") {
   plan::JointCourse course{plan::OneChart(kinematics::CartesianChart{})};
   for (const auto& block : square<double>()) REQUIRE(course.append(block.segment, 30.0));
-  REQUIRE(course.append(path::Segment{}, 30.0));  // no way: no piece
+  REQUIRE(course.append(path::Segment<3>{}, 30.0));  // no way: no piece
   BasicJointLimits<double, 3> limits;
   limits.velocity << 20, 10, 5;
   limits.acceleration << 1000, 1000, 1000;
@@ -74,7 +74,7 @@ TEST_CASE("limits that are not positive are refused before anything is planned")
     CHECK(plan.error().field.find("limit") != std::string_view::npos);
   }
   plan::JointCourse course{plan::OneChart(kinematics::CartesianChart{})};
-  REQUIRE(course.append(path::Line({0, 0, 0}, {10, 0, 0}), 30.0));
+  REQUIRE(course.append(path::Line<3>({0, 0, 0}, {10, 0, 0}), 30.0));
   BasicJointLimits<double, 3> limits;
   limits.velocity << 30, 30, 30;
   limits.acceleration << 1000, -1000, 1000;

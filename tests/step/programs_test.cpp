@@ -20,8 +20,8 @@ using namespace cncplan;
 namespace {
 
 // The moves of a list of canonical motions as LinuxCNC prints it, in mm.
-std::vector<path::Segment> moves(const std::filesystem::path& file) {
-  std::vector<path::Segment> result;
+std::vector<path::Segment<3>> moves(const std::filesystem::path& file) {
+  std::vector<path::Segment<3>> result;
   std::ifstream in(file);
   Vector3 at = Vector3::Zero();
   double unit = 1.0;
@@ -41,7 +41,7 @@ std::vector<path::Segment> moves(const std::filesystem::path& file) {
                                                      : Plane::yz;
     if (name == "STRAIGHT_TRAVERSE" || name == "STRAIGHT_FEED") {
       const Vector3 to(v.at(0), v.at(1), v.at(2));
-      result.push_back(path::Line(at, to));
+      result.push_back(path::Line<3>(at, to));
       at = to;
     }
     if (name == "ARC_FEED") {
@@ -73,7 +73,7 @@ TEST_CASE("every block of the LinuxCNC programs ends on its rounded target") {
   for (const auto& entry : std::filesystem::directory_iterator(*shared + "/data/ngc")) {
     if (entry.path().extension() != ".motions") continue;
     ++programs;
-    const std::vector<path::Segment> program = moves(entry.path());
+    const std::vector<path::Segment<3>> program = moves(entry.path());
     CAPTURE(entry.path().filename().string(), program.size());
     REQUIRE(program.size() > 20);
     const std::array per_unit{400.0, 160.0, 787.4};
@@ -85,7 +85,7 @@ TEST_CASE("every block of the LinuxCNC programs ends on its rounded target") {
     std::int64_t edges = 0;
     int off_target = 0, out_of_order = 0, late = 0;
     for (std::size_t b = 0; b < program.size(); ++b) {
-      const path::Segment& block = program[b];
+      const path::Segment<3>& block = program[b];
       if (block.length() == 0.0) continue;
       // Half of the blocks at one speed, half from rest to rest.
       const auto steady = test::steady(block.length(), 20.0);

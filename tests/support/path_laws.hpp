@@ -49,7 +49,7 @@ double integrated_length(const P& path, double from, double to, double unit) {
 
 /// Checks one path at `points` parameters. `unit`: the parameter range over which the path changes its shape
 /// (1 rad on an arc, the length of a line).
-template <Path P>
+template <CurveByLength P>
 PathLawErrors path_law_errors(const P& path, double unit, int points = 7) {
   using S = typename P::Scalar;
   using V = typename P::Vector;

@@ -38,12 +38,12 @@ struct PlayedProgram {
 };
 
 /// A line or an arc of about `length` mm from a point on; a third of the arcs are helices.
-inline path::Segment random_segment(Random& random, const Vector3& start, double length) {
+inline path::Segment<3> random_segment(Random& random, const Vector3& start, double length) {
   constexpr double pi = std::numbers::pi;
   const double heading = random.uniform(-pi, pi);
   const double rise = random.integer(0, 2) == 0 ? random.uniform(-0.5, 0.5) * length : 0.0;
   const Vector3 along(std::cos(heading), std::sin(heading), 0.0);
-  if (random.coin()) return path::Line(start, start + length * along + rise * Vector3::UnitZ());
+  if (random.coin()) return path::Line<3>(start, start + length * along + rise * Vector3::UnitZ());
   const double radius = random.log_uniform(0.1, 50.0);
   const double sweep = std::min(length / radius, 6.0) * (random.coin() ? 1.0 : -1.0);
   const Vector3 center = start - radius * along;
@@ -51,7 +51,7 @@ inline path::Segment random_segment(Random& random, const Vector3& start, double
       center + Vector3(radius * std::cos(heading + sweep), radius * std::sin(heading + sweep), rise);
   const auto arc = path::arc_from_center(start, end, center,
                                          sweep < 0.0 ? Turn::clockwise : Turn::counterclockwise, Plane::xy);
-  return arc ? path::Segment(*arc) : path::Segment(path::Line(start, end));
+  return arc ? path::Segment<3>(*arc) : path::Segment<3>(path::Line<3>(start, end));
 }
 
 /// Short and long lines, arcs and helices, slow and free junctions, some blocks with lower limits.

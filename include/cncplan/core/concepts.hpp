@@ -4,9 +4,12 @@
 #include <array>
 #include <concepts>
 
+#include "cncplan/core/box.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/jet.hpp"
 #include "cncplan/core/joint_limits.hpp"
+#include "cncplan/core/path_bounds.hpp"
+#include "cncplan/core/path_point.hpp"
 #include "cncplan/core/pose.hpp"
 #include "cncplan/core/state.hpp"
 #include "cncplan/core/vector.hpp"
@@ -27,8 +30,21 @@ concept ParametricPath = requires(const P& path, typename P::Scalar u) {
 
 /// A curve that also tells the parameter at which a given length has been travelled, s in [0, length()].
 template <class P>
-concept Path = ParametricPath<P> && requires(const P& path, typename P::Scalar s) {
+concept CurveByLength = ParametricPath<P> && requires(const P& path, typename P::Scalar s) {
   { path.parameter_at(s) } -> std::same_as<typename P::Scalar>;
+};
+
+/// A path of N axes by its length s in [0, length()], the length that the feed counts: mm of the tool's
+/// travel as a rule. Its derivatives by s need not be unit vectors. `bounds(from, to)` holds everywhere
+/// between two lengths, `box()` holds all positions. Positions are mm, of rotary axes rad.
+template <class P>
+concept Path = requires(const P& path, typename P::Scalar s) {
+  requires std::floating_point<typename P::Scalar>;
+  { path.length() } -> std::same_as<typename P::Scalar>;
+  { path.position_at(s) } -> std::same_as<typename P::Vector>;
+  { path.box() } -> std::same_as<BasicBox<typename P::Scalar, P::Vector::RowsAtCompileTime>>;
+  { path.point_at(s) } -> std::same_as<PathPoint<typename P::Vector>>;
+  { path.bounds(s, s) } -> std::same_as<BasicPathBounds<typename P::Scalar, P::Vector::RowsAtCompileTime>>;
 };
 
 /// Travel along a path over time: position, velocity, acceleration and jerk at t in [0, duration()], and the

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/plane.hpp"
 #include "cncplan/gcode/motion.hpp"
@@ -15,7 +16,7 @@
 
 namespace cncplan::gcode {
 
-enum class AxisKind : std::uint8_t { linear, rotary };
+using cncplan::AxisKind;
 
 /// An axis and the letter it answers to. Numbers of a rotary axis are degrees in the text.
 struct Axis {

@@ -37,12 +37,14 @@ inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 class Reader {
  public:
   /// With a dialect that `validate` refuses every line is in error, with what is wrong with the dialect.
-  explicit Reader(const Dialect& dialect = {})
+  /// `start`: where the axes are, machine coordinates.
+  explicit Reader(const Dialect& dialect = {}, const Position& start = {})
       : readable_(validate(dialect).map([](const Dialect&) {})),
         dialect_(readable_ ? dialect : Dialect{}),
         alphabet_(dialect_) {
     offset_ = dialect_.work_offsets[0];
-    for (std::size_t i = 0; i < axis_count(); ++i) current_[i] -= offset_[i];
+    machine_ = start;
+    for (std::size_t i = 0; i < axis_count(); ++i) current_[i] = start[i] - offset_[i];
   }
 
   /// Reads one line (without its end; a carriage return is passed over) and writes its items in the order in

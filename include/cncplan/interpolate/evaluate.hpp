@@ -22,7 +22,7 @@ template <ParametricPath P>
 }
 
 /// The points at many travelled lengths: by the path's own loop where it has one.
-template <Path P>
+template <CurveByLength P>
 void positions_at(const P& path, std::span<const typename P::Scalar> lengths,
                   PointsN<typename P::Scalar, P::Vector::RowsAtCompileTime> out) {
   if constexpr (requires { path.positions_at(lengths, out); }) {
@@ -34,7 +34,7 @@ void positions_at(const P& path, std::span<const typename P::Scalar> lengths,
 }
 
 /// The frame at a travelled length.
-template <Path P>
+template <CurveByLength P>
 [[nodiscard]] Frame<typename P::Vector> frame_at(const P& path, typename P::Scalar s) {
   if constexpr (requires { path.frame_at(s); }) {
     return path.frame_at(s);
@@ -44,7 +44,7 @@ template <Path P>
 }
 /// The frames at up to `Frames::capacity` travelled lengths, which must ascend: a path's own loop may look
 /// for each from the place of the one before.
-template <Path P>
+template <CurveByLength P>
 void frames_at(const P& path, std::span<const typename P::Scalar> lengths,
                Frames<typename P::Scalar, P::Vector::RowsAtCompileTime>& out) {
   if constexpr (requires { path.frames_at(lengths, out); }) {
@@ -71,7 +71,7 @@ template <ParametricPath P>
 }
 
 /// The same where the state's length has been travelled.
-template <Path P>
+template <CurveByLength P>
 [[nodiscard]] BasicSample<typename P::Scalar, typename P::Vector> evaluate(
     const P& path, const BasicState<typename P::Scalar>& along, typename P::Scalar time = {}) {
   return motion(frame_at(path, along.position), along, time);

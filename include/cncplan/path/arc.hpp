@@ -2,12 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <numbers>
 #include <span>
 
+#include "cncplan/core/box.hpp"
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/frame.hpp"
@@ -15,7 +17,6 @@
 #include "cncplan/core/points.hpp"
 #include "cncplan/core/vector.hpp"
 #include "cncplan/path/arc_axis.hpp"
-#include "cncplan/path/box.hpp"
 #include "cncplan/path/circle_crossings.hpp"
 #include "cncplan/path/helix_batch.hpp"
 #include "cncplan/path/rotation.hpp"
@@ -128,6 +129,62 @@ class BasicArc {
     return point;
   }
 
+  /// See `Path`.
+  [[nodiscard]] Vector position_at(S s) const { return position(parameter_at(s)); }
+  [[nodiscard]] PathPoint<Vector> point_at(S s) const {
+    const S u = std::clamp(parameter_at(s), S(0), angle_);
+    const CurvePoint<Vector> point = at(u);
+    const auto [sine, versine] = rotation(u);
+    const S cosine = S(1) - versine;
+    const S rho = S(1) + growth_ * u;
+    const Vector third = (rho * sine - S(3) * growth_ * cosine) * radial_ -
+                         (rho * cosine + S(3) * growth_ * sine) * tangential_;
+    if (!is_circular()) return by_length(point, third);
+    const S rate = angle_ / length_;
+    return {point.position, rate * point.first, rate * rate * point.second, rate * rate * rate * third};
+  }
+  /// Sharp on a circle or helix; within a few percent on a spiral.
+  [[nodiscard]] BasicPathBounds<S, 3> bounds(S from, S to) const {
+    const S low = parameter_at(from), high = parameter_at(to);
+    const Spiral<S> part{spiral_.radius_at(low), spiral_.growth, spiral_.rise};
+    const S curvature = path::max_curvature(part, high - low);
+    BasicPathBounds<S, 3> result;
+    result.tool = {S(1), S(0), curvature, curvature * curvature,
+                   path::max_curvature_change(part, high - low)};
+    if (!is_circular()) return spiral_axis_bounds(low, high, result);
+    const S rate = angle_ / length_;
+    for (const int axis : {axes(plane_).first, axes(plane_).second}) {
+      const S phase = in_plane(axis).phase;
+      const BasicInterval<S> angle{low + phase, high + phase};
+      const S across = spiral_.radius * rate * abs(sin(angle)).high;
+      result.first[axis] = across;
+      result.second[axis] = spiral_.radius * rate * rate * abs(cos(angle)).high;
+      result.third[axis] = across * rate * rate;
+    }
+    result.first[axes(plane_).third] = std::abs(spiral_.rise) * rate;
+    return result;
+  }
+  /// Position and derivatives by length between two lengths, each as an interval.
+  [[nodiscard]] std::array<BasicJet<BasicInterval<S>>, 3> enclosure(S from, S to) const {
+    using T = BasicInterval<S>;
+    using J = BasicJet<T>;
+    const J u{T{parameter_at(from), parameter_at(to)}, T(1), T(0), T(0)};
+    const J radius = J(spiral_.radius) + J(spiral_.growth) * u;
+    const J speed = sqrt(square(radius) + J(spiral_.growth * spiral_.growth + spiral_.rise * spiral_.rise));
+    const J rate = J(S(1)) / speed;  // of the angle by the length, over the angle
+    const T second = rate.first * rate.value;
+    const T third = (rate.second * rate.value + rate.first * rate.first) * rate.value;
+    const J angle{u.value, rate.value, second, third};
+    const J rho = J(S(1)) + J(growth_) * angle;
+    const J cosine = rho * cos(angle) - J(S(1));
+    const J sine = rho * sin(angle);
+    std::array<J, 3> result;
+    for (int i = 0; i < 3; ++i)
+      result[static_cast<std::size_t>(i)] =
+          J(start_[i]) + J(radial_[i]) * cosine + J(tangential_[i]) * sine + J(axial_[i]) * angle;
+    return result;
+  }
+
   /// By arc length: see `Frame`.
   [[nodiscard]] Frame<Vector> frame_at(S s) const {
     const CurvePoint<Vector> point = at(parameter_at(s));
@@ -199,7 +256,7 @@ class BasicArc {
 
   /// The box that the arc touches on all sides. The radius is monotone, so the first and the last two
   /// turnings of an axis hold its extrema, however many turns there are.
-  [[nodiscard]] BasicBox<S> bounds() const {
+  [[nodiscard]] BasicBox<S> box() const {
     BasicBox<S> box{start_.cwiseMin(end_), start_.cwiseMax(end_)};
     for (const int axis : {axes(plane_).first, axes(plane_).second}) {
       const ArcAxis<S> coordinate = in_plane(axis);
@@ -237,6 +294,22 @@ class BasicArc {
         [&](const HelixAnchor<S>& anchor, std::size_t from, std::size_t count) {
           portion(anchor, first + from, count);
         });
+  }
+
+  // The largest derivatives of a spiral's axes, in eight parts.
+  [[nodiscard]] BasicPathBounds<S, 3> spiral_axis_bounds(S low, S high, BasicPathBounds<S, 3> result) const {
+    constexpr int parts = 8;
+    const S from = length_at(low), width = (length_at(high) - from) / S(parts);
+    for (int i = 0; i < parts; ++i) {
+      const auto part = enclosure(from + S(i) * width, from + S(i + 1) * width);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto& jet = part[static_cast<std::size_t>(axis)];
+        result.first[axis] = std::max(result.first[axis], jet.first.largest());
+        result.second[axis] = std::max(result.second[axis], jet.second.largest());
+        result.third[axis] = std::max(result.third[axis], jet.third.largest());
+      }
+    }
+    return result;
   }
 
   [[nodiscard]] ArcAxis<S> in_plane(int axis) const {

@@ -17,7 +17,7 @@ namespace cncplan::path {
 /// the quadrature's (`arc_length`, one panel an interval), and `parameter_at` is their inverse to rounding,
 /// so that samples keep the planned feed whatever the curve's own parametrisation. On curves whose
 /// derivatives jump (B-splines at knots), `Intervals` should be a multiple of their pieces.
-template <ParametricPath C, int Intervals = 64>
+template <DifferentiableCurve C, int Intervals = 64>
   requires(Intervals >= 1)
 class ArcLengthTable {
  public:

@@ -1,36 +1,48 @@
-// Straight segment, parametrised by its arc length.
+// Straight motion of any number of axes, by the length that the feed counts.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <span>
 
+#include "cncplan/core/box.hpp"
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/frame.hpp"
 #include "cncplan/core/points.hpp"
-#include "cncplan/path/box.hpp"
 
 namespace cncplan::path {
 
-/// Straight from start to end; the parameter u in [0, length()] is the length travelled, mm. A line of length
-/// zero is a valid value: it stands still and its tangents are zero.
-template <std::floating_point S>
+/// Straight from start to end; the parameter u in [0, length()] is the length travelled. A line of length
+/// zero is a valid value: it stands still and its derivatives are zero.
+template <std::floating_point S, int N = 3>
 class BasicLine {
  public:
   using Scalar = S;
-  using Vector = BasicVector3<S>;
+  using Vector = VectorN<S, N>;
 
   BasicLine() = default;
-  BasicLine(const Vector& start, const Vector& end)
-      : start_(start), end_(end), length_((end - start).norm()) {
-    if (length_ > S(0)) direction_ = (end - start) / length_;
+  /// The length is the way of the first three axes, mm; where they stand still, that of the others together
+  /// (rad for rotary axes).
+  BasicLine(const Vector& start, const Vector& end) : BasicLine(start, end, (end - start).norm(), S(0)) {
+    constexpr int space = std::min(N, 3);
+    const S tool = (end - start).template head<space>().norm();
+    if (tool > S(0)) *this = BasicLine(start, end, tool, tool);
+  }
+  /// Of a length of its own, of which the tool travels `tool_length` mm; both >= 0.
+  BasicLine(const Vector& start, const Vector& end, S length, S tool_length)
+      : start_(start), end_(end), length_(length) {
+    if (!(length_ > S(0))) return;
+    direction_ = (end - start) / length_;
+    tool_rate_ = tool_length / length_;
   }
 
   [[nodiscard]] const Vector& start() const { return start_; }
   [[nodiscard]] const Vector& end() const { return end_; }
-  [[nodiscard]] const Vector& direction() const {
-    return direction_;
-  }  ///< unit vector, zero if length() is zero
+  /// The derivative by the length: a unit vector where no more than three axes move; zero if length() is.
+  [[nodiscard]] const Vector& direction() const { return direction_; }
   [[nodiscard]] Vector chord() const { return end_ - start_; }
   [[nodiscard]] S length() const { return length_; }
   [[nodiscard]] S parameter_end() const { return length_; }
@@ -45,29 +57,47 @@ class BasicLine {
   [[nodiscard]] Vector second_derivative(S) const { return Vector::Zero(); }
   [[nodiscard]] CurvePoint<Vector> at(S u) const { return {position(u), direction_, Vector::Zero()}; }
 
-  /// By arc length: see `Frame`.
+  /// See `Path`.
+  [[nodiscard]] Vector position_at(S s) const { return position(s); }
+  [[nodiscard]] PathPoint<Vector> point_at(S s) const {
+    return {position(s), direction_, Vector::Zero(), Vector::Zero()};
+  }
+  [[nodiscard]] BasicPathBounds<S, N> bounds(S /*from*/, S /*to*/) const {
+    return {direction_.cwiseAbs(), Vector::Zero(), Vector::Zero(), {.first = tool_rate_}};
+  }
+  /// Position and derivatives by length between two lengths, each as an interval.
+  [[nodiscard]] std::array<BasicJet<BasicInterval<S>>, static_cast<std::size_t>(N)> enclosure(S from,
+                                                                                              S to) const {
+    std::array<BasicJet<BasicInterval<S>>, static_cast<std::size_t>(N)> result;
+    const Vector first = position(from), last = position(to);
+    for (int i = 0; i < N; ++i) {
+      auto& jet = result[static_cast<std::size_t>(i)];
+      jet.value = BasicInterval<S>::hull(first[i], last[i]);
+      jet.first = direction_[i];
+    }
+    return result;
+  }
+
+  /// By length: see `Frame`.
   [[nodiscard]] Frame<Vector> frame_at(S s) const { return {position(s), direction_, Vector::Zero()}; }
 
   /// The points at many lengths travelled: what position(s) gives.
-  void positions_at(std::span<const S> lengths, BasicPoints<S> out) const {
-    const S length = length_;
-    const S x = start_[0], y = start_[1], z = start_[2];
-    const S dx = direction_[0], dy = direction_[1], dz = direction_[2];
-    const S end_x = end_[0], end_y = end_[1], end_z = end_[2];
+  void positions_at(std::span<const S> lengths, PointsN<S, N> out) const {
+    const BasicLine line = *this;
     S* const to = out.data();
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const S u = std::max(lengths[i], S(0));
-      const bool inside = u < length;
-      to[3 * i] = inside ? x + u * dx : end_x;
-      to[3 * i + 1] = inside ? y + u * dy : end_y;
-      to[3 * i + 2] = inside ? z + u * dz : end_z;
+      const bool inside = u < line.length_;
+      for (int axis = 0; axis < N; ++axis)
+        to[static_cast<std::size_t>(N) * i + static_cast<std::size_t>(axis)] =
+            inside ? line.start_[axis] + u * line.direction_[axis] : line.end_[axis];
     }
   }
 
   /// The frames at up to Frames::capacity lengths.
-  void frames_at(std::span<const S> lengths, Frames<S, 3>& out) const {
+  void frames_at(std::span<const S> lengths, Frames<S, N>& out) const {
     const auto count = static_cast<Eigen::Index>(lengths.size());
-    positions_at(lengths, {out.position.data(), 3, count});
+    positions_at(lengths, {out.position.data(), N, count});
     out.tangent.leftCols(count).colwise() = direction_;
     out.curvature.leftCols(count).setZero();
   }
@@ -98,10 +128,10 @@ class BasicLine {
     for (S& value : values) value = crossing(axis, value, low, high);
   }
 
-  [[nodiscard]] BasicBox<S> bounds() const { return {start_.cwiseMin(end_), start_.cwiseMax(end_)}; }
+  [[nodiscard]] BasicBox<S, N> box() const { return {start_.cwiseMin(end_), start_.cwiseMax(end_)}; }
 
   friend bool operator==(const BasicLine& a, const BasicLine& b) {
-    return a.start_ == b.start_ && a.end_ == b.end_;
+    return a.start_ == b.start_ && a.end_ == b.end_ && a.length_ == b.length_;
   }
 
  private:
@@ -109,8 +139,10 @@ class BasicLine {
   Vector end_ = Vector::Zero();
   Vector direction_ = Vector::Zero();
   S length_{};
+  S tool_rate_{};  // mm of the tool per unit of length
 };
 
-using Line = BasicLine<double>;
+template <int N>
+using Line = BasicLine<double, N>;
 
 }  // namespace cncplan::path

@@ -1,47 +1,94 @@
-// One piece of a tool path: a line or an arc, as a value.
+// One piece of a program's path, as a value: a line, an arc, or a curve of the user's.
 #pragma once
 
+#include <concepts>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
+#include "cncplan/core/concepts.hpp"
 #include "cncplan/path/arc.hpp"
+#include "cncplan/path/arc_along.hpp"
 #include "cncplan/path/line.hpp"
 
 namespace cncplan::path {
 
-/// A line or an arc. Models Path; every member means what it means there. Default: a line of length zero at
-/// the origin.
-template <std::floating_point S>
+/// The arc of a machine with N axes: in space alone where it has three, else with the others along.
+template <std::floating_point S, int N>
+using ArcOf = std::conditional_t<N == 3, BasicArc<S>, BasicArcAlong<S, N>>;
+
+/// One of several kinds of path of N axes; a `Path` itself. The members beyond those of `Path` work over the
+/// kinds that have them. Default: a line of length zero at the origin.
+template <std::floating_point S, int N = 3, class... Curves>
 class BasicSegment {
  public:
   using Scalar = S;
-  using Vector = BasicVector3<S>;
+  using Vector = VectorN<S, N>;
+  using Line = BasicLine<S, N>;
+  using Arc = ArcOf<S, N>;
+  using Shape = std::variant<Line, Arc, Curves...>;
 
   BasicSegment() = default;
-  BasicSegment(const BasicLine<S>& line) : shape_(line) {}  // NOLINT(google-explicit-constructor)
-  BasicSegment(const BasicArc<S>& arc) : shape_(arc) {}     // NOLINT(google-explicit-constructor)
+  template <class Kind>
+    requires(std::same_as<Kind, Line> || std::same_as<Kind, Arc> || (std::same_as<Kind, Curves> || ...))
+  BasicSegment(const Kind& kind) : shape_(kind) {}  // NOLINT(google-explicit-constructor)
 
-  /// The line or arc inside, nullptr if it is the other one.
-  [[nodiscard]] const BasicLine<S>* line() const { return std::get_if<BasicLine<S>>(&shape_); }
-  [[nodiscard]] const BasicArc<S>* arc() const { return std::get_if<BasicArc<S>>(&shape_); }
+  /// The path inside if it is of this kind, else nullptr.
+  template <class Kind>
+  [[nodiscard]] const Kind* as() const {
+    return std::get_if<Kind>(&shape_);
+  }
+  [[nodiscard]] const Line* line() const { return as<Line>(); }
+  [[nodiscard]] const Arc* arc() const { return as<Arc>(); }
 
-  /// Calls f with the line or the arc; both calls give the same type.
+  /// Calls f with the path inside; all calls give the same type.
   template <class F>
   decltype(auto) visit(F&& f) const {
-    if (const BasicArc<S>* inside = arc()) return f(*inside);
-    return f(*line());
+    if constexpr (sizeof...(Curves) == 0) {
+      if (const Arc* inside = arc()) return f(*inside);
+      return f(*line());
+    } else {
+      return std::visit(std::forward<F>(f), shape_);
+    }
   }
 
-  [[nodiscard]] const Vector& start() const {
-    return visit([](const auto& p) -> const Vector& { return p.start(); });
-  }
-  [[nodiscard]] const Vector& end() const {
-    return visit([](const auto& p) -> const Vector& { return p.end(); });
-  }
-  [[nodiscard]] Vector chord() const { return end() - start(); }
   [[nodiscard]] S length() const {
     return visit([](const auto& p) { return p.length(); });
   }
+  [[nodiscard]] Vector position_at(S s) const {
+    return visit([s](const auto& p) -> Vector { return p.position_at(s); });
+  }
+  [[nodiscard]] PathPoint<Vector> point_at(S s) const {
+    return visit([s](const auto& p) -> PathPoint<Vector> { return p.point_at(s); });
+  }
+  [[nodiscard]] BasicPathBounds<S, N> bounds(S from, S to) const {
+    return visit([=](const auto& p) { return p.bounds(from, to); });
+  }
+  [[nodiscard]] BasicBox<S, N> box() const {
+    return visit([](const auto& p) { return p.box(); });
+  }
+  [[nodiscard]] std::array<BasicJet<BasicInterval<S>>, static_cast<std::size_t>(N)> enclosure(S from,
+                                                                                              S to) const {
+    return visit([=](const auto& p) { return p.enclosure(from, to); });
+  }
+  [[nodiscard]] Vector start() const { return position_at(S(0)); }
+  [[nodiscard]] Vector end() const { return position_at(length()); }
+  [[nodiscard]] Vector chord() const { return end() - start(); }
+
+  /// The points at many lengths, which ascend; by the path's own loop where it has one.
+  void positions_at(std::span<const S> lengths, PointsN<S, N> out) const {
+    visit([&](const auto& p) {
+      if constexpr (requires { p.positions_at(lengths, out); }) {
+        p.positions_at(lengths, out);
+      } else {
+        for (std::size_t i = 0; i < lengths.size(); ++i)
+          out.col(static_cast<Eigen::Index>(i)) = p.position_at(lengths[i]);
+      }
+    });
+  }
+
+  // By the parameter of lines and arcs.
   [[nodiscard]] S parameter_end() const {
     return visit([](const auto& p) { return p.parameter_end(); });
   }
@@ -57,15 +104,10 @@ class BasicSegment {
   [[nodiscard]] CurvePoint<Vector> at(S u) const {
     return visit([u](const auto& p) { return p.at(u); });
   }
-  /// The point at so many mm from the start.
-  [[nodiscard]] Vector position_at(S length) const { return position(parameter_at(length)); }
-  void positions_at(std::span<const S> lengths, BasicPoints<S> out) const {
-    visit([&](const auto& p) { p.positions_at(lengths, out); });
-  }
   [[nodiscard]] Frame<Vector> frame_at(S s) const {
     return visit([s](const auto& p) { return p.frame_at(s); });
   }
-  void frames_at(std::span<const S> lengths, Frames<S, 3>& out) const {
+  void frames_at(std::span<const S> lengths, Frames<S, N>& out) const {
     visit([&](const auto& p) { p.frames_at(lengths, out); });
   }
   [[nodiscard]] S parameter_at(S s) const {
@@ -101,16 +143,15 @@ class BasicSegment {
   void crossings(int axis, std::span<S> values, S low, S high) const {
     visit([=](const auto& p) { p.crossings(axis, values, low, high); });
   }
-  [[nodiscard]] BasicBox<S> bounds() const {
-    return visit([](const auto& p) { return p.bounds(); });
-  }
 
   friend bool operator==(const BasicSegment&, const BasicSegment&) = default;
 
  private:
-  std::variant<BasicLine<S>, BasicArc<S>> shape_;
+  Shape shape_;
 };
 
-using Segment = BasicSegment<double>;
+/// Of the default kinds alone, or of curves beside them.
+template <int N, class... Curves>
+using Segment = BasicSegment<double, N, Curves...>;
 
 }  // namespace cncplan::path

@@ -1,20 +1,20 @@
 // A machine as a value: its axes, and the limits of its tool.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <string_view>
 
+#include "cncplan/core/axis_kind.hpp"
+#include "cncplan/core/error.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/step/drive.hpp"
 
 namespace cncplan {
-
-/// Positions of a linear axis are mm, those of a rotary one rad.
-enum class AxisKind : std::uint8_t { linear, rotary };
 
 /// The drives of one axis: none where no steps are wanted, two on a gantry. Only so many have room.
 template <std::floating_point S>
@@ -83,6 +83,15 @@ template <std::floating_point S, int N>
   return axes;
 }
 
+/// "axis X" for the letter X; "axis" for what is no letter.
+[[nodiscard]] constexpr std::string_view axis_name(char letter) {
+  constexpr std::string_view names =
+      "axis Aaxis Baxis Caxis Daxis Eaxis Faxis Gaxis Haxis Iaxis Jaxis Kaxis Laxis Maxis Naxis Oaxis Paxis "
+      "Qaxis Raxis Saxis Taxis Uaxis Vaxis Waxis Xaxis Yaxis Z";
+  if (letter < 'A' || letter > 'Z') return names.substr(0, 4);
+  return names.substr(static_cast<std::size_t>(letter - 'A') * 6, 6);
+}
+
 /// A machine whose axes are the program's coordinates.
 template <std::floating_point S, int N>
 struct BasicMachine {
@@ -99,5 +108,108 @@ struct BasicMachine {
 
 template <int N>
 using Machine = BasicMachine<double, N>;
+
+/// A machine whose axes are not the program's coordinates: `map` takes those to the axes. `path::Map` says
+/// what it has. The tool's limits, rapid rate and feed limit as for `BasicMachine`.
+template <class M>
+struct MappedMachine {
+  using Scalar = typename M::Scalar;
+  static constexpr int axis_count = static_cast<int>(M::axis_count);
+
+  M map{};
+  std::array<BasicAxis<Scalar>, static_cast<std::size_t>(axis_count)> axes =
+      default_axes<Scalar, axis_count>();
+  BasicLimits<Scalar> limits{};
+  Scalar rapid_rate{};
+  Scalar feed_limit{};
+};
+
+/// What planning asks of a machine: axes and the limits of its tool.
+template <class M>
+concept MachineModel = requires(const M& machine) {
+  requires std::floating_point<typename M::Scalar>;
+  requires M::axis_count >= 1;
+  { machine.axes[0] } -> std::convertible_to<const BasicAxis<typename M::Scalar>&>;
+  { machine.limits } -> std::convertible_to<const BasicLimits<typename M::Scalar>&>;
+  { machine.rapid_rate } -> std::convertible_to<typename M::Scalar>;
+  { machine.feed_limit } -> std::convertible_to<typename M::Scalar>;
+};
+
+/// Whether the program's coordinates go through a map.
+template <class M>
+concept MappedModel = MachineModel<M> && requires(const M& machine) {
+  machine.map;
+};
+
+/// The lower of the limits upwards and downwards.
+template <std::floating_point S>
+[[nodiscard]] constexpr S least_velocity(const BasicAxis<S>& axis) {
+  return axis.velocity_down > S(0) ? std::min(axis.velocity, axis.velocity_down) : axis.velocity;
+}
+template <std::floating_point S>
+[[nodiscard]] constexpr S least_acceleration(const BasicAxis<S>& axis) {
+  return axis.acceleration_down > S(0) ? std::min(axis.acceleration, axis.acceleration_down)
+                                       : axis.acceleration;
+}
+
+/// The highest speed of the tool in rapids, and in feed moves, mm/s.
+template <MachineModel M>
+[[nodiscard]] constexpr typename M::Scalar rapid_speed(const M& machine) {
+  return machine.rapid_rate > 0 ? machine.rapid_rate : machine.limits.velocity;
+}
+template <MachineModel M>
+[[nodiscard]] constexpr typename M::Scalar feed_speed(const M& machine) {
+  return machine.feed_limit > 0 ? std::min(machine.feed_limit, machine.limits.velocity)
+                                : machine.limits.velocity;
+}
+
+/// Nothing, or what is wrong with a machine: a limit that is not positive, travel without room, more motors
+/// on an axis than there is room for, a drive that `step::validate` refuses. The field names the kind of
+/// limit.
+template <MachineModel M>
+[[nodiscard]] constexpr Expected<void> validate(const M& machine) {
+  using S = typename M::Scalar;
+  const auto refuse = [](ErrorCode code, std::string_view field, S value, S bound) {
+    return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
+  };
+  struct Rate {
+    std::string_view name;
+    S value;
+    bool required;
+  };
+  const auto check = [&](std::initializer_list<Rate> rates) -> Expected<void> {
+    for (const Rate& rate : rates) {
+      if (rate.value != rate.value) return refuse(ErrorCode::not_finite, rate.name, rate.value, S(0));
+      if (rate.value < S(0) || (rate.required && !(rate.value > S(0))))
+        return refuse(rate.required ? ErrorCode::not_positive : ErrorCode::negative, rate.name, rate.value,
+                      S(0));
+    }
+    return {};
+  };
+  if (auto ok = check({{"velocity limit", machine.limits.velocity, true},
+                       {"acceleration limit", machine.limits.acceleration, true},
+                       {"jerk limit", machine.limits.jerk, true},
+                       {"rapid rate", machine.rapid_rate, false},
+                       {"feed limit", machine.feed_limit, false}});
+      !ok)
+    return ok;
+  for (const BasicAxis<S>& axis : machine.axes) {
+    if (auto ok = check({{"velocity limit of an axis", axis.velocity, true},
+                         {"acceleration limit of an axis", axis.acceleration, true},
+                         {"jerk limit of an axis", axis.jerk, true},
+                         {"downward velocity limit of an axis", axis.velocity_down, false},
+                         {"downward acceleration limit of an axis", axis.acceleration_down, false}});
+        !ok)
+      return ok;
+    if (!(axis.low <= axis.high))
+      return refuse(ErrorCode::above_limit, "lower end of travel", axis.low, axis.high);
+    if (axis.motors.size() > BasicMotors<S>::capacity)
+      return refuse(ErrorCode::above_limit, "motors of an axis", static_cast<S>(axis.motors.size()),
+                    static_cast<S>(BasicMotors<S>::capacity));
+    for (const step::BasicDrive<S>& drive : axis.motors)
+      if (auto ok = step::validate(drive); !ok) return tl::unexpected(ok.error());
+  }
+  return {};
+}
 
 }  // namespace cncplan

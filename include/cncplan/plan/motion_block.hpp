@@ -20,8 +20,8 @@ namespace cncplan::plan {
 
 /// The path of a motion in machine coordinates. Errors: those of the arcs; not_supported for a motion of axes
 /// beyond the third, which has no place in space.
-[[nodiscard]] inline Expected<path::Segment> segment(const gcode::Motion& motion,
-                                                     const path::ArcTolerance<double>& tolerance = {}) {
+[[nodiscard]] inline Expected<path::Segment<3>> segment(const gcode::Motion& motion,
+                                                        const path::ArcTolerance<double>& tolerance = {}) {
   for (std::size_t axis = 3; axis < motion.end.size(); ++axis)
     if (motion.end[axis] != motion.start[axis])
       return tl::unexpected(Error{ErrorCode::not_supported, "motion of an axis beyond the third",
@@ -29,7 +29,7 @@ namespace cncplan::plan {
   const Vector3 offset = xyz(motion.offset);
   const Vector3 start = xyz(motion.start) + offset;
   const Vector3 end = xyz(motion.end) + offset;
-  const auto widen = [](const path::Arc& arc) { return path::Segment(arc); };
+  const auto widen = [](const path::Arc& arc) { return path::Segment<3>(arc); };
   switch (motion.kind) {
     case gcode::MotionKind::arc_radius:
       return path::arc_from_radius(start, end, motion.radius, motion.turn, motion.plane, tolerance,
@@ -40,7 +40,7 @@ namespace cncplan::plan {
                                    motion.extra_turns)
           .map(widen);
     default:
-      return path::Segment(path::Line(start, end));
+      return path::Segment<3>(path::Line<3>(start, end));
   }
 }
 

@@ -14,9 +14,10 @@ namespace cncplan::step {
 
 /// A curve of which the length travelled is known: by `length_at`, or as the inverse of `parameter_at`.
 template <class P>
-concept MeasuredPath = ParametricPath<P> &&(Path<P> || requires(const P& path, typename P::Scalar u) {
-  { path.length_at(u) } -> std::same_as<typename P::Scalar>;
-});
+concept MeasuredPath = ParametricPath<P> &&
+    (CurveByLength<P> || requires(const P& path, typename P::Scalar u) {
+      { path.length_at(u) } -> std::same_as<typename P::Scalar>;
+    });
 
 /// Any curve as a `SteppablePath`, by bounded root finds: splines, machine axes behind kinematics, measured
 /// curves. No turning is missed as long as the second derivative of an axis changes sign at most once in each

@@ -21,7 +21,7 @@ struct BasicJointRates {
 /// A path of joints, measured by the length that something else travels (the tool's tip as a rule), so that
 /// its rates are not unit vectors.
 template <class P>
-concept JointPath = Path<P> && requires(const P& path, typename P::Scalar u) {
+concept JointPath = CurveByLength<P> && requires(const P& path, typename P::Scalar u) {
   { path.rates(u) } -> std::same_as<BasicJointRates<typename P::Scalar, P::Vector::RowsAtCompileTime>>;
 };
 

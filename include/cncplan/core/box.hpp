@@ -1,19 +1,21 @@
 // Axis-aligned box.
 #pragma once
 
+#include <concepts>
+
 #include "cncplan/core/vector.hpp"
 
-namespace cncplan::path {
+namespace cncplan {
 
-/// All points with low <= p <= high in every axis, mm.
-template <std::floating_point S>
+/// All points with low <= p <= high in every axis, mm or rad.
+template <std::floating_point S, int N = 3>
 struct BasicBox {
-  BasicVector3<S> low;
-  BasicVector3<S> high;
+  VectorN<S, N> low;
+  VectorN<S, N> high;
 
   friend bool operator==(const BasicBox& a, const BasicBox& b) { return a.low == b.low && a.high == b.high; }
 };
 
 using Box = BasicBox<double>;
 
-}  // namespace cncplan::path
+}  // namespace cncplan

@@ -1,0 +1,94 @@
+// Bounds of a path's derivatives from intervals that enclose them.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+
+#include "cncplan/core/box.hpp"
+#include "cncplan/core/concepts.hpp"
+
+namespace cncplan::path {
+
+/// A path whose position and derivatives by length are known as intervals between two lengths.
+template <class P>
+concept EnclosedPath = requires(const P& path, typename P::Scalar s) {
+  { path.enclosure(s, s)[0] } -> std::convertible_to<BasicJet<BasicInterval<typename P::Scalar>>>;
+  { path.point_at(s) } -> std::same_as<PathPoint<typename P::Vector>>;
+};
+
+namespace detail {
+
+/// Calls visit(enclosure, point in the middle, half the width) for equal parts of [from, to].
+template <EnclosedPath P, class Visit>
+void for_each_part(const P& path, typename P::Scalar from, typename P::Scalar to, int parts, Visit&& visit) {
+  using S = typename P::Scalar;
+  const S half = (to - from) / static_cast<S>(2 * parts);
+  for (int i = 0; i < parts; ++i) {
+    const S middle = from + static_cast<S>(2 * i + 1) * half;
+    visit(path.enclosure(middle - half, middle + half), path.point_at(middle), half);
+  }
+}
+
+/// The bound of a function from its value in the middle of a part and the bound of its derivative, or as it
+/// is known, whichever is lower.
+template <std::floating_point S>
+[[nodiscard]] S grown(S middle, S half, S rate, S known) {
+  const S bound = std::abs(middle) + (half > S(0) ? half * rate : S(0));
+  return bound < known ? bound : known;
+}
+
+}  // namespace detail
+
+/// Bounds of the axes' derivatives between two lengths; those of the tool are left zero. In each of a few
+/// parts the third derivative is enclosed, and the lower ones are bounded from their values in the middle:
+/// the excess falls with the square of a part's width.
+template <EnclosedPath P>
+[[nodiscard]] auto enclosed_bounds(const P& path, typename P::Scalar from, typename P::Scalar to) {
+  using S = typename P::Scalar;
+  constexpr int n = P::Vector::RowsAtCompileTime;
+  constexpr int parts = 4;
+  BasicPathBounds<S, n> result;
+  detail::for_each_part(path, from, to, parts, [&](const auto& enclosed, const auto& middle, S half) {
+    for (int axis = 0; axis < n; ++axis) {
+      const auto& jet = enclosed[static_cast<std::size_t>(axis)];
+      const S third = jet.third.largest();
+      const S second = detail::grown(middle.second[axis], half, third, jet.second.largest());
+      const S first = detail::grown(middle.first[axis], half, second, jet.first.largest());
+      result.third[axis] = std::max(result.third[axis], third);
+      result.second[axis] = std::max(result.second[axis], second);
+      result.first[axis] = std::max(result.first[axis], first);
+    }
+  });
+  return result;
+}
+
+/// The box of all positions, from both ends and what lies between.
+template <EnclosedPath P>
+[[nodiscard]] auto enclosed_box(const P& path) {
+  using S = typename P::Scalar;
+  constexpr int n = P::Vector::RowsAtCompileTime;
+  constexpr int parts = 64;
+  const auto start = path.point_at(S(0)).position, end = path.point_at(path.length()).position;
+  BasicBox<S, n> box{start.cwiseMin(end), start.cwiseMax(end)};
+  detail::for_each_part(path, S(0), path.length(), parts,
+                        [&](const auto& enclosed, const auto& middle, S half) {
+                          for (int axis = 0; axis < n; ++axis) {
+                            const auto& jet = enclosed[static_cast<std::size_t>(axis)];
+                            // On a part that goes one way, its ends are the extremes.
+                            if (!jet.first.contains(S(0))) {
+                              const S reach = half * jet.first.smallest();
+                              box.low[axis] = std::min(box.low[axis], middle.position[axis] - reach);
+                              box.high[axis] = std::max(box.high[axis], middle.position[axis] + reach);
+                              continue;
+                            }
+                            const S bend = half * half * jet.second.largest() / S(2);
+                            const S reach = half * std::abs(middle.first[axis]) + bend;
+                            box.low[axis] = std::min(box.low[axis], middle.position[axis] - reach);
+                            box.high[axis] = std::max(box.high[axis], middle.position[axis] + reach);
+                          }
+                        });
+  return box;
+}
+
+}  // namespace cncplan::path

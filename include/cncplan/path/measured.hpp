@@ -1,0 +1,190 @@
+// A curve of one's own, by any parameter, as a path by its length.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/core/error.hpp"
+#include "cncplan/path/arc_length_table.hpp"
+#include "cncplan/path/enclosed_bounds.hpp"
+
+namespace cncplan::path {
+
+/// A curve of N axes over u in [0, parameter_end()], written once as a template: `point(u)` is asked for with
+/// numbers, with jets and with jets of intervals (core/jet.hpp lists the functions they have). `Vector` is
+/// the Eigen column of its N axes.
+template <class C>
+concept Curve = requires(const C& curve, typename C::Scalar u, const BasicJet<typename C::Scalar>& jet,
+                         const BasicJet<BasicInterval<typename C::Scalar>>& bounded) {
+  requires std::floating_point<typename C::Scalar>;
+  requires C::Vector::RowsAtCompileTime >= 1;
+  { curve.parameter_end() } -> std::convertible_to<typename C::Scalar>;
+  curve.point(u)[0];
+  curve.point(jet)[0];
+  curve.point(bounded)[0];
+};
+
+/// The point whose way counts as length: what a curve's `travelled(u)` says, X Y Z in mm, else its first
+/// three axes.
+template <Curve C, class T>
+[[nodiscard]] auto travelled(const C& curve, const T& u) {
+  if constexpr (requires { curve.travelled(u); }) {
+    return curve.travelled(u);
+  } else {
+    constexpr int space = std::min<int>(C::Vector::RowsAtCompileTime, 3);
+    std::array<T, static_cast<std::size_t>(space)> result;
+    const auto point = curve.point(u);
+    std::copy_n(point.begin(), space, result.begin());
+    return result;
+  }
+}
+
+/// The speed by the parameter of the point that counts.
+template <Curve C, class T>
+[[nodiscard]] auto speed(const C& curve, const T& u) {
+  T sum(0);
+  for (const T& coordinate : travelled(curve, u)) sum = sum + square(coordinate.rate());
+  return sqrt(sum);
+}
+
+/// The way of the point that counts, as quadrature needs it.
+template <Curve C>
+struct Travel {
+  using Scalar = typename C::Scalar;
+  using Vector = VectorN<Scalar, 1>;
+
+  C curve;
+
+  [[nodiscard]] Scalar parameter_end() const { return curve.parameter_end(); }
+  [[nodiscard]] Vector derivative(Scalar u) const {
+    return Vector(speed(curve, BasicJet<Scalar>(u, 1, 0, 0)).value);
+  }
+};
+
+/// A curve by the length that `travelled` has come. The table of lengths has so many `Intervals`.
+template <Curve C, int Intervals = 64>
+class Measured {
+ public:
+  using Scalar = typename C::Scalar;
+  using Vector = typename C::Vector;
+  static constexpr int axis_count = Vector::RowsAtCompileTime;
+
+  /// For a curve that is known to be smooth and never to stand still; `measured` asks.
+  explicit Measured(const C& curve) : table_(Travel<C>{curve}) {}
+
+  [[nodiscard]] const C& curve() const { return table_.curve().curve; }
+  [[nodiscard]] Scalar length() const { return table_.length(); }
+  [[nodiscard]] Scalar parameter_end() const { return table_.parameter_end(); }
+  [[nodiscard]] Scalar parameter_at(Scalar s) const { return table_.parameter_at(s); }
+  [[nodiscard]] Scalar length_at(Scalar u) const { return table_.length_at(u); }
+
+  [[nodiscard]] Vector position_at(Scalar s) const { return values(curve().point(parameter_at(s))); }
+  [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const {
+    PathPoint<Vector> result;
+    const auto point = curve().point(by_length(parameter_at(s)));
+    for (int i = 0; i < axis_count; ++i) put(point[static_cast<std::size_t>(i)], result, i);
+    return result;
+  }
+  /// X Y Z of the point that counts, and their derivatives.
+  [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
+    PathPoint<BasicVector3<Scalar>> result;
+    int i = 0;
+    for (const auto& axis : travelled(curve(), by_length(parameter_at(s)))) put(axis, result, i++);
+    return result;
+  }
+  [[nodiscard]] auto enclosure(Scalar from, Scalar to) const {
+    return curve().point(by_length(BasicInterval<Scalar>{parameter_at(from), parameter_at(to)}));
+  }
+  [[nodiscard]] BasicPathBounds<Scalar, axis_count> bounds(Scalar from, Scalar to) const {
+    auto result = enclosed_bounds(*this, from, to);
+    result.tool = tool_bounds(from, to);
+    return result;
+  }
+  [[nodiscard]] BasicBox<Scalar, axis_count> box() const { return enclosed_box(*this); }
+
+  friend bool operator==(const Measured& a, const Measured& b) requires std::equality_comparable<C> {
+    return a.curve() == b.curve();
+  }
+
+ private:
+  static Vector values(const std::array<Scalar, static_cast<std::size_t>(axis_count)>& point) {
+    return Eigen::Map<const Vector>(point.data());
+  }
+
+  template <class V>
+  static void put(const BasicJet<Scalar>& jet, PathPoint<V>& into, int axis) {
+    into.position[axis] = jet.value;
+    into.first[axis] = jet.first;
+    into.second[axis] = jet.second;
+    into.third[axis] = jet.third;
+  }
+
+  // The parameter with its derivatives by the length: a number, or an interval.
+  template <class T>
+  [[nodiscard]] BasicJet<T> by_length(const T& u) const {
+    const BasicJet<T> rate = BasicJet<T>(T(1)) / speed(curve(), BasicJet<T>(u, T(1), T(0), T(0)));
+    return {u, rate.value, rate.first * rate.value,
+            (rate.second * rate.value + rate.first * rate.first) * rate.value};
+  }
+
+  // Of a unit-speed curve: the part of r''' along r' is the square of the curvature, the rest lies across.
+  [[nodiscard]] BasicToolBounds<Scalar> tool_bounds(Scalar from, Scalar to) const {
+    constexpr int parts = 4;
+    const Scalar width = (to - from) / Scalar(parts);
+    BasicToolBounds<Scalar> result{.first = Scalar(1)};
+    for (int part = 0; part < parts; ++part) {
+      const Scalar start = from + width * static_cast<Scalar>(part);
+      const BasicInterval<Scalar> u{parameter_at(start), parameter_at(start + width)};
+      Scalar middle_sq{}, second_sq{}, third_sq{};
+      for (const auto& x : travelled(curve(), by_length(parameter_at(start + width / Scalar(2)))))
+        middle_sq += x.second * x.second;
+      for (const auto& x : travelled(curve(), by_length(u))) {
+        second_sq += x.second.largest() * x.second.largest();
+        third_sq += x.third.largest() * x.third.largest();
+      }
+      const Scalar third = std::sqrt(third_sq), middle = std::sqrt(middle_sq), half = width / Scalar(2);
+      const Scalar second = detail::grown(middle, half, third, std::sqrt(second_sq));
+      const Scalar least = std::max(middle - half * third, Scalar(0));
+      const Scalar across_sq = third_sq - least * least * least * least;
+      result = result.joined(
+          {Scalar(1), Scalar(0), second, second * second, std::sqrt(std::max(across_sq, Scalar(0)))});
+    }
+    return result;
+  }
+
+  ArcLengthTable<Travel<C>, Intervals> table_;
+};
+
+/// The curve as a path. Errors: not_positive for a parameter range that is empty; not_finite for a curve that
+/// is not smooth or stands still somewhere, with the parameter at which it was found; unreachable where its
+/// length cannot be measured to 1e-9 of itself, with the part that is uncertain.
+template <Curve C>
+[[nodiscard]] Expected<Measured<C>> measured(const C& curve) {
+  using S = typename C::Scalar;
+  const S end = curve.parameter_end();
+  const auto refuse = [](ErrorCode code, S value, S bound) {
+    return tl::unexpected(
+        Error{code, "parameter of a curve", static_cast<double>(value), static_cast<double>(bound)});
+  };
+  if (!(end > S(0)) || !std::isfinite(end)) return refuse(ErrorCode::not_positive, end, S(0));
+  constexpr int intervals = 64;
+  const Travel<C> travel{curve};
+  S uncertain = S(0), whole = S(0);
+  for (int i = 0; i < intervals; ++i) {
+    const S from = end * static_cast<S>(i) / S(intervals), to = end * static_cast<S>(i + 1) / S(intervals);
+    const S once = arc_length(travel, from, to), twice = arc_length(travel, from, to, 2);
+    if (!std::isfinite(once) || !std::isfinite(twice) || !(twice > S(0)))
+      return refuse(ErrorCode::not_finite, from, end);
+    uncertain += std::abs(once - twice);
+    whole += twice;
+  }
+  constexpr S tolerance = std::max(S(1e-9), S(1e3) * std::numeric_limits<S>::epsilon());
+  if (uncertain > tolerance * whole) return refuse(ErrorCode::unreachable, uncertain, tolerance * whole);
+  return Measured<C>(curve);
+}
+
+}  // namespace cncplan::path

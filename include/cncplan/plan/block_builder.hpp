@@ -1,0 +1,280 @@
+// From the items of a G-code program to blocks of a machine, one by one.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <variant>
+
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/motion.hpp"
+#include "cncplan/gcode/reader.hpp"
+#include "cncplan/path/arc_from_center.hpp"
+#include "cncplan/path/arc_from_radius.hpp"
+#include "cncplan/path/mapped.hpp"
+#include "cncplan/path/straight_in_joints.hpp"
+#include "cncplan/plan/machine.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/tool.hpp"
+
+namespace cncplan {
+
+namespace detail {
+
+template <MachineModel M>
+struct ProgramBlockOf {
+  using type = BasicBlock<typename M::Scalar, M::axis_count>;
+};
+template <class Map>
+using ProgrammedPath = path::BasicSegment<typename Map::Scalar, path::coordinate_count<Map>>;
+template <MachineModel M>
+  requires MappedModel<M>
+struct ProgramBlockOf<M> {
+  using Map = std::remove_cvref_t<decltype(M::map)>;
+  using type = BasicBlock<typename M::Scalar, M::axis_count, path::Mapped<Map, ProgrammedPath<Map>>,
+                          path::StraightInJoints<Map>>;
+};
+
+}  // namespace detail
+
+/// The block of a machine's programs.
+template <MachineModel M>
+using ProgramBlock = typename detail::ProgramBlockOf<M>::type;
+
+/// How many coordinates a machine's programs have.
+template <MachineModel M>
+inline constexpr int program_coordinates = [] {
+  if constexpr (MappedModel<M>)
+    return path::coordinate_count<std::remove_cvref_t<decltype(M::map)>>;
+  else
+    return M::axis_count;
+}();
+
+/// The language of a machine's programs: words for its axes, or for the coordinates of its map, and no
+/// tables. Z is a word of the language even where the machine has none.
+template <MachineModel M>
+[[nodiscard]] gcode::Dialect dialect_of(const M& machine) {
+  gcode::Dialect dialect;
+  if constexpr (MappedModel<M>) {
+    const auto coordinates = default_axes<double, program_coordinates<M>>();
+    dialect.axes.clear();
+    for (const Axis& axis : coordinates) dialect.axes.push_back({axis.letter, axis.kind});
+  } else {
+    dialect.axes.clear();
+    for (const auto& axis : machine.axes) dialect.axes.push_back({axis.letter, axis.kind});
+    for (const char letter : {'X', 'Y', 'Z'})
+      if (dialect.axes.size() < gcode::max_axes &&
+          std::none_of(dialect.axes.begin(), dialect.axes.end(),
+                       [&](const gcode::Axis& axis) { return axis.letter == letter; }))
+        dialect.axes.push_back({letter, AxisKind::linear});
+  }
+  return dialect;
+}
+
+/// Makes blocks of motions, dwells and stops; holds nothing back. A dwell or a stop is a block of length
+/// zero.
+template <MachineModel M>
+class BlockBuilder {
+ public:
+  using Block = ProgramBlock<M>;
+  using Scalar = typename M::Scalar;
+
+  BlockBuilder(const M& machine, const gcode::Dialect& dialect, const path::ArcTolerance<double>& arcs = {})
+      : machine_(machine), arcs_(arcs) {
+    const auto index_of = [&](char letter) {
+      const auto found = std::find_if(dialect.axes.begin(), dialect.axes.end(),
+                                      [&](const gcode::Axis& axis) { return axis.letter == letter; });
+      return found == dialect.axes.end() ? -1 : static_cast<int>(found - dialect.axes.begin());
+    };
+    word_count_ = dialect.axes.size();
+    for (std::size_t i = 0; i < word_count_; ++i) kinds_[i] = dialect.axes[i].kind;
+    for (std::size_t k = 0; k < 3; ++k) space_[k] = index_of("XYZ"[k]);
+    if constexpr (MappedModel<M>)
+      for (std::size_t i = 0; i < coordinates; ++i) words_[i] = static_cast<int>(i);
+    else
+      for (std::size_t i = 0; i < coordinates; ++i) words_[i] = index_of(machine.axes[i].letter);
+  }
+
+  /// The block of an item; none for a word or a warning, or for a stop before anything. Errors, at their
+  /// place: those of arcs; not_supported for an arc on a machine whose first axes are not X Y Z; unreachable
+  /// for a motion of an axis that the machine lacks.
+  [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> take(const gcode::Item& item) {
+    if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
+      auto made = block(*motion);
+      if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion->line, motion->column, {}});
+      end_ = made->path.end();
+      return std::optional<Block>(*made);
+    }
+    const auto* word = std::get_if<gcode::Word>(&item);
+    if (const auto* dwell = std::get_if<gcode::Dwell>(&item)) return stop(dwell->line, dwell->seconds);
+    if (const auto* end = std::get_if<gcode::Stop>(&item)) return stop(end->line, 0.0);
+    if (word != nullptr && word->letter == 'T') return stop(word->line, 0.0);
+    return std::optional<Block>();
+  }
+
+  /// Where the axes are before the first motion.
+  void start_at(const gcode::Position& place) { end_ = axes_at(coordinates_of(place)); }
+
+ private:
+  static constexpr auto coordinates = static_cast<std::size_t>(program_coordinates<M>);
+  using Coordinates = VectorN<Scalar, program_coordinates<M>>;
+  using Programmed = path::BasicSegment<Scalar, program_coordinates<M>>;
+
+  [[nodiscard]] std::optional<Block> stop(int line, double seconds) const {
+    return Block{.path = path::BasicLine<Scalar, M::axis_count>(end_, end_),
+                 .pause = static_cast<Scalar>(seconds),
+                 .exact_stop = true,
+                 .line = line};
+  }
+
+  [[nodiscard]] Coordinates coordinates_of(const gcode::Position& place) const {
+    Coordinates result = Coordinates::Zero();
+    for (std::size_t i = 0; i < coordinates; ++i)
+      if (words_[i] >= 0)
+        result[static_cast<Eigen::Index>(i)] =
+            static_cast<Scalar>(place[static_cast<std::size_t>(words_[i])]);
+    return result;
+  }
+
+  [[nodiscard]] VectorN<Scalar, M::axis_count> axes_at(const Coordinates& place) const {
+    if constexpr (MappedModel<M>) {
+      std::array<Scalar, coordinates> x;
+      Eigen::Map<Coordinates>(x.data()) = place;
+      const auto joints = machine_.map.joints(x);
+      return Eigen::Map<const VectorN<Scalar, M::axis_count>>(joints.data());
+    } else {
+      return place;
+    }
+  }
+
+  // A path of the machine's words that do not belong to it must stand still.
+  [[nodiscard]] Expected<void> check_axes(const gcode::Motion& motion) const {
+    for (std::size_t i = 0; i < word_count_; ++i) {
+      const bool ours = std::find(words_.begin(), words_.end(), static_cast<int>(i)) != words_.end();
+      if (!ours && motion.end[i] != motion.start[i])
+        return tl::unexpected(
+            Error{ErrorCode::unreachable, "motion of an axis that the machine lacks", motion.end[i], 0.0});
+    }
+    return {};
+  }
+
+  [[nodiscard]] Expected<Block> block(const gcode::Motion& motion) const {
+    if (auto ok = check_axes(motion); !ok) return tl::unexpected(ok.error());
+    const auto programmed = programmed_path(motion);
+    if (!programmed) return tl::unexpected(programmed.error());
+    Block result{.exact_stop = motion.exact_stop,
+                 .rapid = motion.kind == gcode::MotionKind::rapid,
+                 .line = motion.line,
+                 .column = motion.column};
+    if constexpr (MappedModel<M>) {
+      using Map = std::remove_cvref_t<decltype(M::map)>;
+      const Coordinates start = programmed->start(), end = programmed->end();
+      if (result.rapid)
+        result.path = path::StraightInJoints<Map>(machine_.map, start, end);
+      else if (programmed->length() > Scalar(0))
+        result.path = path::Mapped<Map, Programmed>(machine_.map, *programmed);
+      else
+        result.path = path::BasicLine<Scalar, M::axis_count>(axes_at(start), axes_at(start));
+    } else {
+      result.path = *programmed;
+    }
+    if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
+    return result;
+  }
+
+  // mm/s, or rad/s where the tool stands still: F counts degrees there.
+  [[nodiscard]] Scalar feed(const gcode::Motion& motion, const Programmed& programmed) const {
+    if (motion.feed_mode == gcode::FeedMode::inverse_time)
+      return static_cast<Scalar>(*motion.feed) * programmed.length();
+    const bool turns = rotary_only(motion);
+    return static_cast<Scalar>(*motion.feed * (turns ? gcode::radians_per_degree : 1.0));
+  }
+
+  [[nodiscard]] bool rotary_only(const gcode::Motion& motion) const {
+    bool turns = false;
+    for (std::size_t i = 0; i < word_count_; ++i) {
+      if (motion.end[i] == motion.start[i]) continue;
+      if (kinds_[i] == AxisKind::linear) return false;
+      turns = true;
+    }
+    return turns;
+  }
+
+  // X Y Z of a place, machine coordinates.
+  [[nodiscard]] BasicVector3<Scalar> in_space(const gcode::Position& place,
+                                              const gcode::Position& offset) const {
+    BasicVector3<Scalar> result = BasicVector3<Scalar>::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const int word = space_[k]; word >= 0) {
+        const auto i = static_cast<std::size_t>(word);
+        result[static_cast<Eigen::Index>(k)] = static_cast<Scalar>(place[i] + offset[i]);
+      }
+    return result;
+  }
+
+  // In the program's coordinates.
+  [[nodiscard]] Expected<Programmed> programmed_path(const gcode::Motion& motion) const {
+    gcode::Position from{}, to{};
+    for (std::size_t i = 0; i < word_count_; ++i) {
+      from[i] = motion.start[i] + motion.offset[i];
+      to[i] = motion.end[i] + motion.offset[i];
+    }
+    const Coordinates start = coordinates_of(from), end = coordinates_of(to);
+    const bool arc =
+        motion.kind == gcode::MotionKind::arc_radius || motion.kind == gcode::MotionKind::arc_center;
+    if (!arc) return Programmed(line(motion, start, end));
+    if (!space_first())
+      return tl::unexpected(Error{ErrorCode::not_supported, "arc on a machine whose first axes are not X Y Z",
+                                  static_cast<double>(M::axis_count), 3.0});
+    const BasicVector3<Scalar> a = in_space(motion.start, motion.offset),
+                               b = in_space(motion.end, motion.offset);
+    const BasicVector3<Scalar> offset = in_space({}, motion.offset);
+    const auto arc_in_space =
+        motion.kind == gcode::MotionKind::arc_radius
+            ? path::arc_from_radius(a, b, static_cast<Scalar>(motion.radius), motion.turn, motion.plane,
+                                    arcs_, motion.extra_turns)
+            : path::arc_from_center(a, b,
+                                    BasicVector3<Scalar>(motion.center.template cast<Scalar>() + offset),
+                                    motion.turn, motion.plane, arcs_, motion.extra_turns);
+    if (!arc_in_space) return tl::unexpected(arc_in_space.error());
+    if constexpr (program_coordinates<M> == 3)
+      return Programmed(*arc_in_space);
+    else
+      return Programmed(path::BasicArcAlong<Scalar, program_coordinates<M>>(*arc_in_space, start, end));
+  }
+
+  // The field's rule for what a feed counts: the way of X Y Z where they move, else that of the other linear
+  // axes, else that of the rotary ones.
+  [[nodiscard]] path::BasicLine<Scalar, program_coordinates<M>> line(const gcode::Motion& motion,
+                                                                     const Coordinates& start,
+                                                                     const Coordinates& end) const {
+    const Scalar tool = (in_space(motion.end, motion.offset) - in_space(motion.start, motion.offset)).norm();
+    if (tool > Scalar(0)) return {start, end, tool, tool};
+    Scalar linear_sq{}, rotary_sq{};
+    for (std::size_t i = 0; i < word_count_; ++i) {
+      const auto way = static_cast<Scalar>(motion.end[i] - motion.start[i]);
+      (kinds_[i] == AxisKind::linear ? linear_sq : rotary_sq) += way * way;
+    }
+    return {start, end, std::sqrt(linear_sq > Scalar(0) ? linear_sq : rotary_sq), Scalar(0)};
+  }
+
+  [[nodiscard]] bool space_first() const {
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, coordinates); ++k)
+      if (words_[k] != space_[k]) return false;
+    return true;
+  }
+
+  M machine_;
+  path::ArcTolerance<double> arcs_;
+  std::size_t word_count_ = 0;
+  std::array<AxisKind, gcode::max_axes> kinds_{};
+  std::array<int, coordinates> words_{};  // which word each coordinate is; -1 for none
+  std::array<int, 3> space_{};            // which words X Y Z are
+  VectorN<Scalar, M::axis_count> end_ = VectorN<Scalar, M::axis_count>::Zero();
+};
+
+}  // namespace cncplan

@@ -1,0 +1,132 @@
+// Limits along a path under which the tool and each axis keep their own.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "cncplan/core/limits.hpp"
+#include "cncplan/core/path_bounds.hpp"
+#include "cncplan/plan/machine.hpp"
+
+namespace cncplan::plan {
+
+namespace detail {
+
+/// One thing that is limited, an axis or the tool, and the bounds of its path. An axis has nothing across.
+template <std::floating_point S>
+struct Limited {
+  BasicToolBounds<S> bounds;
+  BasicLimits<S> limits;
+
+  [[nodiscard]] bool bends() const {
+    return bounds.second_along > S(0) || bounds.second_across > S(0) || bounds.third_along > S(0) ||
+           bounds.third_across > S(0);
+  }
+};
+
+/// Calls visit(Limited) for the tool and for each axis.
+template <MachineModel M, class Visit>
+void for_each_limited(const M& machine, const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds,
+                      typename M::Scalar tool_speed, Visit&& visit) {
+  using S = typename M::Scalar;
+  visit(Limited<S>{bounds.tool, {tool_speed, machine.limits.acceleration, machine.limits.jerk}});
+  for (int i = 0; i < M::axis_count; ++i) {
+    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    visit(Limited<S>{{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)},
+                     {least_velocity(axis), least_acceleration(axis), axis.jerk}});
+  }
+}
+
+/// Shares of the limits that the bends alone may use at the highest speed, so that something is left to
+/// change speed with.
+inline constexpr double bend_acceleration_share = 0.8;
+inline constexpr double bend_jerk_share = 0.5;
+
+/// The highest speed that bends leave.
+template <std::floating_point S>
+[[nodiscard]] S speed_of(const Limited<S>& row, S speed) {
+  const auto& [b, limits] = row;
+  if (b.first > S(0)) speed = std::min(speed, limits.velocity / b.first);
+  const S second = std::hypot(b.second_along, b.second_across);
+  if (second > S(0))
+    speed = std::min(speed, std::sqrt(S(bend_acceleration_share) * limits.acceleration / second));
+  const S third = b.third_along + b.third_across;
+  if (third > S(0)) speed = std::min(speed, std::cbrt(S(bend_jerk_share) * limits.jerk / third));
+  return speed;
+}
+
+/// The acceleration along the path that a speed leaves. By the acceleration limit A,
+/// (f a + p v^2)^2 + (q v^2)^2 <= A^2. By the jerk limit J, where the path bends: a ramp at jerk j up to
+/// speed v peaks at no more than sqrt(j v), so no more acceleration than that is of use; with j = a^2 / v, (f
+/// a^2/v + 3 p v a + t v^3)^2 + (3 q v a + w v^3)^2 <= J^2, whose left side is convex and grows with a:
+/// Newton's method from above. What it leaves above the root only lowers the jerk that is chosen from it.
+template <std::floating_point S>
+[[nodiscard]] S acceleration_of(const Limited<S>& row, S v) {
+  const auto& [b, limits] = row;
+  const S v2 = v * v, v3 = v2 * v;
+  S a = std::numeric_limits<S>::infinity();
+  if (b.first > S(0) && std::isfinite(limits.acceleration)) {
+    const S across = b.second_across * v2;
+    a = (std::sqrt((limits.acceleration - across) * (limits.acceleration + across)) - b.second_along * v2) /
+        b.first;
+  }
+  if (!row.bends() || !std::isfinite(limits.jerk) || !(v > S(0))) return a;
+  const S along_slope = S(3) * b.second_along * v, across_slope = S(3) * b.second_across * v;
+  const S along_rest = b.third_along * v3, across_rest = b.third_across * v3;
+  const S left = std::sqrt((limits.jerk - across_rest) * (limits.jerk + across_rest)) - along_rest;
+  if (!(b.first > S(0))) {
+    const S slope = along_slope + across_slope;
+    return slope > S(0) ? std::min(a, left / slope) : a;
+  }
+  constexpr int rounds = 6;
+  S root = std::sqrt(left * v / b.first);
+  for (int round = 0; round < rounds; ++round) {
+    const S along = b.first * root * root / v + along_slope * root + along_rest;
+    const S across = across_slope * root + across_rest;
+    const S jerk = std::hypot(along, across);
+    const S slope = (along * (S(2) * b.first * root / v + along_slope) + across * across_slope) / jerk;
+    if (!(jerk > limits.jerk) || !(slope > S(0))) break;
+    root = std::max(root - (jerk - limits.jerk) / slope, S(0));
+  }
+  return std::min(a, root);
+}
+
+/// The jerk along the path that a speed and an acceleration leave.
+template <std::floating_point S>
+[[nodiscard]] S jerk_of(const Limited<S>& row, S v, S a) {
+  const auto& [b, limits] = row;
+  if (!(b.first > S(0)) || !std::isfinite(limits.jerk)) return std::numeric_limits<S>::infinity();
+  if (!row.bends()) return limits.jerk / b.first;
+  const S along = S(3) * b.second_along * v * a + b.third_along * v * v * v;
+  const S across = S(3) * b.second_across * v * a + b.third_across * v * v * v;
+  return (std::sqrt((limits.jerk - across) * (limits.jerk + across)) - along) / b.first;
+}
+
+}  // namespace detail
+
+/// Limits along the path, no faster than `speed`, such that for every speed, acceleration and jerk within
+/// them the tool's vectors and each axis stay within the machine's limits (`tool_speed` stands for the
+/// velocity of the tool): |q'| v, |q''| v^2 + |q'| a and |q'''| v^3 + 3 |q''| v a + |q'| j grow with v, a and
+/// j, so it is enough that they hold for the limits themselves (core/path_point.hpp has the formula).
+template <MachineModel M>
+[[nodiscard]] BasicLimits<typename M::Scalar> limits_along(
+    const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
+    typename M::Scalar speed, typename M::Scalar tool_speed) {
+  using S = typename M::Scalar;
+  BasicLimits<S> limits;
+  limits.velocity = speed;
+  using Row = detail::Limited<S>;
+  detail::for_each_limited(machine, bounds, tool_speed,
+                           [&](const Row& row) { limits.velocity = detail::speed_of(row, limits.velocity); });
+  detail::for_each_limited(machine, bounds, tool_speed, [&](const Row& row) {
+    limits.acceleration = std::min(limits.acceleration, detail::acceleration_of(row, limits.velocity));
+  });
+  detail::for_each_limited(machine, bounds, tool_speed, [&](const Row& row) {
+    limits.jerk = std::min(limits.jerk, detail::jerk_of(row, limits.velocity, limits.acceleration));
+  });
+  return limits;
+}
+
+}  // namespace cncplan::plan

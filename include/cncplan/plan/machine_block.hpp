@@ -1,0 +1,42 @@
+// A block: one motion of a program, with all that planning needs to know of it.
+#pragma once
+
+#include <concepts>
+#include <limits>
+
+#include "cncplan/path/segment.hpp"
+
+namespace cncplan {
+
+/// Where the axes go, how fast they may, and how the motion ends. A block of length zero is a place to stop.
+template <std::floating_point S, int N, class... Curves>
+struct BasicBlock {
+  using Scalar = S;
+  using Path = path::BasicSegment<S, N, Curves...>;
+  static constexpr int axis_count = N;
+
+  Path path{};                                  ///< positions of the axes, mm and rad
+  S feed = std::numeric_limits<S>::infinity();  ///< of feed moves, mm/s (rad/s where only rotary axes move)
+  S pause{};                                    ///< s at rest behind it
+  bool exact_stop{};                            ///< at rest at its end
+  bool rapid{};                                 ///< at the rapid rate, whatever the feed
+  int line{};                                   ///< of the program; 0 where there is none
+  int column{};
+
+  friend bool operator==(const BasicBlock&, const BasicBlock&) = default;
+};
+
+template <int N, class... Curves>
+using Block = BasicBlock<double, N, Curves...>;
+
+/// Any block: what `plan_blocks` takes.
+template <class B>
+concept BlockModel = requires(const B& block) {
+  requires Path<typename B::Path>;
+  requires B::axis_count >= 1;
+  { block.path } -> std::convertible_to<const typename B::Path&>;
+  { block.feed } -> std::convertible_to<typename B::Scalar>;
+  { block.rapid } -> std::convertible_to<bool>;
+};
+
+}  // namespace cncplan

@@ -1,0 +1,78 @@
+// When each block of a program runs and how: constant-jerk phases, each within one block (set-up).
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "cncplan/core/phase.hpp"
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/span.hpp"
+
+namespace cncplan::plan {
+
+/// A phase within one block: its time counts from the start of the program, its position from the block's.
+template <std::floating_point S>
+struct BasicBlockPhase {
+  BasicPhase<S> phase;
+  std::size_t block{};
+
+  friend bool operator==(const BasicBlockPhase&, const BasicBlockPhase&) = default;
+};
+
+/// Cuts planned spans of cells into phases that each lie within one block. Every block that moves has one.
+template <std::floating_point S>
+[[nodiscard]] std::vector<BasicBlockPhase<S>> block_phases(std::span<const BasicSpan<S>> spans,
+                                                           const BasicCells<S>& cells) {
+  std::vector<BasicBlockPhase<S>> table;
+  table.reserve(cells.caps.size() + 7 * spans.size());
+  S start = S(0);
+  const auto rest = [&](S seconds, S position, std::size_t block) {
+    table.push_back({{start, seconds, position, S(0), S(0), S(0)}, block});
+    start += seconds;
+  };
+  if (cells.first_pause > S(0)) rest(cells.first_pause, S(0), 0);
+  S travelled = S(0);  // of the block that goes on, in the spans before
+  S finished = S(0);   // length of the block that was finished last
+  for (const BasicSpan<S>& span : spans) {
+    const S duration = span.profile.duration();
+    if (span.count == 0) {
+      const std::size_t cell = span.first - 1, block = cells.pause_blocks[cell];
+      rest(duration, block == cells.blocks[cell] ? finished : S(0), block);
+      continue;
+    }
+    const auto phases = span.profile.phases();
+    std::size_t phase = 0;
+    S time = S(0), position = S(0), origin = -travelled;  // of the block, where the span's position is 0
+    const std::size_t end = span.first + span.count;
+    for (std::size_t cell = span.first; cell < end; ++cell) {
+      const std::size_t block = cells.blocks[cell];
+      position += cells.caps[cell].length;
+      const bool block_ends = cell + 1 == cells.blocks.size() || cells.blocks[cell + 1] != block;
+      if (!block_ends && cell + 1 < end) continue;
+      const S until = cell + 1 == end ? duration : std::max(span.profile.time_at(position), time);
+      do {
+        while (phase + 1 < phases.size() &&
+               (phases[phase].duration == S(0) || time >= phases[phase + 1].time))
+          ++phase;
+        const S next = phase + 1 < phases.size() ? std::min(phases[phase + 1].time, until) : until;
+        const BasicState<S> state = phases[phase].at(std::max(time - phases[phase].time, S(0)));
+        const S along = std::max(state.position - origin, S(0));
+        table.push_back(
+            {{start + time, next - time, along, state.velocity, state.acceleration, state.jerk}, block});
+        if (!(next > time)) break;
+        time = next;
+      } while (time < until);
+      travelled = block_ends ? S(0) : position - origin;
+      if (!block_ends) continue;
+      finished = position - origin;
+      origin = position;
+    }
+    start += duration;
+  }
+  return table;
+}
+
+}  // namespace cncplan::plan

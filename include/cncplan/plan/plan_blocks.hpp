@@ -1,0 +1,85 @@
+// Plans blocks into a trajectory (set-up).
+#pragma once
+
+#include <concepts>
+#include <iterator>
+#include <ranges>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/plan/trajectory.hpp"
+
+namespace cncplan {
+
+/// The block type of a range of blocks.
+template <class R>
+using BlockOf = std::remove_cvref_t<std::ranges::range_value_t<R>>;
+
+namespace plan {
+
+/// A place in a program of blocks, for an error in one of them.
+template <BlockModel B>
+[[nodiscard]] ProgramError error_in(const std::vector<B>& blocks, const BlockFault& fault) {
+  const B& block = blocks[fault.block];
+  return {{fault.error, block.line, block.column, {}}, {}, fault.block};
+}
+
+/// The trajectory of blocks under rules for their joints and a law for changes of speed.
+template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar> Law>
+[[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
+    std::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
+    const Law& law) {
+  using S = typename M::Scalar;
+  const auto cells = make_cells(std::span<const B>(blocks), machine, rules);
+  if (!cells) return tl::unexpected(error_in(blocks, cells.error()));
+  std::vector<BasicSpan<S>> spans;
+  std::vector<BasicGate<S>> gates(cells->caps.size() + 1);
+  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(gates),
+                                  std::back_inserter(spans));
+  if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
+  auto phases = block_phases(std::span<const BasicSpan<S>>(spans), *cells);
+  return Trajectory<M, B>(machine, std::move(blocks), std::move(phases));
+}
+
+}  // namespace plan
+
+/// The fastest motion along blocks, end to end, from rest to rest, such that the tool and each axis keep
+/// their limits inside blocks; at a joint that is not smooth the velocity jumps, at no more than what a
+/// corner rounded within the tolerances would allow. Errors: those of `validate` for the machine; a block
+/// that leaves the travel of an axis or that no limit bounds.
+template <std::ranges::contiguous_range R, MachineModel M>
+  requires BlockModel<BlockOf<R>>
+[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(const R& blocks, const M& machine,
+                                                                            const PlanOptions& options = {}) {
+  using S = typename M::Scalar;
+  if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+  const auto tolerance = static_cast<S>(options.tolerance);
+  const plan::JointRules<S, junction::BasicDeviation<S>> rules{
+      {tolerance}, tolerance, static_cast<S>(options.rotary_tolerance)};
+  return plan::trajectory(std::vector<BlockOf<R>>(std::ranges::begin(blocks), std::ranges::end(blocks)),
+                          machine, rules, plan::SevenPhase{});
+}
+
+/// The same with a policy of one's own for joints (`JunctionPolicy`); the tolerances of the options do not
+/// act.
+template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy>
+  requires BlockModel<BlockOf<R>>
+[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(const R& blocks, const M& machine,
+                                                                            const Policy& policy) {
+  using S = typename M::Scalar;
+  if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+  const plan::JointRules<S, Policy> rules{policy, S(-1), S(-1)};
+  return plan::trajectory(std::vector<BlockOf<R>>(std::ranges::begin(blocks), std::ranges::end(blocks)),
+                          machine, rules, plan::SevenPhase{});
+}
+
+}  // namespace cncplan

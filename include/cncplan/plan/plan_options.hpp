@@ -1,0 +1,21 @@
+// How a program is to be planned (set-up).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/path/arc_tolerance.hpp"
+
+namespace cncplan {
+
+/// What holds for a whole program.
+struct PlanOptions {
+  double tolerance = 0.01;  ///< mm, >= 0: how far the tool may leave the programmed path at corners
+  double rotary_tolerance = 8.726646259971648e-4;  ///< rad, >= 0: the same for rotary axes; 0.05 degrees
+  std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad
+  std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
+  path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be
+};
+
+}  // namespace cncplan

@@ -1,0 +1,36 @@
+// What is wrong with a program, and where (set-up).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "cncplan/core/error_text.hpp"
+#include "cncplan/gcode/diagnostic_text.hpp"
+
+namespace cncplan {
+
+/// An error at its place: of a text, the line and column; of blocks made by hand, the block.
+struct ProgramError {
+  gcode::Diagnostic about;
+  std::string file{};                  ///< empty where there is none
+  std::optional<std::size_t> block{};  ///< counted from 0
+
+  [[nodiscard]] const Error& error() const { return about.error; }
+};
+
+/// "part.ngc:12:5: error: axis X: 310 is above the limit 300", or as much of that as is known.
+[[nodiscard]] inline std::string to_text(const ProgramError& error) {
+  std::string place = error.file;
+  if (error.about.line > 0) {
+    if (!place.empty()) place += ':';
+    place += std::to_string(error.about.line) + ':' + std::to_string(error.about.column);
+  } else if (error.block) {
+    place += (place.empty() ? "block " : ": block ") + std::to_string(*error.block);
+  }
+  const bool of_text = error.about.line > 0 && !error.block;
+  return place + (place.empty() ? "error: " : ": error: ") +
+         (of_text ? gcode::to_text(error.about) : to_text(error.error()));
+}
+
+}  // namespace cncplan

@@ -1,0 +1,31 @@
+// What a trajectory or an executor says at one instant.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+#include "cncplan/core/state.hpp"
+#include "cncplan/core/vector.hpp"
+
+namespace cncplan {
+
+/// The axes and the tool at one instant; mm, rad and s.
+template <std::floating_point S, int N>
+struct BasicSetPoint {
+  using Vector = VectorN<S, N>;
+
+  S time{};                          ///< s from the start
+  std::size_t block{};               ///< counted from 0
+  int line{};                        ///< of the program; 0 where there is none
+  Vector position = Vector::Zero();  ///< of each axis
+  Vector velocity = Vector::Zero();
+  Vector acceleration = Vector::Zero();
+  Vector jerk = Vector::Zero();
+  BasicVector3<S> tool = BasicVector3<S>::Zero();  ///< X Y Z
+  BasicState<S> along{};  ///< programmed length since the start, and its time derivatives
+};
+
+template <int N>
+using SetPoint = BasicSetPoint<double, N>;
+
+}  // namespace cncplan

@@ -1,0 +1,283 @@
+// A planned program as a value: it owns its blocks and says where everything is at any instant (set-up).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cncplan/core/points.hpp"
+#include "cncplan/gcode/word.hpp"
+#include "cncplan/interpolate/grid.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/plan/set_point.hpp"
+#include "cncplan/plan/tool.hpp"
+
+namespace cncplan {
+
+/// One block of a trajectory: when it runs, and its speeds along the path.
+template <std::floating_point S>
+struct BasicBlockMotion {
+  std::size_t block{};
+  int line{};
+  S length{};    ///< mm; rad where only rotary axes move
+  S start{};     ///< s
+  S duration{};  ///< s, without rests behind it
+  S entry{};     ///< speed at its start
+  S peak{};      ///< highest speed within it
+  S exit{};      ///< speed at its end
+};
+
+using BlockMotion = BasicBlockMotion<double>;
+
+/// A word of the program that others act on, and when the motion reaches it.
+struct TimedWord {
+  gcode::Word word;
+  double time{};  ///< s
+};
+
+template <MachineModel M, BlockModel B>
+class Trajectory {
+ public:
+  using Scalar = typename M::Scalar;
+  using MachineType = M;
+  using Block = B;
+  using SetPoint = BasicSetPoint<Scalar, M::axis_count>;
+  using Phase = plan::BasicBlockPhase<Scalar>;
+
+  /// From blocks and the phases that drive them: `plan_blocks` and `plan_text` make these.
+  Trajectory(const M& machine, std::vector<B> blocks, std::vector<Phase> phases)
+      : machine_(machine),
+        tool_(tool_axes(machine)),
+        blocks_(std::move(blocks)),
+        phases_(std::move(phases)),
+        starts_(blocks_.size() + 1) {
+    for (std::size_t i = 0; i < blocks_.size(); ++i)
+      starts_[i + 1] = starts_[i] + (counts(blocks_[i]) ? blocks_[i].path.length() : Scalar(0));
+  }
+
+  [[nodiscard]] const M& machine() const { return machine_; }
+  [[nodiscard]] std::span<const B> program() const& { return blocks_; }
+  /// Every phase, in order of time.
+  [[nodiscard]] std::span<const Phase> phases() const& { return phases_; }
+  void program() const&& = delete;
+  void phases() const&& = delete;
+
+  /// s, from rest to rest.
+  [[nodiscard]] Scalar duration() const {
+    return phases_.empty() ? Scalar(0) : phases_.back().phase.time + phases_.back().phase.duration;
+  }
+  /// mm that the feed counts; what only rotary axes do does not count.
+  [[nodiscard]] Scalar length() const { return starts_.back(); }
+  /// mm from the program's start to a block's.
+  [[nodiscard]] Scalar start_length(std::size_t block) const { return starts_[block]; }
+
+  /// The set point at any time: before the start, the start; after the end, the end.
+  [[nodiscard]] SetPoint at(Scalar time) const {
+    if (phases_.empty()) return at_rest(time);
+    const auto later = [](Scalar t, const Phase& phase) { return t < phase.phase.time; };
+    const auto behind = std::upper_bound(phases_.begin() + 1, phases_.end(), time, later);
+    return in_phase(static_cast<std::size_t>(behind - phases_.begin()) - 1, time);
+  }
+
+  /// The set points at k period while that is before the end, and one at the end. A range.
+  class Samples;
+  [[nodiscard]] Samples samples(Scalar period) const& { return Samples(*this, period); }
+  void samples(Scalar period) const&& = delete;
+
+  /// Writes the positions of the samples `first`, first + 1, ... into the columns of `out`, as many as there
+  /// are of both; returns how many.
+  Eigen::Index positions(Scalar period, std::int64_t first, PointsN<Scalar, M::axis_count> out) const {
+    const interpolate::BasicGrid<Scalar> grid{period, duration()};
+    const auto count =
+        static_cast<Eigen::Index>(std::clamp<std::int64_t>(grid.size() - first, 0, out.cols()));
+    std::array<Scalar, 64> along;
+    std::size_t index = phase_at(grid.time(first));
+    for (Eigen::Index done = 0; done < count;) {
+      const std::int64_t k = first + done;
+      const Scalar time = grid.time(k);
+      if (grid.is_last(k) || phases_.empty()) {
+        out.col(done++) = at(time).position;
+        continue;
+      }
+      while (index + 1 < phases_.size() && time >= phases_[index + 1].phase.time) ++index;
+      const BasicPhase<Scalar>& phase = phases_[index].phase;
+      const Scalar until = index + 1 < phases_.size() ? phases_[index + 1].phase.time : duration();
+      const std::int64_t inside = std::max<std::int64_t>(grid.first_at(until) - k, 1);
+      const auto now =
+          std::min<std::int64_t>({inside, count - done, static_cast<std::int64_t>(along.size())});
+      const std::span<Scalar> part(along.data(), static_cast<std::size_t>(now));
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        const Scalar tau = static_cast<Scalar>(k + static_cast<std::int64_t>(i)) * period - phase.time;
+        part[i] = phase.at(std::max(tau, Scalar(0))).position;
+      }
+      blocks_[phases_[index].block].path.positions_at(
+          std::span<const Scalar>(part),
+          PointsN<Scalar, M::axis_count>(out.col(done).data(), out.rows(), now));
+      done += now;
+    }
+    return count;
+  }
+
+  /// When each block that moves runs, in order.
+  [[nodiscard]] std::vector<BasicBlockMotion<Scalar>> blocks() const {
+    std::vector<BasicBlockMotion<Scalar>> result;
+    for (const auto& [phase, block] : phases_) {
+      if (!(blocks_[block].path.length() > Scalar(0)) || rests(phase)) continue;
+      const BasicState<Scalar> last = phase.at(phase.duration);
+      if (result.empty() || result.back().block != block)
+        result.push_back({block, blocks_[block].line, blocks_[block].path.length(), phase.time, Scalar(0),
+                          phase.velocity, phase.velocity, Scalar(0)});
+      BasicBlockMotion<Scalar>& motion = result.back();
+      motion.duration = phase.time + phase.duration - motion.start;
+      motion.exit = last.velocity;
+      motion.peak = std::max({motion.peak, phase.velocity, last.velocity});
+      if (phase.acceleration > Scalar(0) && last.acceleration < Scalar(0))
+        motion.peak = std::max(motion.peak, phase.at(-phase.acceleration / phase.jerk).velocity);
+    }
+    return result;
+  }
+
+  /// Words of the program that others act on, in order, each with the time at which the motion reaches it.
+  [[nodiscard]] std::span<const TimedWord> words() const& { return words_; }
+  void words() const&& = delete;
+  void set_words(std::vector<TimedWord> words) { words_ = std::move(words); }
+
+  /// What was read and has no effect, as sentences.
+  [[nodiscard]] std::span<const std::string> warnings() const& { return warnings_; }
+  void warnings() const&& = delete;
+  void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
+
+  /// When the motion comes to the start of a block; of one that takes no time, to that of the next.
+  [[nodiscard]] Scalar start_time(std::size_t block) const {
+    const auto earlier = [](const Phase& phase, std::size_t b) { return phase.block < b; };
+    const auto found = std::lower_bound(phases_.begin(), phases_.end(), block, earlier);
+    return found == phases_.end() ? duration() : found->phase.time;
+  }
+
+ private:
+  // Whether a block's length is mm: the tool or some linear axis moves.
+  [[nodiscard]] bool counts(const B& block) const {
+    if (!(block.path.length() > Scalar(0))) return false;
+    const auto bounds = block.path.bounds(Scalar(0), Scalar(0));
+    if (bounds.tool.first > Scalar(0)) return true;
+    for (int i = 0; i < M::axis_count; ++i)
+      if (machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::linear && bounds.first[i] > Scalar(0))
+        return true;
+    return false;
+  }
+  static bool rests(const BasicPhase<Scalar>& phase) {
+    return phase.velocity == Scalar(0) && phase.acceleration == Scalar(0) && phase.jerk == Scalar(0);
+  }
+
+  [[nodiscard]] std::size_t phase_at(Scalar time) const {
+    const auto later = [](Scalar t, const Phase& phase) { return t < phase.phase.time; };
+    if (phases_.empty()) return 0;
+    return static_cast<std::size_t>(std::upper_bound(phases_.begin() + 1, phases_.end(), time, later) -
+                                    phases_.begin()) -
+           1;
+  }
+
+  [[nodiscard]] SetPoint in_phase(std::size_t index, Scalar time) const {
+    const auto& [phase, number] = phases_[index];
+    const B& block = blocks_[number];
+    const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
+    BasicState<Scalar> along = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
+    if (ended) along = {block.path.length(), Scalar(0), Scalar(0), Scalar(0)};
+    along.position = std::min(along.position, block.path.length());
+    return evaluate(number, along, time);
+  }
+
+  [[nodiscard]] SetPoint evaluate(std::size_t number, BasicState<Scalar> along, Scalar time) const {
+    const B& block = blocks_[number];
+    const auto axes = motion(block.path.point_at(along.position), along);
+    SetPoint point{time,          number,
+                   block.line,    axes.position,
+                   axes.velocity, axes.acceleration,
+                   axes.jerk,     tool_position(block, along.position, axes.position),
+                   along};
+    point.along.position =
+        starts_[number] + (starts_[number + 1] > starts_[number] ? along.position : Scalar(0));
+    return point;
+  }
+
+  [[nodiscard]] BasicVector3<Scalar> tool_position(const B& block, Scalar s,
+                                                   const VectorN<Scalar, M::axis_count>& axes) const {
+    if constexpr (MappedModel<M>)
+      return tool_point(block.path, s, tool_).position;
+    else
+      return in_space(axes, tool_);
+  }
+
+  [[nodiscard]] SetPoint at_rest(Scalar time) const {
+    if (blocks_.empty()) return {.time = time};
+    return evaluate(blocks_.size() - 1, {blocks_.back().path.length(), Scalar(0), Scalar(0), Scalar(0)},
+                    time);
+  }
+
+  M machine_;
+  std::array<int, 3> tool_;
+  std::vector<B> blocks_;
+  std::vector<Phase> phases_;
+  std::vector<Scalar> starts_;  // mm at which each block begins, and the end
+  std::vector<TimedWord> words_;
+  std::vector<std::string> warnings_;
+};
+
+/// Set points on a grid of time: walks the trajectory, which must outlive it.
+template <MachineModel M, BlockModel B>
+class Trajectory<M, B>::Samples {
+ public:
+  class Iterator {
+   public:
+    using iterator_concept = std::input_iterator_tag;
+    using value_type = SetPoint;
+    using difference_type = std::ptrdiff_t;
+
+    Iterator() = default;
+    explicit Iterator(const Samples& samples) : samples_(&samples) {}
+
+    [[nodiscard]] SetPoint operator*() const {
+      const Trajectory& all = *samples_->trajectory_;
+      const Scalar time = samples_->grid_.time(k_);
+      if (all.phases_.empty()) return all.at_rest(time);
+      while (phase_ + 1 < all.phases_.size() && time >= all.phases_[phase_ + 1].phase.time) ++phase_;
+      return all.in_phase(phase_, time);
+    }
+    Iterator& operator++() {
+      ++k_;
+      return *this;
+    }
+    void operator++(int) { ++*this; }
+    friend bool operator==(const Iterator& it, std::default_sentinel_t) {
+      return it.k_ >= it.samples_->size();
+    }
+
+   private:
+    const Samples* samples_ = nullptr;
+    std::int64_t k_ = 0;
+    mutable std::size_t phase_ = 0;
+  };
+
+  Samples(const Trajectory& trajectory, Scalar period)
+      : trajectory_(&trajectory), grid_{period, trajectory.duration()}, size_(grid_.size()) {}
+
+  [[nodiscard]] Iterator begin() const { return Iterator(*this); }
+  [[nodiscard]] std::default_sentinel_t end() const { return {}; }
+  [[nodiscard]] std::int64_t size() const { return size_; }
+
+ private:
+  const Trajectory* trajectory_;
+  interpolate::BasicGrid<Scalar> grid_;
+  std::int64_t size_;
+};
+
+}  // namespace cncplan
