@@ -124,6 +124,8 @@
 #include "cncplan/plan/set_point.hpp"
 #include "cncplan/plan/span.hpp"
 #include "cncplan/plan/span_planner.hpp"
+#include "cncplan/plan/step_edges.hpp"
+#include "cncplan/plan/steppable.hpp"
 #include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/plan/timeline.hpp"
 #include "cncplan/plan/timing.hpp"

@@ -16,6 +16,7 @@
 #include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/span_planner.hpp"
+#include "cncplan/plan/step_edges.hpp"
 #include "cncplan/plan/trajectory.hpp"
 
 namespace cncplan {

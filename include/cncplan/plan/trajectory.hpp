@@ -44,6 +44,10 @@ struct TimedWord {
   double time{};  ///< s
 };
 
+template <class T>
+class StepEdges;
+
+/// A whole planned program. It is asked in any order, and nothing that it gives out may outlive it.
 template <MachineModel M, BlockModel B>
 class Trajectory {
  public:
@@ -92,6 +96,10 @@ class Trajectory {
   class Samples;
   [[nodiscard]] Samples samples(Scalar period) const& { return Samples(*this, period); }
   void samples(Scalar period) const&& = delete;
+
+  /// Every step edge of the machine's motors, in order of time: a range that is walked once.
+  [[nodiscard]] StepEdges<Trajectory> step_edges() const& { return StepEdges<Trajectory>(*this); }
+  void step_edges() const&& = delete;
 
   /// Writes the positions of the samples `first`, first + 1, ... into the columns of `out`, as many as there
   /// are of both; returns how many.
