@@ -6,11 +6,11 @@
 
 #include "buffer.hpp"
 #include "cncplan/interpolate/exact.hpp"
-#include "cncplan/interpolate/stepped.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/published/stepped.hpp"
 
 namespace {
 
@@ -74,7 +74,7 @@ BENCHMARK(stream<helix>)->Name("sample/helix/stream");
 
 void taylor(benchmark::State& state) {
   const path::Arc path = arc();
-  take_all(state, interpolate::taylor_samples(path, profile_of(path), 1e-3));
+  take_all(state, published::taylor_samples(path, profile_of(path), 1e-3));
 }
 BENCHMARK(taylor)->Name("sample/arc/taylor");
 

@@ -8,9 +8,9 @@
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/profile/seven_phase.hpp"
-#include "cncplan/step/distribution.hpp"
+#include "cncplan/published/axis_timer.hpp"
+#include "cncplan/published/pulse_distribution.hpp"
 #include "cncplan/step/merge.hpp"
-#include "cncplan/step/timer.hpp"
 
 namespace {
 
@@ -68,11 +68,11 @@ void distribute(benchmark::State& state) {
   }
   state.SetItemsProcessed(slots);
 }
-BENCHMARK(distribute<step::LcmDistribution>)->Name("step/lcm");
-BENCHMARK(distribute<step::LargestAxisDistribution>)->Name("step/largest_axis");
+BENCHMARK(distribute<published::LcmDistribution>)->Name("step/lcm");
+BENCHMARK(distribute<published::LargestAxisDistribution>)->Name("step/largest_axis");
 
 void timer(benchmark::State& state) {
-  using Timer = step::AxisTimer<double>;
+  using Timer = published::AxisTimer<double>;
   std::int64_t edges = 0;
   const std::array timers{*Timer::make(0, 10.09, 100.0, 1.0), *Timer::make(1, 10.13, 100.0, 1.0),
                           *Timer::make(2, -10.19, 100.0, 1.0)};

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cncplan/path/line.hpp>
+#include <cncplan/published/axis_timer.hpp>
+#include <cncplan/published/pulse_distribution.hpp>
 #include <cncplan/step/crossing.hpp>
-#include <cncplan/step/distribution.hpp>
-#include <cncplan/step/timer.hpp>
 #include <cstdio>
 #include <iterator>
 #include <random>
@@ -46,7 +46,8 @@ Pulses timer_pulses(const Counts& counts) {
   Pulses pulses;
   for (int axis = 0; axis < 3; ++axis) {
     const auto count = static_cast<double>(counts[static_cast<std::size_t>(axis)]);
-    pulses[static_cast<std::size_t>(axis)] = drain(*step::AxisTimer<double>::make(axis, count, 1.0, 1.0));
+    pulses[static_cast<std::size_t>(axis)] =
+        drain(*published::AxisTimer<double>::make(axis, count, 1.0, 1.0));
   }
   return pulses;
 }
@@ -103,8 +104,8 @@ void compare(const std::string& title, const std::vector<Counts>& moves) {
   std::array<Quality, 4> qualities;
   constexpr double most_slots = 2e7;  // more are counted, not run: the pulses are even by definition
   for (const Counts& counts : moves) {
-    const auto lcm_words = step::LcmDistribution<3>::make(counts);
-    const auto largest_words = step::LargestAxisDistribution<3>::make(counts);
+    const auto lcm_words = published::LcmDistribution<3>::make(counts);
+    const auto largest_words = published::LargestAxisDistribution<3>::make(counts);
     if (!lcm_words || !largest_words) continue;
     const auto slots = static_cast<double>(lcm_words->slots());
     if (slots < most_slots)

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cncplan/interpolate/exact.hpp>
-#include <cncplan/interpolate/stepped.hpp>
 #include <cncplan/path/arc_length_table.hpp>
 #include <cncplan/profile/seven_phase.hpp>
+#include <cncplan/published/stepped.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
@@ -34,7 +34,7 @@ int main() {
   double worst = 0.0;
   const auto exact = interpolate::samples(ellipse, *profile, 1e-3);
   std::int64_t k = 0;
-  for (const auto& sample : interpolate::taylor_samples(curve, *profile, 1e-3))
+  for (const auto& sample : published::taylor_samples(curve, *profile, 1e-3))
     worst = std::max(worst, (sample.position - exact[k++].position).norm());
   std::printf("ellipse of %.6f mm in %.3f s: %ld samples\n", ellipse.length(), profile->duration(),
               static_cast<long>(exact.size()));

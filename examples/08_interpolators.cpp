@@ -31,7 +31,7 @@ double step(Method method, const CurvePoint<Vector3>& point, double u, const Sta
   if (method == Method::taylor1 || method == Method::constant) return u + period * rate;
   State state = along;
   if (method == Method::without_a) state.acceleration = 0.0;
-  return interpolate::Taylor{}(point, u, state, period, std::numeric_limits<double>::infinity());
+  return published::Taylor{}(point, u, state, period, std::numeric_limits<double>::infinity());
 }
 
 /// The parameters at k T, and where the method stands at the end time.
@@ -93,7 +93,7 @@ std::vector<Vector3> positions(const P& path, const Walk& way) {
 template <CurveByLength P>
 profile::Profile profile_for(Method method, const P& path, double curvature) {
   Limits capped = plan::CapSpeed{}({curvature}, limits);
-  if (method == Method::constant) return profile::constant_speed(path.length(), capped.velocity);
+  if (method == Method::constant) return published::constant_speed(path.length(), capped.velocity);
   return profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0}, capped).value();
 }
 

@@ -69,12 +69,12 @@ void figure11(support::Gnuplot* plot) {
   for (const double rise : {0.0, 10.0}) {
     const path::Arc path = turn(rise);
     const auto profile = profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0}, limits).value();
-    const auto constant = profile::constant_speed(path.length(), limits.velocity);
+    const auto constant = published::constant_speed(path.length(), limits.velocity);
     const auto exact = accelerations(interpolate::samples(path, profile, period));
     const auto jumping = accelerations(interpolate::samples(path, constant, period));
     fmt::print("| cncplan, {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} |\n", rise > 0.0 ? "helix" : "circle",
                between_junctions(path), largest(exact),
-               largest(accelerations(interpolate::taylor_samples(path, profile, period))), largest(jumping));
+               largest(accelerations(published::taylor_samples(path, profile, period))), largest(jumping));
     if (plot == nullptr || rise > 0.0) continue;
     put(*plot, "profile", exact);
     put(*plot, "constant", jumping);

@@ -38,8 +38,8 @@ JunctionPolicy policy(std::string_view item) {
   if (name == "tangent") return junction::TangentStep{number()};
   if (name == "deviation") return junction::Deviation{number()};
   if (name == "acceleration-step") return junction::AccelerationStep{number()};
-  if (item == "table") return junction::PublishedTable{junction::Norm::rotation};
-  if (item == "table-absolute") return junction::PublishedTable{junction::Norm::absolute};
+  if (item == "table") return published::JunctionTable{published::Norm::rotation};
+  if (item == "table-absolute") return published::JunctionTable{published::Norm::absolute};
   if (item == "stop") return junction::ExactStop{};
   refuse(item, "is not one of table, table-absolute, stop, tangent=, deviation=, acceleration-step=");
 }

@@ -11,7 +11,7 @@
 
 namespace simulate {
 
-using JunctionPolicy = std::variant<cncplan::junction::PublishedTable, cncplan::junction::ExactStop,
+using JunctionPolicy = std::variant<cncplan::published::JunctionTable, cncplan::junction::ExactStop,
                                     cncplan::junction::TangentStep, cncplan::junction::Deviation,
                                     cncplan::junction::AccelerationStep>;
 

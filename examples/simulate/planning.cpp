@@ -72,7 +72,7 @@ std::vector<plan::Span> spans_of(const Caps& caps, const Options& options) {
   std::vector<plan::Span> spans;
   if (options.interpolator == Interpolator::constant) {
     for (std::size_t i = 0; i < caps.size(); ++i) {
-      spans.push_back({i, 1, profile::constant_speed(caps[i].length, caps[i].limits.velocity)});
+      spans.push_back({i, 1, published::constant_speed(caps[i].length, caps[i].limits.velocity)});
       if (caps[i].pause > 0.0) spans.push_back(plan::pause_span(i + 1, caps[i].pause));
     }
     return spans;
@@ -81,8 +81,8 @@ std::vector<plan::Span> spans_of(const Caps& caps, const Options& options) {
       options.law == Law::five ? profile::five_phase_solver<double> : profile::seven_phase_solver<double>;
   if (options.planning == Planning::span) return support::spans_of(caps, law);
   std::vector<double> speeds(caps.size() + 1);
-  const auto planned = plan::plan_blocks(std::span<const plan::BlockCaps>(caps), law, std::span(speeds),
-                                         std::back_inserter(spans));
+  const auto planned = published::plan_blocks(std::span<const plan::BlockCaps>(caps), law, std::span(speeds),
+                                              std::back_inserter(spans));
   if (!planned)
     throw Failure(Exit::other,
                   fmt::format("planning: {} {}", planned.error().field, message(planned.error().code)));

@@ -31,7 +31,7 @@ class TaylorFollower {
     const path::Segment<3>& segment = route_[block_].path;
     if (segment.length() > 0.0)
       parameter_ =
-          interpolate::taylor_step(segment, parameter_, along_.velocity, along_.acceleration, time - time_);
+          published::taylor_step(segment, parameter_, along_.velocity, along_.acceleration, time - time_);
     along_ = place.state;
     time_ = time;
     return segment.position(parameter_);

@@ -1,5 +1,5 @@
 # The rules of the rooms, checked on the text of every header.   cmake -DINCLUDE=include -P includes.cmake
-#   - A room includes the standard library, Eigen, tl::expected, core/ and itself; plan/ and the umbrella include all.
+#   - A room includes the standard library, Eigen, tl::expected, core/ and itself; plan/, published/ and the umbrella include all.
 #   - The umbrella, cncplan.hpp, lags behind nothing: it includes every header there is.
 #   - A header has #pragma once, and a first line that says what it holds. If that line says "(set-up)", the header is for
 #     code that runs before the machine moves, and may use the heap; all others may not even include what needs it.
@@ -50,7 +50,7 @@ foreach(header IN LISTS headers)
       set(other "${CMAKE_MATCH_1}")
       if(NOT target IN_LIST headers)
         complain("includes \"${target}\", which is no header of the library")
-      elseif(NOT room STREQUAL "" AND NOT room STREQUAL "plan" AND NOT other MATCHES "^(core|${room})$")
+      elseif(NOT room STREQUAL "" AND NOT room MATCHES "^(plan|published)$" AND NOT other MATCHES "^(core|${room})$")
         complain("${room}/ includes \"${target}\": a room includes core/ and itself only")
       endif()
       if(NOT room STREQUAL "")

@@ -15,7 +15,7 @@ std::array<double, 3> steps_per_mm;
 struct NoScalar {
   double length() const;
 };
-auto no_scalar = interpolate::taylor_samples(NoScalar{}, travel, 1e-3);
+auto no_scalar = published::taylor_samples(NoScalar{}, travel, 1e-3);
 
 // expect NoBend, ParametricPath: path.second_derivative(u)
 struct NoBend {
@@ -26,7 +26,7 @@ struct NoBend {
   Vector position(double) const;
   Vector derivative(double) const;
 };
-auto parametric_path = interpolate::taylor_samples(NoBend{}, travel, 1e-3);
+auto parametric_path = published::taylor_samples(NoBend{}, travel, 1e-3);
 
 // expect NoInverse, Path: path.parameter_at(s)
 struct NoInverse : NoBend {
@@ -117,7 +117,7 @@ plan::Queue<Immovable, 4>* queue;
 struct NoState {
   double operator()(double, double) const;
 };
-interpolate::Stepped<path::Line<3>, profile::Profile, NoState>* stepped;
+published::Stepped<path::Line<3>, profile::Profile, NoState>* stepped;
 
 // expect Strings, LineSource: lines.next()
 struct Strings {

@@ -12,7 +12,6 @@
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/junction/minimum.hpp"
-#include "cncplan/junction/published_table.hpp"
 #include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold_row.hpp"
@@ -25,6 +24,7 @@
 #include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/published/junction_table.hpp"
 #include "cncplan/step/backend.hpp"
 #include "cncplan/step/backlash.hpp"
 #include "cncplan/step/binary.hpp"
@@ -74,7 +74,7 @@ void evaluate_a_segment() {
 void judge_a_junction() {
   const auto policy =
       junction::minimum(junction::ExactStop{}, junction::Deviation{0.01}, junction::TangentStep{5.0},
-                        junction::AccelerationStep{500.0}, junction::PublishedTable{});
+                        junction::AccelerationStep{500.0}, published::JunctionTable{});
   junction::Geometry junction{.before = {}, .after = {}, .limits = limits};
   junction.before.tangent = Vector3::UnitX();
   junction.after.tangent = Vector3::UnitY();

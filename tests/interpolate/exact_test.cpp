@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "cncplan/profile/constant_speed.hpp"
+#include "cncplan/published/constant_speed.hpp"
 #include "motions.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
@@ -120,7 +120,7 @@ TEST_CASE("A batch fills spans and parts of matrices, and no more than there are
 TEST_CASE("After 1e9 steps the error is that of the arc evaluated at that length") {
   constexpr double radius = 5.0;
   const path::Arc arc = helix(radius, 0.0, 1000000);
-  const auto profile = profile::constant_speed(arc.length(), 30.0);
+  const auto profile = published::constant_speed(arc.length(), 30.0);
   const auto samples = interpolate::samples(arc, profile, 1e-3);
   REQUIRE(samples.size() > 1'000'000'000);
   for (const std::int64_t first : {std::int64_t{0}, std::int64_t{1000}, std::int64_t{1'000'000},
@@ -179,7 +179,7 @@ TEST_CASE("Sampling keeps off the heap") {
 TEST_CASE("A period that is none leaves the sample at the end") {
   const path::Arc arc = helix(5, 4);
   const auto profile = test::rest_to_rest<double>(arc);
-  const auto constant = profile::constant_speed(arc.length(), 30.0);
+  const auto constant = published::constant_speed(arc.length(), 30.0);
   for (const double period : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     const auto samples = interpolate::samples(arc, profile, period);
     CHECK(samples.size() == 1);

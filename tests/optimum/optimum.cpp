@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/block_planner.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/published/block_planning.hpp"
 #include "optimum/optimum.hpp"
 #include "support/random.hpp"
 

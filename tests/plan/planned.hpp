@@ -4,9 +4,9 @@
 #include <iterator>
 #include <vector>
 
-#include "cncplan/plan/block_planner.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/span_planner.hpp"
+#include "cncplan/published/block_planning.hpp"
 #include "support/catch.hpp"
 
 namespace cncplan::test {
@@ -28,8 +28,8 @@ std::vector<plan::BasicSpan<S>> single_blocks_of(const std::vector<plan::BasicBl
                                                  const Law& law = {}) {
   std::vector<plan::BasicSpan<S>> spans;
   std::vector<S> speeds(blocks.size() + 1);
-  REQUIRE(plan::plan_blocks(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(speeds),
-                            std::back_inserter(spans)));
+  REQUIRE(published::plan_blocks(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(speeds),
+                                 std::back_inserter(spans)));
   return spans;
 }
 

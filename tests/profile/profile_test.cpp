@@ -4,8 +4,8 @@
 #include <type_traits>
 
 #include "cncplan/core/concepts.hpp"
-#include "cncplan/profile/constant_speed.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/published/constant_speed.hpp"
 #include "support/catch.hpp"
 #include "support/profile_oracle.hpp"
 
@@ -69,7 +69,7 @@ TEST_CASE("random profiles: position grows with time, time_at is its inverse, de
 }
 
 TEST_CASE("constant speed is one cruise") {
-  const auto p = profile::constant_speed(12.0, 4.0);
+  const auto p = published::constant_speed(12.0, 4.0);
   CHECK(p.duration() == 3.0);
   CHECK(p.at(1.5) == State{6.0, 4.0, 0.0, 0.0});
   CHECK(p.time_at(6.0) == Approx(1.5));

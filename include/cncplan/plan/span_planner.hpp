@@ -8,8 +8,9 @@
 #include <limits>
 #include <span>
 
-#include "cncplan/plan/block_planner.hpp"
 #include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"
 #include "cncplan/profile/solver.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "cncplan/junction/geometry.hpp"
 
-namespace cncplan::junction {
+namespace cncplan::published {
 
 /// How the paper's Norm+1 is read. `rotation`: the chords turn in the sense of the first arc's rotation, so
 /// that a G02 chain runs as its G03 mirror image does. `absolute`: Norm+1 is always a turn to the left.
@@ -23,14 +23,14 @@ enum class Norm : std::uint8_t { rotation, absolute };
 /// beta >= 90 exactly when the dot product of successive chords is >= 0. Chords in line count as Norm+1
 /// between arcs of the same sense. Outside the paper's table (a first block that is straight, rapids,
 /// different planes, full circles) the junction is an exact stop.
-struct PublishedTable {
+struct JunctionTable {
   Norm norm = Norm::rotation;
 
   template <std::floating_point S>
-  [[nodiscard]] S speed_sq(const BasicGeometry<S>& junction) const {
+  [[nodiscard]] S speed_sq(const junction::BasicGeometry<S>& junction) const {
     const auto& [before, after, limits] = junction;
-    const bool covered = before.kind == Kind::arc && after.kind == Kind::arc && before.plane == after.plane &&
-                         !before.closed && !after.closed;
+    const bool covered = before.kind == junction::Kind::arc && after.kind == junction::Kind::arc &&
+                         before.plane == after.plane && !before.closed && !after.closed;
     if (!covered) return S(0);  // the rows of G01 are zero as well
     const auto [first, second, third] = axes(before.plane);
     const S cross = before.chord[first] * after.chord[second] - before.chord[second] * after.chord[first];
@@ -44,4 +44,4 @@ struct PublishedTable {
   }
 };
 
-}  // namespace cncplan::junction
+}  // namespace cncplan::published

@@ -1,15 +1,15 @@
-#include "cncplan/interpolate/stepped.hpp"
+#include "cncplan/published/stepped.hpp"
 
 #include <limits>
 
 #include "cncplan/path/b_spline.hpp"
 #include "cncplan/path/bezier.hpp"
-#include "cncplan/profile/constant_speed.hpp"
-#include "motions.hpp"
+#include "cncplan/published/constant_speed.hpp"
+#include "interpolate/motions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
-using interpolate::taylor_samples;
+using published::taylor_samples;
 
 namespace {
 
@@ -90,7 +90,7 @@ TEST_CASE("Unused time carries over: samples of a chain of motions stay on one g
 TEST_CASE("At constant speed on a circle it is the classical constant increment, Eq. 17") {
   constexpr double radius = 5.0, speed = 30.0, period = 1e-3;
   const auto arc = half_circle(radius);
-  const auto samples = taylor_samples(arc, profile::constant_speed(arc.length(), speed), period);
+  const auto samples = taylor_samples(arc, published::constant_speed(arc.length(), speed), period);
   int i = 0;
   double worst = 0;
   for (auto it = samples.begin(); it != samples.end(); ++it, ++i)

@@ -10,10 +10,10 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/interpolate/evaluate.hpp"
 #include "cncplan/interpolate/grid.hpp"
-#include "cncplan/interpolate/taylor.hpp"
 #include "cncplan/interpolate/travel.hpp"
+#include "cncplan/published/taylor.hpp"
 
-namespace cncplan::interpolate {
+namespace cncplan::published {
 
 /// The samples at t = offset + k period while t < duration, and a last one at the duration itself, on the end
 /// point bit for bit. `offset` in [0, period) is the time that the motion before left of its last period: a
@@ -24,7 +24,7 @@ template <ParametricPath P, Profile F, StepRule<P> R = Taylor>
 class Stepped {
  public:
   using Scalar = typename P::Scalar;
-  using Sample = BasicSample<Scalar, typename P::Vector>;
+  using Sample = interpolate::BasicSample<Scalar, typename P::Vector>;
 
   /// Yields one point after the other; each rests on the one before it.
   class Iterator {
@@ -35,11 +35,13 @@ class Stepped {
 
     Iterator() = default;
     explicit Iterator(const Stepped& all)
-        : all_(&all), along_(all.travel_.at(Scalar(0), place_)), point_(curve_point(*all.path_, Scalar(0))) {
+        : all_(&all),
+          along_(all.travel_.at(Scalar(0), place_)),
+          point_(interpolate::curve_point(*all.path_, Scalar(0))) {
       go_to(all.time(0));
     }
 
-    [[nodiscard]] Sample operator*() const { return motion(frame(point_), along_, time_); }
+    [[nodiscard]] Sample operator*() const { return interpolate::motion(frame(point_), along_, time_); }
     /// The parameter of the sample.
     [[nodiscard]] Scalar parameter() const { return u_; }
     Iterator& operator++() {
@@ -59,7 +61,7 @@ class Stepped {
         u_ = all_->rule_(point_, u_, along_, time - time_, end);
       time_ = time;
       along_ = all_->travel_.at(time, place_);
-      point_ = curve_point(*all_->path_, u_);
+      point_ = interpolate::curve_point(*all_->path_, u_);
     }
 
     const Stepped* all_ = nullptr;
@@ -95,8 +97,8 @@ class Stepped {
   }
 
   const P* path_;
-  Travel<F> travel_;
-  BasicGrid<Scalar> grid_;
+  interpolate::Travel<F> travel_;
+  interpolate::BasicGrid<Scalar> grid_;
   Scalar offset_;
   R rule_;
 };
@@ -112,8 +114,8 @@ template <ParametricPath P, Profile F>
 void taylor_samples(const P&& path, const F& profile, typename P::Scalar period,
                     typename P::Scalar offset = {}) = delete;
 template <ParametricPath P, Profile F>
-  requires(!PhasedProfile<F>)
+  requires(!interpolate::PhasedProfile<F>)
 void taylor_samples(const P& path, const F&& profile, typename P::Scalar period,
                     typename P::Scalar offset = {}) = delete;
 
-}  // namespace cncplan::interpolate
+}  // namespace cncplan::published

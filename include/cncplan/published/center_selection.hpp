@@ -8,7 +8,7 @@
 #include "cncplan/core/plane.hpp"
 #include "cncplan/core/vector.hpp"
 
-namespace cncplan::path {
+namespace cncplan::published {
 
 /// Centre minus chord midpoint for both circles of radius |radius| through p0 and p1 (KK22 Eqs. 1-6), the one
 /// with the smaller x first; for a horizontal chord, the one with the larger y. The paper's y, divided by y0
@@ -108,4 +108,4 @@ template <std::floating_point S>
   return {center, std::abs(radius), mirror, start_angle, sweep};
 }
 
-}  // namespace cncplan::path
+}  // namespace cncplan::published

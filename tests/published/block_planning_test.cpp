@@ -1,4 +1,4 @@
-#include "cncplan/plan/block_planner.hpp"
+#include "cncplan/published/block_planning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 std::vector<double> speeds_of(const std::vector<plan::BlockCaps>& blocks) {
   std::vector<double> speeds(blocks.size() + 1);
-  plan::junction_speeds(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(speeds));
+  published::junction_speeds(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(speeds));
   return speeds;
 }
 

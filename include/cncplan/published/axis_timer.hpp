@@ -11,7 +11,7 @@
 #include "cncplan/core/error.hpp"
 #include "cncplan/step/edge.hpp"
 
-namespace cncplan::step {
+namespace cncplan::published {
 
 /// Steps per turn behind a gear: YO04 Eq. 2 with the ratio as it is, not rounded. 48 steps behind 78/18 *
 /// 54/14 are 802.2857 (printed: 802.08, from 16.71).
@@ -48,16 +48,16 @@ class AxisTimer {
   using Scalar = S;
 
   /// From `start` (s), `distance` (signed, mm or rad) at `steps_per_unit`, within `duration` (s). Errors: a
-  /// number of steps that is not finite or beyond `most_steps`, a duration that is not positive though there
-  /// are steps to take.
+  /// number of steps that is not finite or beyond `step::most_steps`, a duration that is not positive though
+  /// there are steps to take.
   [[nodiscard]] static Expected<AxisTimer> make(int axis, S distance, S steps_per_unit, S duration,
                                                 S start = S(0)) {
     const S exact = distance * steps_per_unit;
-    constexpr S most = static_cast<S>(most_steps);
+    constexpr S most = static_cast<S>(step::most_steps);
     if (!(std::abs(exact) <= most))
       return tl::unexpected(Error{std::isfinite(exact) ? ErrorCode::above_limit : ErrorCode::not_finite,
                                   "steps", static_cast<double>(exact), static_cast<double>(most)});
-    const std::int64_t steps = count_at(exact);
+    const std::int64_t steps = step::count_at(exact);
     if (steps != 0 && !(duration > S(0)))
       return tl::unexpected(Error{ErrorCode::not_positive, "duration", static_cast<double>(duration), 0.0});
     return AxisTimer(axis, steps, duration, start);
@@ -70,11 +70,11 @@ class AxisTimer {
     return steps_ == 0 ? std::numeric_limits<S>::infinity() : duration_ / static_cast<S>(std::abs(steps_));
   }
 
-  [[nodiscard]] std::optional<BasicEdge<S>> next() {
+  [[nodiscard]] std::optional<step::BasicEdge<S>> next() {
     if (taken_ == std::abs(steps_)) return std::nullopt;
     const S time = start_ + (static_cast<S>(taken_) + S(0.5)) * period();
     ++taken_;
-    return BasicEdge<S>{time, axis_, steps_ < 0 ? -1 : 1};
+    return step::BasicEdge<S>{time, axis_, steps_ < 0 ? -1 : 1};
   }
 
  private:
@@ -94,4 +94,4 @@ template <std::floating_point S>
   return length / feed;
 }
 
-}  // namespace cncplan::step
+}  // namespace cncplan::published

@@ -9,7 +9,7 @@
 #include "cncplan/core/state.hpp"
 #include "cncplan/interpolate/evaluate.hpp"
 
-namespace cncplan::interpolate {
+namespace cncplan::published {
 
 /// What moves the parameter on: rule(point at u, u, state there, seconds, largest parameter) is the next one.
 template <class R, class P>
@@ -43,8 +43,8 @@ struct Taylor {
 template <ParametricPath P>
 [[nodiscard]] typename P::Scalar taylor_step(const P& path, typename P::Scalar u, typename P::Scalar velocity,
                                              typename P::Scalar acceleration, typename P::Scalar period) {
-  return Taylor{}(curve_point(path, u), u, {typename P::Scalar{}, velocity, acceleration, {}}, period,
-                  path.parameter_end());
+  return Taylor{}(interpolate::curve_point(path, u), u, {typename P::Scalar{}, velocity, acceleration, {}},
+                  period, path.parameter_end());
 }
 
-}  // namespace cncplan::interpolate
+}  // namespace cncplan::published

@@ -1,4 +1,4 @@
-#include "cncplan/path/published_selection.hpp"
+#include "cncplan/published/center_selection.hpp"
 
 #include <cstdio>
 #include <sstream>
@@ -9,6 +9,7 @@
 
 using namespace cncplan;
 using namespace cncplan::path;
+using namespace cncplan::published;
 using Vector2 = VectorN<double, 2>;
 
 namespace {

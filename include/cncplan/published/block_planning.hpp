@@ -9,38 +9,18 @@
 
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"
-#include "cncplan/profile/solver.hpp"
 
-namespace cncplan::plan {
-
-/// The same solver again while the limits stay the same, as they mostly do from block to block.
-template <std::floating_point S, RampLaw<S> Law>
-class SolverCache {
- public:
-  explicit SolverCache(const Law& law) : law_(law), solver_(law(limits_)) {}
-
-  const profile::BasicSolver<S>& operator()(const BasicLimits<S>& limits) {
-    if (limits != limits_) {
-      limits_ = limits;
-      solver_ = law_(limits);
-    }
-    return solver_;
-  }
-
- private:
-  Law law_;
-  BasicLimits<S> limits_{S(1), S(1), S(1)};
-  profile::BasicSolver<S> solver_;
-};
+namespace cncplan::published {
 
 /// The speed at each junction, such that every pair of speeds can be driven within its block and no junction
 /// could be faster while the others stay: a backward and a forward pass. (A junction alone could be faster
 /// still behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds`
 /// has one entry more than `blocks`; the motion starts and ends at rest.
-template <std::floating_point S, RampLaw<S> Law>
-void junction_speeds(std::span<const BasicBlockCaps<S>> blocks, const Law& law, std::span<S> speeds) {
-  SolverCache<S, Law> solver(law);
+template <std::floating_point S, plan::RampLaw<S> Law>
+void junction_speeds(std::span<const plan::BasicBlockCaps<S>> blocks, const Law& law, std::span<S> speeds) {
+  plan::SolverCache<S, Law> solver(law);
   const std::size_t n = blocks.size();
   speeds[n] = S(0);
   for (std::size_t i = n; i-- > 0;) {
@@ -54,19 +34,19 @@ void junction_speeds(std::span<const BasicBlockCaps<S>> blocks, const Law& law, 
 
 /// Plans block by block: writes a span for each block, and one for each pause, into `out`. `speeds` is room
 /// for one speed more than there are blocks.
-template <std::floating_point S, RampLaw<S> Law, std::output_iterator<BasicSpan<S>> Out>
-Expected<Out> plan_blocks(std::span<const BasicBlockCaps<S>> blocks, const Law& law, std::span<S> speeds,
-                          Out out) {
+template <std::floating_point S, plan::RampLaw<S> Law, std::output_iterator<plan::BasicSpan<S>> Out>
+Expected<Out> plan_blocks(std::span<const plan::BasicBlockCaps<S>> blocks, const Law& law,
+                          std::span<S> speeds, Out out) {
   junction_speeds(blocks, law, speeds);
-  SolverCache<S, Law> solver(law);
+  plan::SolverCache<S, Law> solver(law);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const BasicBlockCaps<S>& block = blocks[i];
+    const plan::BasicBlockCaps<S>& block = blocks[i];
     const auto profile = solver(block.limits)(block.length, {speeds[i], speeds[i + 1]});
     if (!profile) return tl::unexpected(profile.error());
-    *out++ = BasicSpan<S>{i, 1, *profile};
-    if (block.pause > S(0)) *out++ = pause_span(i + 1, block.pause);
+    *out++ = plan::BasicSpan<S>{i, 1, *profile};
+    if (block.pause > S(0)) *out++ = plan::pause_span(i + 1, block.pause);
   }
   return out;
 }
 
-}  // namespace cncplan::plan
+}  // namespace cncplan::published

@@ -1,4 +1,4 @@
-#include "cncplan/junction/published_table.hpp"
+#include "cncplan/published/junction_table.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -11,8 +11,8 @@
 
 using namespace cncplan;
 using junction::Kind;
-using junction::Norm;
-using junction::PublishedTable;
+using published::JunctionTable;
+using published::Norm;
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr Turn g02 = Turn::clockwise, g03 = Turn::counterclockwise;
 
 // As a share of Vmax.
 double share(const junction::Geometry& junction, Norm norm = Norm::rotation) {
-  return std::sqrt(PublishedTable{norm}.speed_sq(junction)) / test::kk22.velocity;
+  return std::sqrt(JunctionTable{norm}.speed_sq(junction)) / test::kk22.velocity;
 }
 
 // A chord of 7 mm along X, then one of 3 mm turned to the left by `degrees`; beta = 180 - |degrees|.
@@ -134,7 +134,7 @@ TEST_CASE("chords are judged in the plane of the arcs, whatever the third axis d
 TEST_CASE("Vmax is the lower of both feeds") {
   auto junction = turned(g03, g03, 120.0);
   junction.limits.velocity = 12.0;
-  CHECK(PublishedTable{}.speed_sq(junction) == 144.0);
+  CHECK(JunctionTable{}.speed_sq(junction) == 144.0);
 }
 
 TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
@@ -161,7 +161,7 @@ TEST_CASE("the table is the same in float") {
   junction.before.turn = junction.after.turn = g03;
   junction.before.chord = {1.0f, 0.0f, 0.0f};
   junction.after.chord = {1.0f, 1.0f, 0.0f};
-  CHECK(PublishedTable{}.speed_sq(junction) == 225.0f);
+  CHECK(JunctionTable{}.speed_sq(junction) == 225.0f);
   junction.after.chord = {-1.0f, 1.0f, 0.0f};
-  CHECK(PublishedTable{}.speed_sq(junction) == 900.0f);
+  CHECK(JunctionTable{}.speed_sq(junction) == 900.0f);
 }

@@ -1,12 +1,12 @@
-#include "cncplan/interpolate/taylor.hpp"
+#include "cncplan/published/taylor.hpp"
 
 #include "cncplan/path/arc_length_table.hpp"
 #include "cncplan/path/bezier.hpp"
-#include "motions.hpp"
+#include "interpolate/motions.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
-using interpolate::taylor_step;
+using published::taylor_step;
 
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include "cncplan/core/error.hpp"
 
-namespace cncplan::step {
+namespace cncplan::published {
 
 /// One slot's output: bit i is set when axis i has a pulse, bit N + i while the axes are enabled. U09's port
 /// image of three axes is xd = 1, yd = 2, zd = 4, xa = 8, ya = 16, za = 32.
@@ -135,4 +135,4 @@ class LargestAxisDistribution {
   std::array<std::uint64_t, N> sum_{};
 };
 
-}  // namespace cncplan::step
+}  // namespace cncplan::published
