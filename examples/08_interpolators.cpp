@@ -153,8 +153,8 @@ template <CurveByLength P>
 double largest_curvature(const P& path) {
   double largest = 0.0;
   for (int i = 0; i <= 1000; ++i)
-    largest = std::max(
-        largest, frame(interpolate::curve_point(path, path.parameter_end() * i / 1000)).curvature.norm());
+    largest = std::max(largest,
+                       frame(interpolate::curve_point(path, path.parameter_end() * i / 1000)).second.norm());
   return largest;
 }
 

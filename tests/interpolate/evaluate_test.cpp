@@ -64,8 +64,8 @@ TEMPLATE_TEST_CASE("A path's own frames are those of its derivatives, one by one
             segment.position(u).norm() + segment.length() + S(1) / (segment.curvature(u) + S(1e-3));
         for (const auto& got : {frames[k], single}) {
           worst = std::max({worst, (got.position - wanted.position).norm() / size,
-                            (got.tangent - wanted.tangent).norm() / (S(1) + segment.parameter_end() / S(10)),
-                            (got.curvature - wanted.curvature).norm() / (S(1) + segment.curvature(u)) /
+                            (got.first - wanted.first).norm() / (S(1) + segment.parameter_end() / S(10)),
+                            (got.second - wanted.second).norm() / (S(1) + segment.curvature(u)) /
                                 (S(1) + segment.parameter_end() / S(10))});
         }
       }

@@ -10,14 +10,14 @@
 
 namespace cncplan {
 
-/// Position, unit tangent and curvature vector: the curve and its first two derivatives by arc length. With
-/// speed v and acceleration a along the curve, the velocity in space is v tangent and the acceleration
-/// a tangent + v^2 curvature.
+/// Position and its first two derivatives by the length that counts; on a curve by its own length, the unit
+/// tangent and the curvature vector. With speed v and acceleration a along it, the velocity is v first and
+/// the acceleration a first + v^2 second.
 template <class Vector>
 struct Frame {
-  Vector position;   ///< mm
-  Vector tangent;    ///< zero where the curve stands still
-  Vector curvature;  ///< 1/mm, towards the centre of curvature
+  Vector position;  ///< mm
+  Vector first;     ///< zero where the curve stands still
+  Vector second;    ///< 1/mm
 };
 
 /// Up to `capacity` frames, in columns.
@@ -27,18 +27,18 @@ struct Frames {
   using Columns = Eigen::Matrix<S, N, capacity>;
 
   Columns position;
-  Columns tangent;
-  Columns curvature;
+  Columns first;
+  Columns second;
 
   void set(std::size_t i, const Frame<VectorN<S, N>>& frame) {
     const auto column = static_cast<Eigen::Index>(i);
     position.col(column) = frame.position;
-    tangent.col(column) = frame.tangent;
-    curvature.col(column) = frame.curvature;
+    first.col(column) = frame.first;
+    second.col(column) = frame.second;
   }
   [[nodiscard]] Frame<VectorN<S, N>> operator[](std::size_t i) const {
     const auto column = static_cast<Eigen::Index>(i);
-    return {position.col(column), tangent.col(column), curvature.col(column)};
+    return {position.col(column), first.col(column), second.col(column)};
   }
 };
 

@@ -21,7 +21,7 @@ namespace cncplan::interpolate {
 /// itself, on the end point. Each is evaluated afresh from its number: no error grows with time. A range,
 /// whose iterator works out `Frames::capacity` samples at a time, as vector code. The path must outlive it,
 /// and the profile too unless it consists of phases.
-template <CurveByLength P, Profile F>
+template <Travelled P, Profile F>
   requires std::same_as<typename P::Scalar, typename F::Scalar>
 class Samples {
  public:
@@ -113,14 +113,14 @@ class Samples {
 
 /// The samples of a profile along a path: a `Samples`. (A deduced type, as clang++ 14 would otherwise not say
 /// why a path is none.)
-template <CurveByLength P, Profile F>
+template <Travelled P, Profile F>
 [[nodiscard]] auto samples(const P& path, const F& profile, typename P::Scalar period) {
   return Samples<P, F>(path, profile, period);
 }
 /// A path, or a profile not of phases, that would be gone before the first sample.
-template <CurveByLength P, Profile F>
+template <Travelled P, Profile F>
 void samples(const P&& path, const F& profile, typename P::Scalar period) = delete;
-template <CurveByLength P, Profile F>
+template <Travelled P, Profile F>
   requires(!PhasedProfile<F>)
 void samples(const P& path, const F&& profile, typename P::Scalar period) = delete;
 

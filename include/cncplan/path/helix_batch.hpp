@@ -85,14 +85,14 @@ struct HelixAnchor {
       where[3 * i + 1] = a.position[1] + (s * a.along[1] + v * a.second[1] + d * a.axial[1]);
       where[3 * i + 2] = a.position[2] + (s * a.along[2] + v * a.second[2] + d * a.axial[2]);
     }
-    S* const tangent = out.tangent.data() + 3 * first;
+    S* const tangent = out.first.data() + 3 * first;
     for (std::size_t i = 0; i < count; ++i) {
       const S s = a.rate * sines[i], c = a.rate - a.rate * versines[i];
       tangent[3 * i] = c * a.along[0] + s * a.second[0] + a.rate * a.axial[0];
       tangent[3 * i + 1] = c * a.along[1] + s * a.second[1] + a.rate * a.axial[1];
       tangent[3 * i + 2] = c * a.along[2] + s * a.second[2] + a.rate * a.axial[2];
     }
-    S* const bend = out.curvature.data() + 3 * first;
+    S* const bend = out.second.data() + 3 * first;
     const S rate_sq = rate * rate;
     for (std::size_t i = 0; i < count; ++i) {
       const S s = rate_sq * sines[i], c = rate_sq - rate_sq * versines[i];

@@ -98,8 +98,8 @@ class BasicLine {
   void frames_at(std::span<const S> lengths, Frames<S, N>& out) const {
     const auto count = static_cast<Eigen::Index>(lengths.size());
     positions_at(lengths, {out.position.data(), N, count});
-    out.tangent.leftCols(count).colwise() = direction_;
-    out.curvature.leftCols(count).setZero();
+    out.first.leftCols(count).colwise() = direction_;
+    out.second.leftCols(count).setZero();
   }
 
   [[nodiscard]] S parameter_at(S s) const { return s; }
