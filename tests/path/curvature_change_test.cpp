@@ -32,9 +32,9 @@ Frame frame(const path::Spiral<double>& spiral, Real angle) {
 Real change(const path::Spiral<double>& spiral, Real angle) {
   const Real step = 1e-5L;
   const Frame here = frame(spiral, angle);
-  const Vector rate =
-      (frame(spiral, angle + step).second - frame(spiral, angle - step).second) / (2 * step * here.speed);
-  return (rate - here.first * here.first.dot(rate)).norm();
+  const Vector rate = (frame(spiral, angle + step).curvature - frame(spiral, angle - step).curvature) /
+                      (2 * step * here.speed);
+  return (rate - here.tangent * here.tangent.dot(rate)).norm();
 }
 
 path::Spiral<double> draw(test::Random& random, double& end) {
@@ -56,7 +56,7 @@ TEST_CASE("The change of a spiral's curvature is that of differences") {
     const auto spiral = draw(random, end);
     const double angle = random.uniform(0, end);
     const Real wanted = change(spiral, angle);
-    const Real scale = frame(spiral, angle).second.squaredNorm() + wanted;
+    const Real scale = frame(spiral, angle).curvature.squaredNorm() + wanted;
     worst = std::max(
         worst, std::abs(path::curvature_change_at_radius(spiral, spiral.radius_at(angle)) - wanted) / scale);
   }
