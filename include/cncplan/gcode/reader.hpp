@@ -45,10 +45,10 @@ class Reader {
     for (std::size_t i = 0; i < axis_count(); ++i) current_[i] -= offset_[i];
   }
 
-  /// Reads one line (without its end; a carriage return is passed over) and writes its items in the order in
-  /// which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A line in
-  /// error writes nothing and changes nothing. After the end of the program (M2, M30, the second %) lines are
-  /// only counted.
+  /// Reads one line (without its end; carriage returns there are passed over) and writes its items in the
+  /// order in which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A
+  /// line in error writes nothing and changes nothing. After the end of the program (M2, M30, the second %)
+  /// lines are only counted.
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
     ++line_;
@@ -72,7 +72,7 @@ class Reader {
   template <class Out>
   Expected<Out, Diagnostic> read(std::string_view text, Out out) {
     if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
-    if (text.ends_with('\r')) text.remove_suffix(1);
+    while (text.ends_with('\r')) text.remove_suffix(1);
     if (text.size() > max_line_length)
       return tl::unexpected(
           Diagnostic{{ErrorCode::line_too_long, "line", static_cast<double>(text.size()), max_line_length},
