@@ -116,7 +116,9 @@ struct Modal {
   FeedMode feed_mode = FeedMode::per_minute;
   std::optional<double> feed{};  ///< mm/s; under inverse time this line's, 1/s
   bool needs_feed = false;       ///< no feed move without an F on the way: a feed does not outlive its mode
-  bool exact_stop = false;
+  PathMode path_mode = PathMode::continuous;
+  std::optional<double> tolerance{};  ///< mm, of G64 P
+  double merge_tolerance = 0.0;       ///< mm, of G64 Q
 
   friend bool operator==(const Modal&, const Modal&) = default;
 };

@@ -219,7 +219,10 @@ class Reader {
     Motion motion;
     motion.plane = modal_.plane;
     motion.feed_mode = modal_.feed_mode;
-    motion.exact_stop = modal_.exact_stop;
+    motion.path_mode = modal_.path_mode;
+    motion.exact_stop = modal_.path_mode != PathMode::continuous;
+    motion.tolerance = modal_.tolerance;
+    motion.merge_tolerance = modal_.merge_tolerance;
     motion.start = current_;
     motion.end = end;
     motion.offset = offset_;

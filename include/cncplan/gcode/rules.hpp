@@ -46,10 +46,26 @@ struct Alphabet {
 /// The modal state that holds on a line and after it.
 [[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
   if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
+/// G61, G61.1 or G64, in the units of the line. G64 P0 is G61.
+inline void control_path(const Block& block, Modal& modal) {
+  const Code control = block.code(Group::path_control);
+  modal.tolerance.reset();
+  modal.merge_tolerance = 0.0;
+  modal.path_mode = control == code(61) ? PathMode::exact_path : PathMode::exact_stop;
+  if (control != code(64)) return;
+  if (block.has('P')) modal.tolerance = block.number('P') * modal.millimetres_per_unit;
+  if (block.has('Q')) modal.merge_tolerance = block.number('Q') * modal.millimetres_per_unit;
+  modal.path_mode = PathMode::continuous;
+  if (modal.tolerance != 0.0) return;
+  modal.path_mode = PathMode::exact_path;
+  modal.tolerance.reset();
+  modal.merge_tolerance = 0.0;
+}
+
   if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
   if (block.has(Group::arc_distance))
     modal.incremental_center = block.code(Group::arc_distance) == code(91.1);
-  if (block.has(Group::path_control)) modal.exact_stop = block.code(Group::path_control) != code(64);
+  if (block.has(Group::path_control)) control_path(block, modal);
   if (block.has(Group::motion))
     modal.motion = block.code(Group::motion) == code(80) ? no_code : block.code(Group::motion);
   if (block.has(Group::plane)) {
