@@ -39,6 +39,7 @@ enum class ErrorCode : std::uint8_t {
   branching,
   duplicate,
   unreachable,
+  not_to_pass,
   count_,  // number of codes
 };
 
@@ -73,6 +74,7 @@ enum class ErrorCode : std::uint8_t {
       "meets more than one other",
       "is there twice",
       "cannot be reached by the machine",
+      "says where or how the axes move, so it cannot be passed through",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -1,6 +1,7 @@
 // One line of a program, its words sorted by letter and by modal group.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -74,6 +75,13 @@ class Block {
   /// A word of the block as the field of an error.
   [[nodiscard]] Diagnostic error(ErrorCode code, char letter, double bound = 0.0) const {
     return {{code, name(letter), number(letter), bound}, 0, column(letter)};
+  /// A G code that passes through, if there is one.
+  [[nodiscard]] const Word* passed_g() const {
+    const Word* const end = passed_.data() + passed_count_;
+    const Word* const found =
+        std::find_if(passed_.data(), end, [](const Word& word) { return word.letter == 'G'; });
+    return found == end ? nullptr : found;
+  }
   }
   [[nodiscard]] Diagnostic error(ErrorCode code, Group group) const {
     return {{code, name(letter(group)), this->code(group) / 10.0, 0.0}, 0, column(group)};

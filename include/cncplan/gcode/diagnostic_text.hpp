@@ -34,8 +34,9 @@ inline std::string word_text(std::string_view letter, double number) {
   const Error& error = diagnostic.error;
   const std::string_view sentence = message(error.code);
   const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
-                        sentence.starts_with("has ") || sentence.starts_with("does ");
-  std::string text = detail::word_text(error.field, error.value);
+                        sentence.starts_with("has ") || sentence.starts_with("does ") ||
+                        sentence.starts_with("says ");
+  std::string text = detail::word_text(error);
   text += has_verb ? " " : ": ";
   text += sentence;
   if (error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit)

@@ -206,6 +206,9 @@ using Check = Expected<void, Diagnostic>;
     if (motion == no_code) return tl::unexpected(block.error(ErrorCode::unused_word, Group::non_modal));
     const auto machine = block.error(ErrorCode::conflicting_words, Group::non_modal);
     if (is_arc(motion)) return conflict(machine, "G", motion / 10.0);
+  } else if (const Word* passed = block.passed_g(); passed && requested == no_code && axis_words != 0) {
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
     if (modal.incremental) return conflict(machine, "G", 91);
   }
 
