@@ -36,6 +36,9 @@ struct Alphabet {
     has_radius = (axes & bit('R')) == 0;
     has_arcs = in_order == 3;
   }
+
+  /// Letters that some code uses.
+  [[nodiscard]] Letters known() const { return bits("FHIJKNPQST") | axes | (has_radius ? bit('R') : 0); }
 };
 
 [[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }
@@ -153,14 +156,13 @@ using Check = Expected<void, Diagnostic>;
 /// What becomes of words that nothing has used: they go with a passed-through code, or they are errors. Axis
 /// words and feeds are never for others: what moves the machine is read here or refused.
 [[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
-  const Letters known = bits("FHIJKNPQST") | alphabet.axes | (alphabet.has_radius ? bit('R') : 0);
   for (char letter = 'A'; letter <= 'Z'; ++letter) {
     if ((unused & bit(letter)) == 0) continue;
     if (block.passes_code() && (bit(letter) & (alphabet.axes | bit('F'))) == 0) {
       if (auto ok = block.pass(letter); !ok) return ok;
     } else if (block.column(letter) ==
                block.first_column(unused)) {  // the first in the text is the one to report
-      const bool meant = (known & bit(letter)) != 0;
+      const bool meant = (alphabet.known() & bit(letter)) != 0;
       return tl::unexpected(block.error(meant ? ErrorCode::unused_word : ErrorCode::not_supported, letter));
     }
   }
@@ -193,7 +195,12 @@ using Check = Expected<void, Diagnostic>;
     if (requested != no_code && requested != code(80) && !(homes && requested == code(0)))
       return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
                       block.code(taker) / 10.0);
-    if (!homes && axis_words == 0) return missing("axis", block.column(taker));
+    if (!homes && axis_words == 0) {  // an unknown letter was meant to be the axis
+      const Letters unknown = block.letters() & ~alphabet.known();
+      if (unknown != 0 && !block.passes_code())
+        if (auto ok = settle(block, unknown, alphabet); !ok) return tl::unexpected(ok.error());
+      return missing("axis", block.column(taker));
+    }
   } else if (requested == no_code && axis_words != 0 && modal.motion == no_code) {
     return missing("G0, G1, G2 or G3", block.first_column(axis_words));
   } else if (requested != no_code || axis_words != 0 || (center_words != 0 && is_arc(modal.motion))) {

@@ -103,7 +103,10 @@ class Scanner {
 
   [[nodiscard]] Diagnostic no_number(char letter, int column) const {
     if (letter == 'O') return at(ErrorCode::not_supported, "O-word", column);
-    return unsupported_or(ErrorCode::missing_number, name(letter), column);
+    const char* follows = at_;
+    while (follows != end_ && (*follows == '+' || *follows == '-' || *follows == '.')) ++follows;
+    return unsupported_or(ErrorCode::missing_number, name(letter), column,
+                          follows == end_ ? 0.0 : static_cast<unsigned char>(*follows));
   }
 
   const char* begin_;
