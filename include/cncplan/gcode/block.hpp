@@ -119,7 +119,9 @@ class Block {
       return Diagnostic{{error, name(word.letter), word.number, 0.0}, 0, word.column};
     };
     if (group == Group::none) return tl::unexpected(fail(ErrorCode::not_supported));
-    if (has(group)) {
+    const bool ends_cycle = group == Group::motion && code == gcode::code(80);
+    if (ends_cycle && has(group)) return {};  // G0 G80, as CAM programs begin: the other code holds
+    if (has(group) && !(group == Group::motion && this->code(group) == gcode::code(80))) {
       Diagnostic diagnostic = fail(ErrorCode::conflicting_words);
       diagnostic.other = name(word.letter);
       diagnostic.error.bound = this->code(group) / 10.0;
