@@ -17,6 +17,9 @@ using Code = std::int16_t;
 /// No code of a group.
 inline constexpr Code no_code = -1;
 
+/// A code of the group that was not understood.
+inline constexpr Code lost_code = -2;
+
 /// 28 -> 280, 91.1 -> 911.
 [[nodiscard]] constexpr Code code(double number) { return static_cast<Code>(number * 10.0 + 0.5); }
 

@@ -59,6 +59,24 @@ class Reader {
     return end;
   }
 
+  /// Takes over what can be understood of a line that was in error, so that the lines behind it are read in
+  /// the state that they were written for: its modes, its end point, the end of the program. Motions that
+  /// begin at a place that is not known for sure do not come out.
+  void recover(std::string_view text) {
+    if (!readable_ || text.size() > max_line_length) return;
+    block_.salvage(text, 0, dialect_.pass_through);
+    const Letters axes = alphabet_.axes;
+    modal_ = after(block_, modal_, dialect_.g18);
+    if ((block_.lost() & bit('F')) != 0) modal_.needs_feed = false;
+    const bool bare = modal_.motion == no_code && (block_.letters() & axes) != 0;
+    if (bare || ((block_.lost() & bit('G')) != 0 && !block_.has(Group::motion))) modal_.motion = lost_code;
+    doubtful_ |= block_.lost() & axes;
+    if (block_.has(Group::non_modal) && block_.code(Group::non_modal) != code(4)) doubtful_ |= axes;
+    follow();
+    const Code stop = block_.code(Group::stop);
+    finished_ = finished_ || stop == code(2) || stop == code(30);
+  }
+
   /// Whether the program has ended.
   [[nodiscard]] bool finished() const { return finished_; }
   /// Lines read.
@@ -98,7 +116,16 @@ class Reader {
     if (!motion) return tl::unexpected(motion.error());
     modal_ = modal;
     words_seen_ = true;
-    return execute(*motion, std::move(out));
+    out = execute(*motion, std::move(out));
+    if (modal_.motion == lost_code) follow();
+    if (doubtful_ != 0 && !modal_.incremental) doubtful_ &= ~block_.letters();
+    return out;
+  }
+
+  /// Goes where the axis words lead, in silence.
+  void follow() {
+    if (!modal_.incremental) doubtful_ &= ~block_.letters();
+    arrive(target());
   }
 
   /// The first % stands before the program, the next one ends it.
@@ -244,7 +271,7 @@ class Reader {
     motion.column = block_.first_column(alphabet_.axes);
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
     arrive(end);
-    emit(motion);
+    if (doubtful_ == 0) emit(motion);
   }
 
   template <class Emit>
@@ -269,7 +296,7 @@ class Reader {
       motion.column = block_.first_column(bits("IJK"));
     }
     arrive(motion.end);
-    emit(motion);
+    if (doubtful_ == 0) emit(motion);
   }
 
   /// G28, G30: by way of the point that the axis words name, then these axes (all, if none is named) go home.
@@ -357,6 +384,7 @@ class Reader {
   std::size_t work_system_{};
   int selected_tool_{};
   int loaded_tool_{};
+  Letters doubtful_{};  ///< axes whose place a line in error left open
   int line_{};
   bool percent_seen_{};
   bool words_seen_{};

@@ -46,9 +46,6 @@ struct Alphabet {
 /// Letter of the centre word along an axis of space: I, J or K.
 [[nodiscard]] constexpr char center_letter(int axis) { return "IJK"[axis]; }
 
-/// The modal state that holds on a line and after it.
-[[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
-  if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
 /// G61, G61.1 or G64, in the units of the line. G64 P0 is G61.
 inline void control_path(const Block& block, Modal& modal) {
   const Code control = block.code(Group::path_control);
@@ -65,6 +62,9 @@ inline void control_path(const Block& block, Modal& modal) {
   modal.merge_tolerance = 0.0;
 }
 
+/// The modal state that holds on a line and after it.
+[[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
+  if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
   if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
   if (block.has(Group::arc_distance))
     modal.incremental_center = block.code(Group::arc_distance) == code(91.1);
@@ -186,6 +186,9 @@ using Check = Expected<void, Diagnostic>;
   const bool sets_length = block.code(Group::tool_length) == code(43.1);
   const bool takes_axes = homes || shifts || sets_length;
 
+  // What is said under a code that was not understood belongs to it.
+  if (modal.motion == lost_code && requested == no_code && !takes_axes) return no_code;
+
   Code motion = no_code;
   if (takes_axes) {  // these use the axis words, so nothing else on the line can; G0 says no more than G28
                      // does
@@ -203,6 +206,9 @@ using Check = Expected<void, Diagnostic>;
     }
   } else if (requested == no_code && axis_words != 0 && modal.motion == no_code) {
     return missing("G0, G1, G2 or G3", block.first_column(axis_words));
+  } else if (const Word* passed = block.passed_g(); passed && requested == no_code && axis_words != 0) {
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
   } else if (requested != no_code || axis_words != 0 || (center_words != 0 && is_arc(modal.motion))) {
     motion = modal.motion;
   }
@@ -213,9 +219,6 @@ using Check = Expected<void, Diagnostic>;
     if (motion == no_code) return tl::unexpected(block.error(ErrorCode::unused_word, Group::non_modal));
     const auto machine = block.error(ErrorCode::conflicting_words, Group::non_modal);
     if (is_arc(motion)) return conflict(machine, "G", motion / 10.0);
-  } else if (const Word* passed = block.passed_g(); passed && requested == no_code && axis_words != 0) {
-    return tl::unexpected(
-        Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
     if (modal.incremental) return conflict(machine, "G", 91);
   }
 

@@ -53,6 +53,21 @@ class Scanner {
     return {};
   }
 
+  /// The letter behind which something else than a number stands, as a set; empty for none.
+  [[nodiscard]] Letters letter_before() const {
+    const char* before = at_;
+    while (before != begin_ && (before[-1] == ' ' || before[-1] == '\t')) --before;
+    const char letter = before == begin_ ? '\0' : upper(before[-1]);
+    return letter >= 'A' && letter <= 'Z' ? bit(letter) : 0;
+  }
+
+  /// Passes a character in which no word begins; false at the end.
+  bool skip() {
+    if (at_ == end_) return false;
+    ++at_;
+    return true;
+  }
+
   /// The character to come, upper case; 0 at the end.
   [[nodiscard]] char peek() const { return at_ == end_ ? '\0' : upper(*at_); }
 
