@@ -127,6 +127,7 @@ std::vector<Event> read_events(const std::string& file) {
   std::vector<Event> events;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // byte order mark
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty() || (number == 1 && line == header)) continue;
     events.push_back(Row(file, number, line).event(events.empty() ? 0.0 : events.back().time));

@@ -77,6 +77,9 @@ void check_size(const Route<P>& route, const Plan& plan, const Options& options,
 // What the options ask for and the machine cannot do.
 void check_options(const Options& options, const Machine& machine) {
   const auto refuse = [](const char* why) { throw Failure(Exit::bad_input, why); };
+  if (options.check && (options.motions || options.blocks || options.samples || options.steps ||
+                        options.plot || options.events))
+    refuse("--check plans nothing: it goes without outputs and events");
   const bool mill = machine.kinematics == Kinematics::cartesian;
   if (options.corner_time && mill) refuse("--corner-time is for machines with a rotary table");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
@@ -141,11 +144,32 @@ int run(const Options& options, const Machine& machine, const Program& program, 
   return static_cast<int>(Exit::done);
 }
 
+// Most problems of a program that are told: of one that was to be run, and of one that is checked.
+constexpr std::size_t told_problems = 20;
+constexpr std::size_t checked_problems = 100;
+
+// Says all that is wrong with a program, and by kind; plans nothing.
+int check(const Options& options, const Machine& machine) {
+  Problems problems(options.program, checked_problems);
+  const Program program = read_program(options, machine, problems);
+  if (problems.found().empty() && machine.kinematics == Kinematics::polar)
+    (void)polar_route(program, machine);
+  if (options.json)
+    support::print(kinds_json(problems, program.lines, program.warnings));
+  else if (!options.quiet)
+    support::print(kinds_table(problems));
+  problems.refuse();
+  return static_cast<int>(Exit::done);
+}
+
 int run(const Options& options) {
   Machine machine;
   if (options.machine) machine = support::read_machine(*options.machine);
   check_options(options, machine);
-  const Program program = read_program(options, machine);
+  if (options.check) return check(options, machine);
+  Problems problems(options.program, told_problems);
+  const Program program = read_program(options, machine, problems);
+  problems.refuse();
   switch (machine.kinematics) {
     case Kinematics::tire_mold:
       return run(options, machine, program, row_route(program));

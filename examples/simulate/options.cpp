@@ -62,6 +62,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--events", options.events, "holds, overrides and stops on the way, CSV");
   app.add_option("--from-line", options.from_line, "begin at the first motion of this line or behind it")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()));
+  app.add_flag("--check", options.check, "say all that is wrong with the program, and plan nothing");
   app.add_option("--motions", options.motions, "write the program's motions, CSV");
   app.add_option("--blocks", options.blocks, "write the planned blocks, CSV");
   support::add_run_options(app, options);

@@ -25,6 +25,7 @@ struct Options : support::RunOptions {
   std::optional<double> tool_length;  ///< mm
   std::optional<std::string> events;
   std::optional<int> from_line;
+  bool check = false;  ///< read the program, plan nothing
   std::optional<std::string> motions;
   std::optional<std::string> blocks;
 };

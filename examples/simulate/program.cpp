@@ -11,7 +11,7 @@
 
 #include "cncplan/gcode/stream_lines.hpp"
 #include "route.hpp"
-#include "support/refuse.hpp"
+#include "support/failure.hpp"
 
 namespace simulate {
 
@@ -24,11 +24,12 @@ using support::Failure;
 // Turns items into blocks, in order.
 class Builder {
  public:
-  Builder(const Options& options, const Machine& machine, Program& program)
+  Builder(const Options& options, const Machine& machine, Program& program, Problems& problems)
       : machine_(machine),
         limits_(options.limits),
         tool_length_(options.tool_length.value_or(0.0)),
-        program_(program) {}
+        program_(program),
+        problems_(problems) {}
 
   void operator()(const gcode::Motion& motion) {
     const double rapid_rate = machine_.rapid_rate.value_or(limits_.velocity);
@@ -37,10 +38,8 @@ class Builder {
       limits.velocity = std::min(limits.velocity, machine_.feed_limit);
     gcode::Motion placed = motion;
     for (std::size_t i = 0; i < 2; ++i) placed.offset[i] -= machine_.table_center[i];
-    if (rows())
-      add_row(motion, limits, rapid_rate);
-    else
-      add_segment(placed, limits, rapid_rate);
+    const bool added = rows() ? add_row(motion, limits, rapid_rate) : add_segment(placed, limits, rapid_rate);
+    if (!added) return;
     Origin& origin = program_.origins.back();
     const bool says_feed = motion.feed || motion.kind == gcode::MotionKind::rapid;
     origin.feed = says_feed ? plan::feed(motion, origin.length, unlimited, rapid_rate) : limits.velocity;
@@ -84,26 +83,31 @@ class Builder {
     program_.origins.push_back(origin);
   }
 
-  void add_segment(const gcode::Motion& motion, const Limits& limits, double rapid_rate) {
+  // Whether the motion can be made; else its problem is noted.
+  bool add_segment(const gcode::Motion& motion, const Limits& limits, double rapid_rate) {
     auto block = plan::block(motion, limits, rapid_rate);
-    if (!block) support::refuse(program_.file, {block.error(), motion.line, motion.column, {}});
+    if (!block) {
+      problems_.add(motion, block.error());
+      return false;
+    }
     if (machine_.kinematics == Kinematics::cartesian) {
       const auto bounds = block->segment.box();
-      check_travel<3>(motion, bounds.low, bounds.high);
+      if (!stays_within_travel<3>(motion, bounds.low, bounds.high)) return false;
       block->limits = limits_along(machine_, *block);
     }
     add(*block,
         {motion.line, motion.column, motion.plane, plan::xyz(motion.offset), 0.0, block->segment.length()});
+    return true;
   }
 
-  void add_row(const gcode::Motion& motion, Limits limits, double rapid_rate) {
+  bool add_row(const gcode::Motion& motion, Limits limits, double rapid_rate) {
     const auto joints = [&](const gcode::Position& place) {
       Joints result;
       for (std::size_t i = 0; i < 4; ++i) result[static_cast<Eigen::Index>(i)] = place[i] + motion.offset[i];
       return result;
     };
     const Joints start = joints(motion.start), end = joints(motion.end);
-    check_travel<4>(motion, start.cwiseMin(end), start.cwiseMax(end));
+    if (!stays_within_travel<4>(motion, start.cwiseMin(end), start.cwiseMax(end))) return false;
     const TireMoldRow row = kinematics::tire_mold_row(tool_length_, start, end);
     double length = 0.0;
     cut_row(row, [&](const RowPath& path) { length += path.length(); });
@@ -113,12 +117,13 @@ class Builder {
     add({path::Line<3>(tip(row, 0.0), tip(row, 1.0)), limits,
          rapid ? junction::Kind::rapid : junction::Kind::line, motion.exact_stop, 0.0},
         {motion.line, motion.column, motion.plane, Vector3::Zero(), 0.0, length});
+    return true;
   }
 
   // Against the lowest and the highest place of each axis; a mill that lacks an axis does not move it.
   template <int N>
-  void check_travel(const gcode::Motion& motion, const VectorN<double, N>& low,
-                    const VectorN<double, N>& high) const {
+  bool stays_within_travel(const gcode::Motion& motion, const VectorN<double, N>& low,
+                           const VectorN<double, N>& high) {
     for (std::size_t i = 0; i < N; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const MachineAxis axis = i < machine_.axes.size()
@@ -127,15 +132,18 @@ class Builder {
       const double lowest = axis.low * axis.unit(), highest = axis.high * axis.unit();
       if (low[k] >= lowest && high[k] <= highest) continue;
       const double beyond = low[k] < lowest ? low[k] : high[k];
-      throw Failure(Exit::bad_input, fmt::format("{}:{}:{}: error: {}", program_.file, motion.line,
-                                                 motion.column, support::beyond_travel(axis, beyond)));
+      problems_.add({motion.line, motion.column, fmt::format("axis {} would leave its travel", axis.letter),
+                     support::beyond_travel(axis, beyond)});
+      return false;
     }
+    return true;
   }
 
   const Machine& machine_;
   const Limits& limits_;
   double tool_length_;
   Program& program_;
+  Problems& problems_;
 };
 
 // Leaves out what comes before a line: the machine stands where its first motion begins.
@@ -157,7 +165,7 @@ std::string Program::place(std::size_t block) const {
   return fmt::format("{}:{}:{}", file, origins[block].line, origins[block].column);
 }
 
-Program read_program(const Options& options, const Machine& machine) {
+Program read_program(const Options& options, const Machine& machine, Problems& problems) {
   const std::string& file = options.program;
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
@@ -165,13 +173,21 @@ Program read_program(const Options& options, const Machine& machine) {
   Program program;
   program.file = file;
   gcode::Reader reader(machine.dialect);
-  Builder build(options, machine, program);
-  const auto read = gcode::read_program(gcode::StreamLines(stream), reader,
-                                        [&](const gcode::Item& item) { std::visit(build, item); });
-  if (!read) support::refuse(file, read.error());
+  Builder build(options, machine, program, problems);
+  gcode::read_program(
+      gcode::StreamLines(stream), reader,
+      [&](const gcode::Item& item) {
+        std::visit(build, item);
+        return problems.has_room();
+      },
+      [&](const gcode::Diagnostic& problem) {
+        problems.add(problem);
+        return problems.has_room();
+      });
+  program.lines = static_cast<std::size_t>(reader.line());
+  if (!problems.found().empty()) return program;
   (void)build.last_block(1);
   if (options.from_line) begin_at(program, *options.from_line);
-  program.lines = static_cast<std::size_t>(reader.line());
   return program;
 }
 

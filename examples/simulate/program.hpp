@@ -8,6 +8,7 @@
 #include "cncplan/cncplan.hpp"
 #include "machine.hpp"
 #include "options.hpp"
+#include "problems.hpp"
 
 namespace simulate {
 
@@ -37,8 +38,9 @@ struct Program {
   [[nodiscard]] std::string place(std::size_t block) const;
 };
 
-/// Reads a program; warnings go to standard error. Throws `Failure` for a file that cannot be read, for text
-/// that is not understood, and for motions that cannot be made or leave the machine's travel.
-[[nodiscard]] Program read_program(const Options& options, const Machine& machine);
+/// Reads a program; warnings go to standard error. Text that is not understood and motions that cannot be
+/// made or leave the machine's travel are problems: the program cannot be run where there is one. Throws
+/// `Failure` for a file that cannot be read.
+[[nodiscard]] Program read_program(const Options& options, const Machine& machine, Problems& problems);
 
 }  // namespace simulate

@@ -185,6 +185,10 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
         section.refuse(item, "'" + word + "' is not a word");
       passed.number = value;
     }
+    const bool moves = std::any_of(machine.dialect.axes.begin(), machine.dialect.axes.end(),
+                                   [&](const gcode::Axis& axis) { return axis.letter == passed.letter; });
+    if (moves || passed.letter == 'F' || gcode::takes_axis_words(passed))
+      section.refuse(item, fmt::format("{} {}", word, message(ErrorCode::not_to_pass)));
     machine.dialect.pass_through.push_back(passed);
   }
 }

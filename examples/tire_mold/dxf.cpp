@@ -34,9 +34,9 @@ std::string_view trimmed(std::string_view text) {
 class Pairs {
  public:
   explicit Pairs(const std::string& file) : file_(file), stream_(file, std::ios::binary) {
-    if (!stream_ || std::filesystem::is_directory(file) ||
-        stream_.peek() == std::ifstream::traits_type::eof())
+    if (!stream_ || std::filesystem::is_directory(file))
       throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+    if (stream_.peek() == std::ifstream::traits_type::eof()) refuse(file, 1, "the drawing is empty");
   }
 
   /// The next pair; refuses the end of the file, as EOF comes before it.

@@ -110,3 +110,25 @@ TEST_CASE("a reader or writer of an invalid dialect takes nothing") {
     CHECK(text.empty());
   }
 }
+
+TEST_CASE("what moves the axes does not pass through") {
+  const auto refused = [](gcode::PassThrough passed) {
+    Dialect dialect;
+    dialect.pass_through = {{'M', 100.0}, passed};
+    const auto valid = gcode::validate(dialect);
+    return !valid && valid.error().code == ErrorCode::not_to_pass;
+  };
+  for (const double code : {0.0, 1.0, 2.0, 3.0, 10.0, 28.0, 38.2, 43.1, 73.0, 81.0, 83.0, 92.0})
+    CHECK(refused({'G', code}));
+  CHECK(refused({'G', {}}));
+  CHECK(refused({'X', {}}));
+  CHECK(refused({'F', {}}));
+  for (const double code : {5.0, 8.0, 17.0, 251.0}) CHECK_FALSE(refused({'G', code}));
+  CHECK_FALSE(refused({'D', {}}));
+  CHECK_FALSE(refused({'M', {}}));
+  Dialect dialect;
+  dialect.pass_through = {{'G', 181.0}};
+  CHECK(test::read("G0 X1\nG181 X10 Y10\n", dialect).error ==
+        "2:1: G181 says where or how the axes move, so it cannot be passed through");
+  CHECK(test::read("G181 P1\nG181 G1 X10\n", dialect).error.empty());
+}

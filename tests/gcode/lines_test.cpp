@@ -50,10 +50,15 @@ class Endless : public std::streambuf {
 
 }  // namespace
 
-TEST_CASE("lines end at line feeds, the last one without") {
-  const std::vector<std::string> expected{"a", "", "b\r", "c"};
-  CHECK(of_text("a\n\nb\r\nc") == expected);
-  CHECK(of_stream("a\n\nb\r\nc") == expected);
+TEST_CASE("lines end at LF, CR, CR LF or CR CR LF, the last one without") {
+  const std::vector<std::string> expected{"a", "", "b", "c"};
+  for (const std::string end : {"\n", "\r", "\r\n", "\r\r\n"}) {
+    CAPTURE(end.size());
+    CHECK(of_text("a" + end + end + "b" + end + "c") == expected);
+    CHECK(of_stream("a" + end + end + "b" + end + "c") == expected);
+    CHECK(of_stream("a" + end + end + "b" + end + "c" + end) == expected);
+  }
+  CHECK(of_text("a\r\rb\nc\r\nd") == std::vector<std::string>{"a", "", "b", "c", "d"});
   CHECK(of_text("").empty());
   CHECK(of_stream("").empty());
   CHECK(of_text("a\n") == std::vector<std::string>{"a"});
@@ -63,8 +68,10 @@ TEST_CASE("lines end at line feeds, the last one without") {
 TEST_CASE("a stream's lines are a text's, wherever the buffer ends") {
   test::Random random;
   std::string text;
+  constexpr const char* ends[] = {"\n", "\r", "\r\n", "\r\r\n"};
   for (int i = 0; i < 5000; ++i)
-    text += std::string(static_cast<std::size_t>(random.integer(0, 300)), 'x') + '\n';
+    text += std::string(static_cast<std::size_t>(random.integer(0, 300)), 'x') + ends[random.integer(0, 3)] +
+            (random.coin() ? "" : "x");
   CHECK(of_stream(text) == of_text(text));
 }
 

@@ -164,3 +164,46 @@ TEST_CASE("what follows the end of the program is not read") {
   CHECK(test::read("G0 X1\n%\n!?").error.empty());
   CHECK(test::read("%\nG0 X1\n!?").error == "3:1: !: unknown character");
 }
+
+namespace {
+
+/// All that is wrong with a program, a line each.
+std::string problems(std::string_view text) {
+  std::string told;
+  gcode::Reader reader;
+  gcode::read_program(
+      gcode::TextLines(text), reader, [](const gcode::Item&) {},
+      [&](const gcode::Diagnostic& problem) {
+        told += std::to_string(problem.line) + ": " + gcode::to_text(problem) + '\n';
+        return true;
+      });
+  return told;
+}
+
+}  // namespace
+
+TEST_CASE("all problems of a program are told, and none that another one causes") {
+  CHECK(problems("G1 X1 E5 F100\nX2\nG0 Q1 X3\nG4\nX5\n") ==
+        "1: E is not supported\n3: Q is used by nothing on this line\n4: P: a required word is missing\n");
+  CHECK(problems("X1\nX2\nX3\nG5.2 X1 Y1 P1 L3\nX7 P2\nG1 X8 K1\n") ==
+        "1: G0, G1, G2 or G3: a required word is missing\n4: G5.2 is not supported\n"
+        "6: K is used by nothing on this line\n");
+  CHECK(problems("G1 X#1\nX2 !\nG93 F[1]\nG1 X2\nM30 !\n)\n") ==
+        "1: variable # is not supported\n2: !: unknown character\n3: expression [ ] is not supported\n"
+        "4: F: a required word is missing\n5: !: unknown character\n");
+}
+
+TEST_CASE("behind a line in error the machine stands where it should") {
+  gcode::Reader reader;
+  std::vector<gcode::Motion> motions;
+  const auto take = [&](const gcode::Item& item) {
+    if (const auto* motion = std::get_if<gcode::Motion>(&item)) motions.push_back(*motion);
+  };
+  gcode::read_program(gcode::TextLines("G20 G1 X1 Y2 E3\nX2\nG0 Y[1]\nG1 X5\nG2 Y9 R10\nG1 X6\n"), reader,
+                      take, [](const gcode::Diagnostic&) { return true; });
+  REQUIRE(motions.size() == 2);  // those from a place that is not known are left out
+  CHECK(motions[0].start[0] == 25.4);
+  CHECK(motions[0].start[1] == 50.8);
+  CHECK(motions[0].end[0] == 50.8);
+  CHECK(motions[1].start[1] == 9 * 25.4);
+}

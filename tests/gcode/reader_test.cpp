@@ -268,3 +268,38 @@ TEST_CASE("reading a line does not touch the heap") {
         }) == 0);
   CHECK(errors == 2);
 }
+
+TEST_CASE("G80 beside a motion code leaves it, and alone ends it") {
+  CHECK(motion("N1 G00 G17 G21 G40 G49 G80 G90\nX5").kind == MotionKind::rapid);
+  CHECK(motion("G80 G1 X5").kind == MotionKind::line);
+  CHECK(motion("G1 G80 X5").kind == MotionKind::line);
+  CHECK(read("G1 X5\nG80\nX6").error == "3:1: G0, G1, G2 or G3: a required word is missing");
+  CHECK(read("G1 G80 G0 X5").error == "1:8: G0: words exclude each other (G1)");
+}
+
+TEST_CASE("an unknown letter is told before what its line lacks") {
+  CHECK(read("G92 E0").error == "1:5: E is not supported");
+  CHECK(read("G92").error == "1:1: axis: a required word is missing");
+}
+
+TEST_CASE("text that is no word says what stands where a number should") {
+  CHECK(read("gsw").error == "1:1: G has no number: 's' follows");
+  CHECK(read("M").error == "1:1: M has no number");
+  CHECK(read("G1 X\xC3").error == "1:4: X has no number: byte 195 follows");
+}
+
+TEST_CASE("motions carry how closely the path is kept") {
+  using gcode::PathMode;
+  const auto motions =
+      read("G1 X1\nG61 X2\nG61.1 X3\nG64 P.1 Q.02 X4\nG20 G64 P1\nG21 X5\nG64 P0 X6\nG64 X7").motions();
+  REQUIRE(motions.size() == 7);
+  const PathMode modes[] = {PathMode::continuous, PathMode::exact_path, PathMode::exact_stop,
+                            PathMode::continuous, PathMode::continuous, PathMode::exact_path,
+                            PathMode::continuous};
+  for (std::size_t i = 0; i < motions.size(); ++i) CHECK(motions[i].path_mode == modes[i]);
+  CHECK(motions[3].tolerance == 0.1);
+  CHECK(motions[3].merge_tolerance == 0.02);
+  CHECK(motions[4].tolerance == 25.4);
+  CHECK(motions[4].merge_tolerance == 0.0);
+  for (const int i : {0, 1, 2, 5, 6}) CHECK_FALSE(motions[static_cast<std::size_t>(i)].tolerance);
+}

@@ -56,17 +56,17 @@ TEST_CASE("what is no word is told with its column") {
   CHECK(error("X1 (a") == "4: (: comment is not closed");
   CHECK(error("X") == "1: X has no number");
   CHECK(error("X-") == "1: X has no number");
-  CHECK(error("X+-1") == "1: X has no number");
+  CHECK(error("X+-1") == "1: X has no number: '1' follows");
   CHECK(error("X.") == "1: X has no number");
-  CHECK(error("Xinf") == "1: X has no number");
-  CHECK(error("Y-nan") == "1: Y has no number");
-  CHECK(error("X(1)2") == "1: X has no number");
+  CHECK(error("Xinf") == "1: X has no number: 'i' follows");
+  CHECK(error("Y-nan") == "1: Y has no number: 'n' follows");
+  CHECK(error("X(1)2") == "1: X has no number: '(' follows");
   CHECK(error("X1.2.3") == "5: .: unknown character");
   CHECK(error("X1 2") == "4: 2: unknown character");
   CHECK(error("X0x10") == "");  // X0 X10: whether a letter may come twice is the block's affair
   CHECK(error("X1e5") == "");   // X1 E5: E is refused later on
-  CHECK(error("X1\x01") == "3: byte1: unknown character");
-  CHECK(error("X1\xFF") == "3: byte255: unknown character");
+  CHECK(error("X1\x01") == "3: byte 1: unknown character");
+  CHECK(error("X1\xFF") == "3: byte 255: unknown character");
   CHECK(error("#1=2") == "1: variable # is not supported");
   CHECK(error("X#1") == "2: variable # is not supported");
   CHECK(error("X[1+2]") == "2: expression [ ] is not supported");

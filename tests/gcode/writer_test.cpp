@@ -77,7 +77,9 @@ std::string random_line(test::Random& random, bool rotary) {
       line += random.coin() ? "G90 " : "G91 ";
       break;
     case 2:
-      line += random.coin() ? "G61 " : "G64\n";
+      line += "G64 P" + number(0.1) + " Q" + number(0.1);
+      std::erase(line, '-');
+      line = random.coin() ? line + '\n' : random.coin() ? "G61 " : random.coin() ? "G61.1 " : "G64\n";
       break;
     case 3:
       line += random.coin() ? "G90.1 " : "G91.1 ";

@@ -26,6 +26,7 @@ TEST_CASE("bad input is refused with file, line or entity", "[tire_mold]") {
   const std::string other_entity = "  0\nSPLINE\n  8\n0\n";
   const std::vector<Case> cases{
       {"no drawing", "hello\n", good_art, "", "wall.dxf:1:1: error: "},
+      {"an empty file", "", good_art, "", "wall.dxf:1:1: error: the drawing is empty"},
       {"nothing drawn", dxf(""), good_art, "", "wall.dxf:1:1: error: there is no line and no arc in it"},
       {"a gap", dxf(dxf_line(300, 100, 250, 100) + dxf_line(249, 100, 200, 100)), good_art, "",
        "wall.dxf:18:1: error: entity 2 (LINE) is not connected to the others: the nearest is entity 1 "

@@ -40,6 +40,7 @@ enum class ErrorCode : std::uint8_t {
   duplicate,
   unreachable,
   unreadable,
+  not_to_pass,
   count_,  // number of codes
 };
 
@@ -75,6 +76,7 @@ enum class ErrorCode : std::uint8_t {
       "is there twice",
       "cannot be reached by the machine",
       "cannot be read",
+      "says where or how the axes move, so it cannot be passed through",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

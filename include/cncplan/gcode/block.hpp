@@ -1,6 +1,7 @@
 // One line of a program, its words sorted by letter and by modal group.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -35,6 +36,26 @@ class Block {
     }
   }
 
+  /// Sorts what can be understood of a line in error, and notes what cannot.
+  void salvage(std::string_view line, std::size_t from, std::span<const PassThrough> pass_through) {
+    clear();
+    for (Scanner scanner(line, from);;) {
+      const auto word = scanner.next();
+      if (!word) {
+        lost_ |= scanner.letter_before();
+        if (word.error().error.code == ErrorCode::unclosed_comment || !scanner.skip()) return;
+      } else if (!*word) {
+        return;
+      } else if (!add(**word, pass_through)) {
+        const PassThrough code{(*word)->letter, (*word)->number};
+        if (code.letter != 'G' || takes_axis_words(code)) lost_ |= bit(code.letter);
+      }
+    }
+  }
+
+  /// Letters of which `salvage` lost a word.
+  [[nodiscard]] Letters lost() const { return lost_; }
+
   [[nodiscard]] bool empty() const { return letters_ == 0 && codes_seen_ == 0 && passed_count_ == 0; }
 
   [[nodiscard]] Letters letters() const { return letters_; }
@@ -54,6 +75,13 @@ class Block {
   [[nodiscard]] const Word& passed(int i) const { return passed_[static_cast<std::size_t>(i)]; }
   /// Whether a passed-through code is there that other words may belong to.
   [[nodiscard]] bool passes_code() const { return passes_code_; }
+  /// A G code that passes through, if there is one.
+  [[nodiscard]] const Word* passed_g() const {
+    const Word* const end = passed_.data() + passed_count_;
+    const Word* const found =
+        std::find_if(passed_.data(), end, [](const Word& word) { return word.letter == 'G'; });
+    return found == end ? nullptr : found;
+  }
 
   /// Column of the first of the words that is there; 0 if none is.
   [[nodiscard]] int first_column(Letters among) const {
@@ -85,6 +113,7 @@ class Block {
     codes_seen_ = 0;
     passed_count_ = 0;
     passes_code_ = false;
+    lost_ = 0;
   }
 
   Expected<void, Diagnostic> add(const Word& word, std::span<const PassThrough> pass_through) {
@@ -111,7 +140,9 @@ class Block {
       return Diagnostic{{error, name(word.letter), word.number, 0.0}, 0, word.column};
     };
     if (group == Group::none) return tl::unexpected(fail(ErrorCode::not_supported));
-    if (has(group)) {
+    const bool ends_cycle = group == Group::motion && code == gcode::code(80);
+    if (ends_cycle && has(group)) return {};  // G0 G80, as CAM programs begin: the other code holds
+    if (has(group) && !(group == Group::motion && this->code(group) == gcode::code(80))) {
       Diagnostic diagnostic = fail(ErrorCode::conflicting_words);
       diagnostic.other = name(word.letter);
       diagnostic.error.bound = this->code(group) / 10.0;
@@ -139,6 +170,7 @@ class Block {
   std::uint32_t codes_seen_{};
   int passed_count_{};
   bool passes_code_{};
+  Letters lost_{};
   std::array<double, 26> numbers_{};
   std::array<std::uint16_t, 26> columns_{};
   std::array<Code, group_count> codes_{};

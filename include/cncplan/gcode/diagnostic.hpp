@@ -8,7 +8,8 @@
 namespace cncplan::gcode {
 
 /// An error or a warning at a place in the text. `error.field` is the word's letter or says what was met;
-/// `error.value` is the word's number (the character's code for one that is unknown).
+/// `error.value` is the word's number (the character's code for one that is unknown, or stands where a number
+/// should; 0 for the end of the line).
 struct Diagnostic {
   Error error;
   int line{};    ///< counted from 1

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "cncplan/gcode/diagnostic.hpp"
+#include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {
 
@@ -21,10 +22,19 @@ inline std::string number_text(double number) {
   return std::string(digits.data(), end);
 }
 
+/// A character, or the number of a byte that has no picture.
+inline std::string character_text(double code) {
+  const std::string_view printable = name(static_cast<char>(static_cast<unsigned char>(code)));
+  std::string text(printable);
+  if (printable == "byte") return text.append(1, ' ').append(number_text(code));
+  return text.insert(0, 1, '\'').append(1, '\'');
+}
+
 /// A code is known by its number (G41), any other word by its letter.
-inline std::string word_text(std::string_view letter, double number) {
-  const bool code = letter == "G" || letter == "M" || letter == "byte";
-  return std::string(letter) + (code ? number_text(number) : "");
+inline std::string word_text(const Error& error) {
+  if (error.field == "byte") return character_text(error.value);
+  const bool code = (error.field == "G" || error.field == "M") && error.code != ErrorCode::missing_number;
+  return std::string(error.field) + (code ? number_text(error.value) : "");
 }
 
 }  // namespace detail
@@ -34,13 +44,17 @@ inline std::string word_text(std::string_view letter, double number) {
   const Error& error = diagnostic.error;
   const std::string_view sentence = message(error.code);
   const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
-                        sentence.starts_with("has ") || sentence.starts_with("does ");
-  std::string text = detail::word_text(error.field, error.value);
+                        sentence.starts_with("has ") || sentence.starts_with("does ") ||
+                        sentence.starts_with("says ");
+  std::string text = detail::word_text(error);
   text += has_verb ? " " : ": ";
   text += sentence;
   if (error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit)
     text += ' ' + detail::number_text(error.bound);
-  if (!diagnostic.other.empty()) text += " (" + detail::word_text(diagnostic.other, error.bound) + ')';
+  if (error.code == ErrorCode::missing_number && error.value != 0.0)
+    text += ": " + detail::character_text(error.value) + " follows";
+  if (!diagnostic.other.empty())
+    text += " (" + detail::word_text({error.code, diagnostic.other, error.bound, 0.0}) + ')';
   return text;
 }
 

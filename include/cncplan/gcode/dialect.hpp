@@ -35,7 +35,8 @@ struct Tool {
 };
 
 /// A word that comes out as it is. Without a number, the letter with any number. The words that nothing else
-/// on the line uses go with a passed-through G or M (the P and Q of `G05 P10000 Q3`).
+/// on the line uses go with a passed-through G or M (the P and Q of `G05 P10000 Q3`). What moves the axes
+/// cannot pass: neither F and the axes' letters, nor G codes that take axis words.
 struct PassThrough {
   char letter{};
   std::optional<double> number{};
@@ -60,11 +61,31 @@ struct Dialect {
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };
 
+namespace detail {
+
+/// G codes of RS274/NGC, LinuxCNC and its kin that take axis words wherever they stand. G5 and G5.1 are left
+/// out: some controls have a smoothing mode of that number.
+inline constexpr std::array takes_axis_words{0.0,  1.0,  2.0,  3.0,  5.2,  6.2,  6.3,  10.0, 28.0,
+                                             30.0, 33.0, 33.1, 34.0, 35.0, 38.2, 38.3, 38.4, 38.5,
+                                             43.1, 52.0, 53.0, 68.0, 73.0, 74.0, 76.0, 81.0, 82.0,
+                                             83.0, 84.0, 85.0, 86.0, 87.0, 88.0, 89.0, 92.0};
+
+}  // namespace detail
+
+/// Whether a word to pass through would take words from the axes: their motion would be lost in silence, or
+/// be made by another code.
+[[nodiscard]] inline bool takes_axis_words(const PassThrough& passed) {
+  if (passed.letter != 'G') return false;
+  const auto& codes = detail::takes_axis_words;
+  return !passed.number || std::find(codes.begin(), codes.end(), *passed.number) != codes.end();
+}
+
 /// Letters that mean something of their own, and cannot name an axis.
 inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
 
 /// The dialect itself if it can be read with, else what is wrong with it: no axis or more than `max_axes`, a
-/// letter twice or reserved, a table entry that is not finite, tool lengths without a Z axis.
+/// letter twice or reserved, a table entry that is not finite, tool lengths without a Z axis, a word to pass
+/// through that moves the axes.
 [[nodiscard]] inline Expected<Dialect> validate(const Dialect& dialect) {
   const auto fail = [](ErrorCode code, std::string_view field, double value = 0.0, double bound = 0.0) {
     return tl::unexpected(Error{code, field, value, bound});
@@ -84,9 +105,13 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
     if (!std::isfinite(tool.length)) return fail(ErrorCode::not_finite, "tool length", tool.length);
     if (tool.length != 0.0 && (seen & bit('Z')) == 0) return fail(ErrorCode::missing_word, "Z");
   }
-  for (const PassThrough& passed : dialect.pass_through)
+  for (const PassThrough& passed : dialect.pass_through) {
     if (passed.letter < 'A' || passed.letter > 'Z')
       return fail(ErrorCode::unknown_character, "word to pass through");
+    if (takes_axis_words(passed)) return fail(ErrorCode::not_to_pass, "G", passed.number.value_or(0.0));
+    if (((seen | bit('F')) & bit(passed.letter)) != 0)
+      return fail(ErrorCode::not_to_pass, name(passed.letter));
+  }
   const auto finite = [](const Position& position) {
     return std::all_of(position.begin(), position.end(), [](double x) { return std::isfinite(x); });
   };

@@ -17,6 +17,9 @@ using Code = std::int16_t;
 /// No code of a group.
 inline constexpr Code no_code = -1;
 
+/// A code of the group that was not understood.
+inline constexpr Code lost_code = -2;
+
 /// 28 -> 280, 91.1 -> 911.
 [[nodiscard]] constexpr Code code(double number) { return static_cast<Code>(number * 10.0 + 0.5); }
 
@@ -116,7 +119,9 @@ struct Modal {
   FeedMode feed_mode = FeedMode::per_minute;
   std::optional<double> feed{};  ///< mm/s; under inverse time this line's, 1/s
   bool needs_feed = false;       ///< no feed move without an F on the way: a feed does not outlive its mode
-  bool exact_stop = false;
+  PathMode path_mode = PathMode::continuous;
+  std::optional<double> tolerance{};  ///< mm, of G64 P
+  double merge_tolerance = 0.0;       ///< mm, of G64 Q
 
   friend bool operator==(const Modal&, const Modal&) = default;
 };

@@ -27,13 +27,18 @@ enum class MotionKind : std::uint8_t { rapid, line, arc_radius, arc_center };
 /// G94 or G93.
 enum class FeedMode : std::uint8_t { per_minute, inverse_time };
 
+/// How closely the path is kept: G64 within the tolerance, G61 exactly and without a stop where it is smooth,
+/// G61.1 with a stop at the end of every motion.
+enum class PathMode : std::uint8_t { continuous, exact_path, exact_stop };
+
 /// One move. Positions are in work coordinates; the machine's are work + offset.
 struct Motion {
   MotionKind kind{};
   Plane plane{};  ///< the active one
   Turn turn{};    ///< arcs only
   FeedMode feed_mode{};
-  bool exact_stop{};  ///< G61 or G61.1 is active
+  PathMode path_mode{};
+  bool exact_stop{};  ///< G61, G61.1 or G64 P0 is active: a planner without smoothing stops at the end
   Position start{};
   Position end{};
   Position offset{};                 ///< G54..G59.3, G92 and tool length together
@@ -41,6 +46,8 @@ struct Motion {
   Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
   int extra_turns{};                 ///< whole turns more than the arc itself: P - 1
   std::optional<double> feed{};  ///< mm/s, or 1/s under inverse time; none for rapids and before the first F
+  std::optional<double> tolerance{};  ///< mm from the path under G64 P; none where the program gives none
+  double merge_tolerance{};           ///< mm from nearly collinear lines that are made one, under G64 Q
   int line{};
   int column{};  ///< of the R of an arc_radius, the first of I J K of an arc_center, else the first axis word
 

@@ -47,10 +47,10 @@ class Reader {
     for (std::size_t i = 0; i < axis_count(); ++i) current_[i] = start[i] - offset_[i];
   }
 
-  /// Reads one line (without its end; a carriage return is passed over) and writes its items in the order in
-  /// which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A line in
-  /// error writes nothing and changes nothing. After the end of the program (M2, M30, the second %) lines are
-  /// only counted.
+  /// Reads one line (without its end; carriage returns there are passed over) and writes its items in the
+  /// order in which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A
+  /// line in error writes nothing and changes nothing. After the end of the program (M2, M30, the second %)
+  /// lines are only counted.
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
     ++line_;
@@ -59,6 +59,24 @@ class Reader {
     auto end = read(text, std::move(out));
     if (!end) end.error().line = line_;
     return end;
+  }
+
+  /// Takes over what can be understood of a line that was in error, so that the lines behind it are read in
+  /// the state that they were written for: its modes, its end point, the end of the program. Motions that
+  /// begin at a place that is not known for sure do not come out.
+  void recover(std::string_view text) {
+    if (!readable_ || text.size() > max_line_length) return;
+    block_.salvage(text, 0, dialect_.pass_through);
+    const Letters axes = alphabet_.axes;
+    modal_ = after(block_, modal_, dialect_.g18);
+    if ((block_.lost() & bit('F')) != 0) modal_.needs_feed = false;
+    const bool bare = modal_.motion == no_code && (block_.letters() & axes) != 0;
+    if (bare || ((block_.lost() & bit('G')) != 0 && !block_.has(Group::motion))) modal_.motion = lost_code;
+    doubtful_ |= block_.lost() & axes;
+    if (block_.has(Group::non_modal) && block_.code(Group::non_modal) != code(4)) doubtful_ |= axes;
+    follow();
+    const Code stop = block_.code(Group::stop);
+    finished_ = finished_ || stop == code(2) || stop == code(30);
   }
 
   /// Whether the program has ended.
@@ -74,7 +92,7 @@ class Reader {
   template <class Out>
   Expected<Out, Diagnostic> read(std::string_view text, Out out) {
     if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
-    if (text.ends_with('\r')) text.remove_suffix(1);
+    while (text.ends_with('\r')) text.remove_suffix(1);
     if (text.size() > max_line_length)
       return tl::unexpected(
           Diagnostic{{ErrorCode::line_too_long, "line", static_cast<double>(text.size()), max_line_length},
@@ -100,7 +118,16 @@ class Reader {
     if (!motion) return tl::unexpected(motion.error());
     modal_ = modal;
     words_seen_ = true;
-    return execute(*motion, std::move(out));
+    out = execute(*motion, std::move(out));
+    if (modal_.motion == lost_code) follow();
+    if (doubtful_ != 0 && !modal_.incremental) doubtful_ &= ~block_.letters();
+    return out;
+  }
+
+  /// Goes where the axis words lead, in silence.
+  void follow() {
+    if (!modal_.incremental) doubtful_ &= ~block_.letters();
+    arrive(target());
   }
 
   /// The first % stands before the program, the next one ends it.
@@ -221,7 +248,10 @@ class Reader {
     Motion motion;
     motion.plane = modal_.plane;
     motion.feed_mode = modal_.feed_mode;
-    motion.exact_stop = modal_.exact_stop;
+    motion.path_mode = modal_.path_mode;
+    motion.exact_stop = modal_.path_mode != PathMode::continuous;
+    motion.tolerance = modal_.tolerance;
+    motion.merge_tolerance = modal_.merge_tolerance;
     motion.start = current_;
     motion.end = end;
     motion.offset = offset_;
@@ -243,7 +273,7 @@ class Reader {
     motion.column = block_.first_column(alphabet_.axes);
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
     arrive(end);
-    emit(motion);
+    if (doubtful_ == 0) emit(motion);
   }
 
   template <class Emit>
@@ -268,7 +298,7 @@ class Reader {
       motion.column = block_.first_column(bits("IJK"));
     }
     arrive(motion.end);
-    emit(motion);
+    if (doubtful_ == 0) emit(motion);
   }
 
   /// G28, G30: by way of the point that the axis words name, then these axes (all, if none is named) go home.
@@ -356,6 +386,7 @@ class Reader {
   std::size_t work_system_{};
   int selected_tool_{};
   int loaded_tool_{};
+  Letters doubtful_{};  ///< axes whose place a line in error left open
   int line_{};
   bool percent_seen_{};
   bool words_seen_{};

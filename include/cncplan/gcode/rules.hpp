@@ -36,6 +36,9 @@ struct Alphabet {
     has_radius = (axes & bit('R')) == 0;
     has_arcs = in_order == 3;
   }
+
+  /// Letters that some code uses.
+  [[nodiscard]] Letters known() const { return bits("FHIJKNPQST") | axes | (has_radius ? bit('R') : 0); }
 };
 
 [[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }
@@ -43,13 +46,29 @@ struct Alphabet {
 /// Letter of the centre word along an axis of space: I, J or K.
 [[nodiscard]] constexpr char center_letter(int axis) { return "IJK"[axis]; }
 
+/// G61, G61.1 or G64, in the units of the line. G64 P0 is G61.
+inline void control_path(const Block& block, Modal& modal) {
+  const Code control = block.code(Group::path_control);
+  modal.tolerance.reset();
+  modal.merge_tolerance = 0.0;
+  modal.path_mode = control == code(61) ? PathMode::exact_path : PathMode::exact_stop;
+  if (control != code(64)) return;
+  if (block.has('P')) modal.tolerance = block.number('P') * modal.millimetres_per_unit;
+  if (block.has('Q')) modal.merge_tolerance = block.number('Q') * modal.millimetres_per_unit;
+  modal.path_mode = PathMode::continuous;
+  if (modal.tolerance != 0.0) return;
+  modal.path_mode = PathMode::exact_path;
+  modal.tolerance.reset();
+  modal.merge_tolerance = 0.0;
+}
+
 /// The modal state that holds on a line and after it.
 [[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
   if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
   if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
   if (block.has(Group::arc_distance))
     modal.incremental_center = block.code(Group::arc_distance) == code(91.1);
-  if (block.has(Group::path_control)) modal.exact_stop = block.code(Group::path_control) != code(64);
+  if (block.has(Group::path_control)) control_path(block, modal);
   if (block.has(Group::motion))
     modal.motion = block.code(Group::motion) == code(80) ? no_code : block.code(Group::motion);
   if (block.has(Group::plane)) {
@@ -137,14 +156,13 @@ using Check = Expected<void, Diagnostic>;
 /// What becomes of words that nothing has used: they go with a passed-through code, or they are errors. Axis
 /// words and feeds are never for others: what moves the machine is read here or refused.
 [[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
-  const Letters known = bits("FHIJKNPQST") | alphabet.axes | (alphabet.has_radius ? bit('R') : 0);
   for (char letter = 'A'; letter <= 'Z'; ++letter) {
     if ((unused & bit(letter)) == 0) continue;
     if (block.passes_code() && (bit(letter) & (alphabet.axes | bit('F'))) == 0) {
       if (auto ok = block.pass(letter); !ok) return ok;
     } else if (block.column(letter) ==
                block.first_column(unused)) {  // the first in the text is the one to report
-      const bool meant = (known & bit(letter)) != 0;
+      const bool meant = (alphabet.known() & bit(letter)) != 0;
       return tl::unexpected(block.error(meant ? ErrorCode::unused_word : ErrorCode::not_supported, letter));
     }
   }
@@ -168,6 +186,9 @@ using Check = Expected<void, Diagnostic>;
   const bool sets_length = block.code(Group::tool_length) == code(43.1);
   const bool takes_axes = homes || shifts || sets_length;
 
+  // What is said under a code that was not understood belongs to it.
+  if (modal.motion == lost_code && requested == no_code && !takes_axes) return no_code;
+
   Code motion = no_code;
   if (takes_axes) {  // these use the axis words, so nothing else on the line can; G0 says no more than G28
                      // does
@@ -177,9 +198,17 @@ using Check = Expected<void, Diagnostic>;
     if (requested != no_code && requested != code(80) && !(homes && requested == code(0)))
       return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
                       block.code(taker) / 10.0);
-    if (!homes && axis_words == 0) return missing("axis", block.column(taker));
+    if (!homes && axis_words == 0) {  // an unknown letter was meant to be the axis
+      const Letters unknown = block.letters() & ~alphabet.known();
+      if (unknown != 0 && !block.passes_code())
+        if (auto ok = settle(block, unknown, alphabet); !ok) return tl::unexpected(ok.error());
+      return missing("axis", block.column(taker));
+    }
   } else if (requested == no_code && axis_words != 0 && modal.motion == no_code) {
     return missing("G0, G1, G2 or G3", block.first_column(axis_words));
+  } else if (const Word* passed = block.passed_g(); passed && requested == no_code && axis_words != 0) {
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
   } else if (requested != no_code || axis_words != 0 || (center_words != 0 && is_arc(modal.motion))) {
     motion = modal.motion;
   }

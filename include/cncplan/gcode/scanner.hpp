@@ -53,6 +53,21 @@ class Scanner {
     return {};
   }
 
+  /// The letter behind which something else than a number stands, as a set; empty for none.
+  [[nodiscard]] Letters letter_before() const {
+    const char* before = at_;
+    while (before != begin_ && (before[-1] == ' ' || before[-1] == '\t')) --before;
+    const char letter = before == begin_ ? '\0' : upper(before[-1]);
+    return letter >= 'A' && letter <= 'Z' ? bit(letter) : 0;
+  }
+
+  /// Passes a character in which no word begins; false at the end.
+  bool skip() {
+    if (at_ == end_) return false;
+    ++at_;
+    return true;
+  }
+
   /// The character to come, upper case; 0 at the end.
   [[nodiscard]] char peek() const { return at_ == end_ ? '\0' : upper(*at_); }
 
@@ -103,7 +118,10 @@ class Scanner {
 
   [[nodiscard]] Diagnostic no_number(char letter, int column) const {
     if (letter == 'O') return at(ErrorCode::not_supported, "O-word", column);
-    return unsupported_or(ErrorCode::missing_number, name(letter), column);
+    const char* follows = at_;
+    while (follows != end_ && (*follows == '+' || *follows == '-' || *follows == '.')) ++follows;
+    return unsupported_or(ErrorCode::missing_number, name(letter), column,
+                          follows == end_ ? 0.0 : static_cast<unsigned char>(*follows));
   }
 
   const char* begin_;

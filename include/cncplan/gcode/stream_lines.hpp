@@ -12,8 +12,8 @@
 
 namespace cncplan::gcode {
 
-/// The lines of a stream, read in pieces into a buffer of fixed size. A line that does not fit is cut there:
-/// it is longer than the reader accepts anyway, and the reader says so.
+/// The lines of a stream, as `TextLines` has them, read in pieces into a buffer of fixed size. A line that
+/// does not fit is cut there: it is longer than the reader accepts anyway, and the reader says so.
 class StreamLines {
  public:
   explicit StreamLines(std::istream& stream) : stream_(stream) {}
@@ -23,18 +23,18 @@ class StreamLines {
 
   [[nodiscard]] std::optional<std::string_view> next() {
     for (;;) {
-      const char* const first = buffer_.data() + begin_;
-      const auto* const end = static_cast<const char*>(std::memchr(first, '\n', end_ - begin_));
-      if (end == nullptr && !stream_at_end_ && end_ - begin_ < buffer_.size()) {
+      const std::string_view text(buffer_.data() + begin_, end_ - begin_);
+      const std::string_view line = text.substr(0, detail::find_line_end(text));
+      if (text.size() < line.size() + longest_line_end && !stream_at_end_ && text.size() < buffer_.size()) {
         refill();
         continue;
       }
-      if (end == nullptr && begin_ == end_) return std::nullopt;
-      const std::size_t length = end == nullptr ? end_ - begin_ : static_cast<std::size_t>(end - first);
-      begin_ = end == nullptr ? end_ : begin_ + length + 1;
+      if (text.empty()) return std::nullopt;
+      const std::size_t line_end = detail::line_end_length(text.substr(line.size()));
+      begin_ += line.size() + line_end;
       const bool remainder = cut_;
-      cut_ = end == nullptr && !stream_at_end_;
-      if (!remainder) return std::string_view(first, length);
+      cut_ = line_end == 0 && !stream_at_end_;
+      if (!remainder) return line;
     }
   }
 
@@ -47,6 +47,8 @@ class StreamLines {
     end_ += static_cast<std::size_t>(stream_.gcount());
     stream_at_end_ = !stream_;
   }
+
+  static constexpr std::size_t longest_line_end = 3;
 
   std::istream& stream_;
   std::size_t begin_{};

@@ -37,7 +37,8 @@ using Letters = std::uint32_t;
   return set;
 }
 
-/// The letter (or other printable character) as text that lives for ever, as `Error::field` wants it.
+/// The letter (or other printable character) as text that lives for ever, as `Error::field` wants it; "byte"
+/// for those that have no picture.
 [[nodiscard]] constexpr std::string_view name(char character) {
   constexpr std::string_view printable =
       " !\"#$%&'()*+,-./0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`abcdefghijklmnopqrstuvwxyz{|}~";

@@ -152,6 +152,8 @@ class Writer {
     for (const double coordinate : motion.center)
       if (auto ok = number(coordinate, "centre"); !ok) return ok;
     if (auto ok = number(motion.radius, "R"); !ok) return ok;
+    if (auto ok = number(motion.tolerance.value_or(0.0), "tolerance"); !ok) return ok;
+    if (auto ok = number(motion.merge_tolerance, "merge tolerance"); !ok) return ok;
     return number(motion.feed.value_or(0.0) * 60.0, "F");
   }
 
@@ -201,10 +203,7 @@ class Writer {
     const bool arc = motion.kind == MotionKind::arc_radius || motion.kind == MotionKind::arc_center;
     if (!arc && motion.start == motion.end) return;
     if (motion.offset != offset_) shift(motion.offset, pen);
-    if (std::exchange(modal_.exact_stop, motion.exact_stop) != motion.exact_stop) {
-      put(pen, "G", motion.exact_stop ? 61 : 64);
-      end_line(pen);  // a P on the line of G64 would be its own
-    }
+    control_path(motion, pen);
     if (std::exchange(modal_.feed_mode, motion.feed_mode) != motion.feed_mode) {
       put(pen, "G", motion.feed_mode == FeedMode::inverse_time ? 93 : 94);
       modal_.feed.reset();
@@ -229,6 +228,23 @@ class Writer {
     if (arc && motion.extra_turns > 0) put(pen, "P", motion.extra_turns + 1);
     current_ = motion.end;
     for (std::size_t i = 0; i < axis_count(); ++i) machine_[i] = current_[i] + offset_[i];
+  }
+
+  template <class Out>
+  void control_path(const Motion& motion, Pen<Out>& pen) {
+    if (modal_.path_mode == motion.path_mode && modal_.tolerance == motion.tolerance &&
+        modal_.merge_tolerance == motion.merge_tolerance)
+      return;
+    modal_.path_mode = motion.path_mode;
+    modal_.tolerance = motion.tolerance;
+    modal_.merge_tolerance = motion.merge_tolerance;
+    put(pen, "G",
+        motion.path_mode == PathMode::continuous   ? 64
+        : motion.path_mode == PathMode::exact_path ? 61
+                                                   : 61.1);
+    if (motion.tolerance) put(pen, "P", *motion.tolerance);
+    if (motion.merge_tolerance != 0.0) put(pen, "Q", motion.merge_tolerance);
+    end_line(pen);  // a P of the motion would be G64's
   }
 
   /// The axis word that reads back to `value` when `base` is added to it.

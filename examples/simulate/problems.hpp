@@ -1,0 +1,50 @@
+// What is wrong with a program: all of it, as far as a limit.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cncplan/cncplan.hpp"
+
+namespace simulate {
+
+/// A place in the text and what is wrong there. Problems of one kind differ in place and figures only.
+struct Problem {
+  int line{};
+  int column{};
+  std::string kind;
+  std::string text;
+};
+
+class Problems {
+ public:
+  Problems(std::string file, std::size_t most) : file_(std::move(file)), most_(most) {}
+
+  void add(Problem problem) {
+    if (has_room()) found_.push_back(std::move(problem));
+  }
+  void add(const cncplan::gcode::Diagnostic& diagnostic);
+  /// A motion that has no path; an arc by its centre with its radii, and whether its I J K fit when they are
+  /// read the other way.
+  void add(const cncplan::gcode::Motion& motion, const cncplan::Error& error);
+
+  [[nodiscard]] const std::vector<Problem>& found() const { return found_; }
+  /// Whether another one is taken.
+  [[nodiscard]] bool has_room() const { return found_.size() < most_; }
+
+  /// Throws `Failure` if there is a problem: the last one; the others go to standard error before it, each as
+  /// FILE:LINE:COLUMN: error: TEXT.
+  void refuse() const;
+
+ private:
+  std::string file_;
+  std::size_t most_;
+  std::vector<Problem> found_;
+};
+
+/// The kinds in order of their first lines, with how many there are and where: a table, and as JSON.
+[[nodiscard]] std::string kinds_table(const Problems& problems);
+[[nodiscard]] std::string kinds_json(const Problems& problems, std::size_t lines, std::size_t warnings);
+
+}  // namespace simulate
