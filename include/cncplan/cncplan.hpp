@@ -101,6 +101,7 @@
 #include "cncplan/plan/player/ramp_ahead.hpp"
 #include "cncplan/plan/player/road.hpp"
 #include "cncplan/plan/read_blocks.hpp"
+#include "cncplan/plan/reversal.hpp"
 #include "cncplan/plan/sampler.hpp"
 #include "cncplan/plan/span.hpp"
 #include "cncplan/plan/span_planner.hpp"
