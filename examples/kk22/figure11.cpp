@@ -82,9 +82,9 @@ void figure11(support::Gnuplot* plot) {
   fmt::print("\n");
 
   if (plot == nullptr) return;
-  (*plot)(
-      "set terminal svg size 800,420 background 'white'\nset output 'kk22_figure11.svg'\nset key top\n"
-      "set xrange [-0.05:1.2]\nset multiplot layout 2,1\nset ylabel 'mm/s^2'\n");
+  (*plot)("set terminal svg size 800,420 background 'white'\n");
+  plot->picture("kk22_figure11.svg");
+  (*plot)("set key top\nset xrange [-0.05:1.2]\nset multiplot layout 2,1\nset ylabel 'mm/s^2'\n");
   for (const char* name : {"profile", "constant"})
     (*plot)(
         "set xlabel '{0}'\nset title '{1}'\nplot ${2} using 1:2 with lines title 'X', ${2} using 1:3 with "

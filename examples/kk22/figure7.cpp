@@ -65,9 +65,9 @@ void figure7(support::Gnuplot* plot) {
   if (plot == nullptr) return;
   put_samples(*plot, "published", blocks, published);
   put_samples(*plot, "ours", blocks, ours);
-  (*plot)(
-      "set terminal svg size 900,600 background 'white'\nset output 'kk22_figure7.svg'\nset key bottom\n");
-  (*plot)("set multiplot layout 3,1\n");
+  (*plot)("set terminal svg size 900,600 background 'white'\n");
+  plot->picture("kk22_figure7.svg");
+  (*plot)("set key bottom\nset multiplot layout 3,1\n");
   int column = 2;
   for (const char* label : {"speed, mm/s", "acceleration, mm/s^2", "jerk, mm/s^3"}) {
     (*plot)("set xlabel '{}'\nset ylabel '{}'\n", column == 4 ? "t, s" : "", label);

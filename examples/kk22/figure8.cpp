@@ -69,9 +69,10 @@ void figure8(support::Gnuplot* plot) {
       (*plot)("{:.4g} {:.4g}\n", 180.0 * i++ / parts, 1e3 * error);
     (*plot)("EOD\n");
   }
+  (*plot)("set terminal svg size 800,420 background 'white'\n");
+  plot->picture("kk22_figure8.svg");
   (*plot)(
-      "set terminal svg size 800,420 background 'white'\nset output 'kk22_figure8.svg'\nset key top\n"
-      "set xlabel 'angle, degrees'\nset ylabel 'contour error, um'\n"
+      "set key top\nset xlabel 'angle, degrees'\nset ylabel 'contour error, um'\n"
       "plot $every30 with lines lw 2 title 'B-spline, points every 30 deg', $every15 with lines lw 2 title "
       "'every 15 deg', 0 with lines lw 2 title 'arc'\n");
 }

@@ -135,7 +135,7 @@ int run(const Options& options, const Machine& machine, const Program& program, 
   }
 
   files.finish();
-  if (options.plot) draw(*options.plot, machine, drawn);
+  if (options.plot) draw(*options.plot, options.quiet, machine, drawn);
   files.commit();
   if (options.json)
     support::print(json_summary(program, plan, options, machine, measures));

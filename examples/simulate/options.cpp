@@ -74,7 +74,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                                 {"--motions", options.motions},
                                 {"--blocks", options.blocks},
                                 {"--samples", options.samples},
-                                {"--steps", options.steps}});
+                                {"--steps", options.steps},
+                                {"--plot", options.plot}});
   return options;
 }
 

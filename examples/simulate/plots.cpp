@@ -4,8 +4,8 @@
 
 namespace simulate {
 
-void draw(const std::string& folder, const Machine& machine, const std::vector<Sample>& samples) {
-  auto plot = support::Gnuplot::start(folder);
+void draw(const std::string& folder, bool quiet, const Machine& machine, const std::vector<Sample>& samples) {
+  auto plot = support::Gnuplot::start(folder, quiet);
   if (!plot) return;
   (*plot)("$samples << EOD\n");
   for (const Sample& s : samples) {
@@ -14,12 +14,14 @@ void draw(const std::string& folder, const Machine& machine, const std::vector<S
     support::put_axis_shares(*plot, machine, s.velocity, s.acceleration);
   }
   (*plot)("EOD\n");
+  plot->picture("path.svg");
   (*plot)(
-      "set output 'path.svg'\nset size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
+      "set size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
       "set cblabel 'speed mm/s'\nset palette defined (0 '#2166ac', 0.5 '#66bd63', 1 '#d73027')\n"
       "plot $samples using 2:3:5 with lines linewidth 2 palette\n");
+  plot->picture("profile.svg");
   (*plot)(
-      "set output 'profile.svg'\nset size noratio\nset multiplot layout 3,1\nset xlabel 't s'\nunset "
+      "set size noratio\nset multiplot layout 3,1\nset xlabel 't s'\nunset "
       "colorbox\n");
   struct Curve {
     const char* label;

@@ -9,7 +9,8 @@
 namespace simulate {
 
 /// Draws path.svg and profile.svg into `folder`, and axes.svg where the machine limits all of its axes. Says
-/// so on standard error where there is no gnuplot. Throws `Failure` where gnuplot fails.
-void draw(const std::string& folder, const Machine& machine, const std::vector<Sample>& samples);
+/// so on standard error where there is no gnuplot. `quiet`: without gnuplot's warnings. Throws `Failure`
+/// where gnuplot fails or a picture cannot be written.
+void draw(const std::string& folder, bool quiet, const Machine& machine, const std::vector<Sample>& samples);
 
 }  // namespace simulate

@@ -67,6 +67,8 @@ void refuse_shared_files(std::initializer_list<NamedFile> files) {
   std::vector<std::pair<std::string_view, std::filesystem::path>> seen;
   for (const auto& [option, file] : files) {
     std::error_code ignored;
+    if (file && file->empty())
+      throw Failure(Exit::bad_input, fmt::format("{}: the file name is empty", option));
     if (!file || std::filesystem::is_other(*file, ignored)) continue;
     const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(*file), ignored);
     for (const auto& [other, used] : seen)

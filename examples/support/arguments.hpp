@@ -37,7 +37,7 @@ struct NamedFile {
   std::optional<std::string> file;
 };
 
-/// No output may overwrite an input or another output; throws `Failure` where one would.
+/// No output may overwrite an input or another output, and no name is empty; throws `Failure` where one is.
 void refuse_shared_files(std::initializer_list<NamedFile> files);
 
 }  // namespace support

@@ -34,8 +34,9 @@ void put_axis_shares(Gnuplot& plot, const Machine& machine, const Vector& veloci
 inline void draw_axes(Gnuplot& plot, const Machine& machine, int column) {
   if (!limits_all(machine)) return;
   const std::size_t count = machine.axes.size();
+  plot.picture("axes.svg");
   plot(
-      "set output 'axes.svg'\nset size noratio\nset multiplot layout {},2\nset ylabel ''\n"
+      "set size noratio\nset multiplot layout {},2\nset ylabel ''\n"
       "set yrange [-1.1:1.1]\nset arrow 1 from graph 0,first 1 to graph 1,first 1 nohead linecolor "
       "'#d73027'\nset arrow 2 from graph 0,first -1 to graph 1,first -1 nohead linecolor '#d73027'\n",
       count);

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "support/failure.hpp"
@@ -17,7 +19,9 @@ namespace support {
 /// Writes to standard output, or to standard error. Throws `Failure` where standard output takes no more.
 inline void print(std::string_view text, std::FILE* to = stdout) {
   const bool written = std::fwrite(text.data(), 1, text.size(), to) == text.size() && std::fflush(to) == 0;
-  if (!written && to == stdout) throw Failure(Exit::other, "standard output cannot be written");
+  if (!written && to == stdout)
+    throw Failure(Exit::other,
+                  "standard output cannot be written: " + std::generic_category().message(errno));
 }
 
 /// One line on standard error, whatever it quotes.

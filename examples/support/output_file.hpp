@@ -3,6 +3,10 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,6 +15,7 @@
 #include <streambuf>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "support/failure.hpp"
@@ -26,10 +31,11 @@ class FileBuffer : public std::streambuf {
 
   [[nodiscard]] bool is_open() const { return file_ != nullptr; }
 
-  /// True if all that was put has been written.
-  [[nodiscard]] bool close() {
+  /// 0 if all that was put has been written, else the error number of what went wrong first.
+  [[nodiscard]] int close() {
     sync();
-    return std::fclose(file_.release()) == 0 && good_;
+    if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
+    return error_;
   }
 
  protected:
@@ -40,15 +46,60 @@ class FileBuffer : public std::streambuf {
   }
   int sync() override {
     const auto count = static_cast<std::size_t>(pptr() - pbase());
-    good_ = std::fwrite(pbase(), 1, count, file_.get()) == count && good_;
+    if (std::fwrite(pbase(), 1, count, file_.get()) != count && error_ == 0) error_ = errno;
     setp(memory_.data(), memory_.data() + memory_.size());
-    return good_ ? 0 : -1;
+    return error_ == 0 ? 0 : -1;
   }
 
  private:
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   std::vector<char> memory_ = std::vector<char>(std::size_t{1} << 16);
-  bool good_ = true;
+  int error_ = 0;
+};
+
+/// The name of a file that is removed with this object, or where a signal ends the program. No more than 32
+/// at once are removed by signals.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(std::string path) : path_(std::move(path)) {
+    [[maybe_unused]] static const bool armed = arm();
+    for (std::atomic<const char*>& name : names) {
+      const char* none = nullptr;
+      if (name.compare_exchange_strong(none, path_.c_str())) return;
+    }
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile() {
+    for (std::atomic<const char*>& name : names)
+      if (name == path_.c_str()) name = nullptr;
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  // A handler may do little: to remove files and to end as without it is allowed.
+  static void clean_up(int signal) {
+    for (const std::atomic<const char*>& name : names)
+      if (const char* const file = name) ::unlink(file);
+    ::raise(signal);
+  }
+  static bool arm() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      struct sigaction action {};
+      if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;  // nohup
+      action.sa_handler = &clean_up;
+      action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+      ::sigaction(signal, &action, nullptr);
+    }
+    return true;
+  }
+
+  static inline std::array<std::atomic<const char*>, 32> names{};
+
+  std::string path_;
 };
 
 /// Writes beside the wanted file, and takes its place on `commit`; without that, nothing stays behind. What
@@ -60,37 +111,35 @@ class OutputFile {
     const auto status = std::filesystem::symlink_status(path_, ignored);
     const bool exists = std::filesystem::exists(status);
     if (std::filesystem::is_directory(path_, ignored)) throw Failure(Exit::other, path_ + ": is a directory");
-    if (exists && ::access(path_.c_str(), W_OK) != 0) refuse();
-    if (!exists || std::filesystem::is_regular_file(status)) part_ = path_ + ".part";
-    buffer_ = std::make_unique<FileBuffer>(part_.empty() ? path_ : part_);
-    if (!buffer_->is_open()) refuse();
+    if (exists && ::access(path_.c_str(), W_OK) != 0) refuse(errno);
+    if (!exists || std::filesystem::is_regular_file(status)) part_.emplace(path_ + ".part");
+    buffer_ = std::make_unique<FileBuffer>(part_ ? part_->path() : path_);
+    if (!buffer_->is_open()) refuse(errno);
     stream_.rdbuf(buffer_.get());
   }
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  ~OutputFile() {
-    std::error_code ignored;
-    if (!part_.empty()) std::filesystem::remove(part_, ignored);
-  }
 
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
   /// Ends the writing. Throws where something could not be written, while the wanted file is as it was.
   void finish() {
-    if (!buffer_->close()) refuse();
+    if (const int error = buffer_->close()) refuse(error);
   }
 
   void commit() {
     std::error_code error;
-    if (!part_.empty()) std::filesystem::rename(part_, path_, error);
-    if (error) refuse();
+    if (part_) std::filesystem::rename(part_->path(), path_, error);
+    if (error) refuse(error.value());
   }
 
  private:
-  [[noreturn]] void refuse() const { throw Failure(Exit::other, path_ + ": cannot be written"); }
+  [[noreturn]] void refuse(int error) const {
+    throw Failure(Exit::other, path_ + ": cannot be written: " + std::generic_category().message(error));
+  }
 
   std::string path_;
-  std::string part_;  ///< none for what is written as it stands
+  std::optional<UnfinishedFile> part_;  ///< none for what is written as it stands
   std::unique_ptr<FileBuffer> buffer_;
   std::ostream stream_{nullptr};
 };

@@ -58,19 +58,22 @@ void draw(const std::string& folder, const kinematics::Sidewall& sidewall, const
   write_wall(*plot, sidewall);
   write_tools(*plot, conversion, sidewall.tool_length());
   write_samples(*plot, machine, sidewall.tool_length(), samples);
+  plot->picture("profile.svg");
   (*plot)(
-      "set output 'profile.svg'\nset size ratio -1\nset xlabel 'R mm'\nset ylabel 'Z mm'\n"
+      "set size ratio -1\nset xlabel 'R mm'\nset ylabel 'Z mm'\n"
       "plot $wall with lines linewidth 2 linecolor '#333333', "
       "$tools with vectors filled head linecolor '#2166ac', "
       "$tools using 1:2 with points pointtype 7 pointsize 0.4 linecolor '#d73027'\n");
   // the pen is down where the tip is on or below the surface
+  plot->picture("unrolled.svg");
   (*plot)(
-      "set output 'unrolled.svg'\nset xlabel 'angle times radius, mm'\nset ylabel 'length along the profile, "
+      "set xlabel 'angle times radius, mm'\nset ylabel 'length along the profile, "
       "mm'\nset size ratio -1\n"
       "plot $samples using (atan2($3,$2)*sqrt($5*$5+$6*$6)):($4>0 ? NaN : sqrt($2*$2+$3*$3)) with dots "
       "linewidth 2 linecolor '#2166ac'\n");
+  plot->picture("top.svg");
   (*plot)(
-      "set output 'top.svg'\nset size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
+      "set size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
       "plot $samples using ($4>0 ? $5 : NaN):6 with lines linecolor '#cccccc', "
       "$samples using ($4>0 ? NaN : $5):6 with lines linewidth 2 linecolor '#d73027'\n");
   support::draw_axes(*plot, machine, 8);

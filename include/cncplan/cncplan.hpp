@@ -115,6 +115,7 @@
 #include "cncplan/plan/player/road.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/read_blocks.hpp"
+#include "cncplan/plan/reversal.hpp"
 #include "cncplan/plan/sampler.hpp"
 #include "cncplan/plan/set_point.hpp"
 #include "cncplan/plan/solver_cache.hpp"

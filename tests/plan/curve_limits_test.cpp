@@ -38,7 +38,8 @@ TEST_CASE("shared limits keep both vector sums at every speed, acceleration and 
   for (int draws = 0; draws < 400; ++draws) {
     const Limits whole = draw(random);
     const double k = random.log_uniform(1e-4, 1e3);
-    const plan::Bend bend{k, random.coin() ? 0.0 : k * k * random.log_uniform(1e-6, 1e3)};
+    const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e4) / k;
+    const plan::Bend bend{k, random.coin() ? 0.0 : k * k * random.log_uniform(1e-6, 1e3), length};
     const Limits along = plan::ShareLimits{}(bend, whole);
     REQUIRE(along.velocity <= whole.velocity);
     for (int iv = 0; iv <= 16; ++iv)
@@ -72,6 +73,37 @@ TEST_CASE("what sharing leaves on the table") {
   CHECK(slowest == Approx(std::cbrt(0.5)).margin(1e-12));  // 20.6 % slower where the jerk binds
   CHECK(least_jerk > 0.13);
   CHECK(least_jerk < 0.14);
+}
+
+TEST_CASE("over a known length limits are shared so that it takes less time, and never more") {
+  const auto rest_to_rest = [](const Limits& l, double length) {
+    const auto ramp = [&](double v) {
+      return v * l.jerk >= l.acceleration * l.acceleration ? v / l.acceleration + l.acceleration / l.jerk
+                                                           : 2.0 * std::sqrt(v / l.jerk);
+    };
+    double low = 0.0, high = l.velocity;
+    if (high * ramp(high) <= length) return length / high + ramp(high);
+    for (int i = 0; i < 60; ++i) {
+      const double v = (low + high) / 2.0;
+      (v * ramp(v) <= length ? low : high) = v;
+    }
+    return 2.0 * ramp(low);
+  };
+  const Limits kk22{30, 1000, 10000};
+  const auto gain = [&](double radius, double turns) {
+    const double length = 2.0 * 3.141592653589793 * radius * turns;
+    return 1.0 - rest_to_rest(plan::ShareLimits{}({1.0 / radius, 0.0, length}, kk22), length) /
+                     rest_to_rest(plan::ShareLimits{}({1.0 / radius}, kk22), length);
+  };
+  CHECK(gain(1, 1) > 0.05);
+  CHECK(gain(1, 10) > 0.09);
+  CHECK(gain(1, 40) > 0.14);
+  test::Random random;
+  for (int draws = 0; draws < 2000; ++draws) {
+    const double radius = random.log_uniform(0.1, 100), turns = random.log_uniform(0.05, 100);
+    INFO(radius << ' ' << turns);
+    CHECK(gain(radius, turns) >= -1e-12);
+  }
 }
 
 TEST_CASE("speed alone: v^2/R and v^3/R^2 reach the limits and no more") {

@@ -121,6 +121,28 @@ TEST_CASE("option --plot draws, or says why not") {
   }
 }
 
+TEST_CASE("a picture that cannot be written: exit code 1, the reason, and no other output") {
+  const test::Folder folder;
+  if (!std::filesystem::is_character_file("/dev/full") || std::system("command -v gnuplot >/dev/null") != 0) {
+    WARN("SKIPPED: there is no /dev/full or no gnuplot");
+    return;
+  }
+  std::filesystem::create_directory(folder / "pictures");
+  std::filesystem::create_symlink("/dev/full", folder / "pictures/path.svg");
+  const auto run = folder.run(test::example("pocket") + " --quiet --plot pictures --samples s.csv");
+  CHECK(run.exit == 1);
+  CHECK(run.err == "error: pictures/path.svg: cannot be written: No space left on device\n");
+  CHECK_FALSE(std::filesystem::exists(folder / "s.csv"));
+  CHECK_FALSE(std::filesystem::exists(folder / "pictures/profile.svg"));
+}
+
+TEST_CASE("gnuplot's warnings are not heard when quiet") {
+  const test::Folder folder;
+  const auto run = folder.run_text("G4 P1\n", "--quiet --plot pictures");  // a range of nothing
+  CHECK(run.exit == 0);
+  CHECK((run.err.empty() || run.err == "no pictures: gnuplot is not installed\n"));
+}
+
 TEST_CASE("option --help and --version say what they promise and succeed") {
   const test::Folder folder;
   const auto help = folder.run("--help");

@@ -140,6 +140,9 @@ TEST_CASE("bad arguments: exit code 2 and the option's name") {
                                        {"other.ngc", "other.ngc"},
                                        {"--samples part.ngc", "--samples"},
                                        {"--samples a.csv --steps ./a.csv", "--steps"},
+                                       {"--samples ''", "--samples: the file name is empty"},
+                                       {"--machine ''", "--machine: the file name is empty"},
+                                       {"--plot ''", "--plot: the file name is empty"},
                                        {"--machine none.toml", "none.toml"},
                                        {"--machine .", "error"}}) {
     const std::string line = refused(folder, std::string("part.ngc ") + options, 2);
@@ -175,9 +178,27 @@ TEST_CASE("a full disk is noticed, whichever output meets it") {
   const test::Folder folder;
   for (const char* option : {"--motions", "--blocks", "--samples", "--steps"}) {
     const std::string arguments = test::example("pocket") + " --quiet " + option + " /dev/full";
-    CHECK(refused(folder, arguments, 1) == "error: /dev/full: cannot be written");
+    CHECK(refused(folder, arguments, 1) == "error: /dev/full: cannot be written: No space left on device");
   }
   CHECK(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_CASE("limits that are too small to plan with are bad input") {
+  const test::Folder folder;
+  CHECK(
+      refused(folder, test::example("pocket") + " --quiet --amax 1e-300", 2).starts_with("error: planning"));
+}
+
+TEST_CASE("a signal leaves no unfinished file") {
+  const test::Folder folder;
+  folder.write("part.ngc", "G1 X10000 F60\n");
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    INFO(signal);
+    const std::string command = "cd " + test::quoted((folder / ".").string()) + " && timeout -s " + signal +
+                                " 0.5 " CNCPLAN_SIMULATE " part.ngc --quiet --samples s.csv --steps x.vcd";
+    CHECK(WEXITSTATUS(std::system(command.c_str())) == 124);
+    CHECK(folder.files() == std::set<std::string>{"part.ngc"});
+  }
 }
 
 TEST_CASE("links and devices are written as they stand") {

@@ -68,9 +68,14 @@ std::vector<Found> brute_force(const std::vector<Phase>& phases, long double amp
   std::int64_t count = 0;
   for (int k = 1; k <= samples; ++k) {
     const long double from = end * (k - 1) / samples, to = end * k / samples, q = position(to);
-    while (std::abs(q - static_cast<long double>(count)) > 0.5L) {
+    for (;;) {
       const int direction = q > static_cast<long double>(count) ? 1 : -1;
-      const long double boundary = static_cast<long double>(count) + direction * 0.5L;
+      long double boundary = static_cast<long double>(count) + direction * 0.5L;
+      if (!found.empty() && found.back().direction == -direction) {  // the first one back is a bit late
+        const long double turned = -direction * amplitude * static_cast<long double>(per_unit);
+        boundary = direction * std::max(direction * boundary, direction * turned + 1e-4L);
+      }
+      if ((q - boundary) * direction <= 0.0L) break;
       long double low = from, high = to;
       for (int i = 0; i < 70; ++i) {
         const long double middle = (low + high) / 2;
@@ -188,6 +193,43 @@ TEST_CASE("a straight cut on a machine that swings and turns: radius and angle s
   CHECK(worst < 1e-9);
   CHECK(r == step::count_at(table.position(20.0)(0) * per_unit[0]));
   CHECK(c == step::count_at(table.position(20.0)(1) * per_unit[1]));
+}
+
+TEST_CASE("an axis that turns round on the border of a step goes back by the hysteresis first") {
+  const Straight<double> there{0.0, 2.5 + 1e-12}, back{2.5 + 1e-12, 0.0};
+  const auto phases = test::steady(2.5, 1.0);
+  step::StepCursor forward(there, step::PhaseClock(phases), 0, 1.0, 0);
+  REQUIRE(all(forward).size() == 3);
+  const auto first_back = [&](const step::Reversal<double>& reversal) {
+    step::StepCursor cursor(back, step::PhaseClock(phases), 0, 1.0, forward.count(), false, reversal);
+    const auto edges = all(cursor);
+    REQUIRE(edges.size() == 3);
+    CHECK(cursor.count() == 0);
+    CHECK(edges[1].time == Approx(1.0).epsilon(1e-9));
+    return edges[0].time;
+  };
+  CHECK(first_back({}) == Approx(0.0).margin(1e-9));  // it did not go forward before
+  CHECK(first_back({1}) == Approx(1e-4).epsilon(1e-6));
+  CHECK(first_back({1, 0.25}) == Approx(0.25).epsilon(1e-6));
+  // a way back that ends before the hysteresis does, behind the border
+  const Straight<double> hardly{2.5 + 1e-12, 2.5 - 1e-6};
+  step::StepCursor cursor(hardly, step::PhaseClock(phases), 0, 1.0, 3, false, step::Reversal<double>{1});
+  const auto edges = all(cursor);
+  REQUIRE(edges.size() == 1);
+  CHECK(edges[0].time == Approx(1e-6).epsilon(1e-4));
+  CHECK(cursor.count() == 2);
+}
+
+TEST_CASE("a turning inside a block hardly beyond a border: the edges there and back are apart") {
+  const SineAxis<double> path{2.5 + 1e-9, 0.0, std::numbers::pi, 0.0};
+  const auto phases = test::steady(path.length(), 1.0);
+  step::StepCursor cursor(path, step::PhaseClock(phases), 0, 1.0, 0);
+  const auto edges = all(cursor);
+  REQUIRE(edges.size() == 6);
+  CHECK(edges[2].direction == 1);
+  CHECK(edges[3].direction == -1);
+  // sqrt(2 h / amplitude) behind the top
+  CHECK(edges[3].time - std::numbers::pi / 2 == Approx(std::sqrt(2e-4 / 2.5)).epsilon(1e-3));
 }
 
 TEST_CASE("a boundary touched and not crossed gives no edge") {

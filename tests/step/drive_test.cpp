@@ -85,3 +85,14 @@ TEST_CASE("pulse and direction times have their own names") {
   CHECK(broken(9e-6, -1).error().error.value == Approx(9e-6).epsilon(1e-6));
   CHECK(broken(9e-6, -1).error().error.bound == Approx(10e-6));
 }
+
+TEST_CASE("backlash takes an edge more than its steps, each as long as pulse, rate and direction need") {
+  Drive d = drive;
+  CHECK(step::backlash_time(d) == 0.0);
+  CHECK(step::hysteresis(d) == 1e-4);
+  d.backlash = 0.0125;  // five steps
+  CHECK(step::backlash_time(d) == Approx(6 * 10e-6));
+  d.direction_setup = 20e-6;
+  CHECK(step::backlash_time(d) == Approx(6 * 26e-6));
+  CHECK(step::hysteresis(d) == 0.1);
+}

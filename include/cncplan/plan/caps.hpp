@@ -26,8 +26,9 @@ using BlockCaps = BasicBlockCaps<double>;
 /// The caps of the first block of a program, or of one behind a stop.
 template <std::floating_point S, CurveRule<S> Rule>
 [[nodiscard]] BasicBlockCaps<S> caps_from_rest(const BasicBlock<S>& block, const Rule& rule) {
-  const BasicBend<S> bend{block.segment.max_curvature(), block.segment.max_curvature_change()};
-  return {block.segment.length(), S(0), rule(bend, block.limits), block.pause};
+  const S length = block.segment.length();
+  const BasicBend<S> bend{block.segment.max_curvature(), block.segment.max_curvature_change(), length};
+  return {length, S(0), rule(bend, block.limits), block.pause};
 }
 
 /// The caps of a block that follows another: the junction by the policy, the inside by its bend.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <type_traits>
 
 #include "cncplan/core/limits.hpp"
@@ -15,8 +16,9 @@ namespace cncplan::plan {
 /// T + v^2 K and its jerk (j - v^3 k^2) T + 3 v a K + v^3 W.
 template <std::floating_point S>
 struct BasicBend {
-  S curvature{};  ///< k = |K|, 1/mm, >= 0
-  S change{};     ///< |W|, 1/mm^2, >= 0; zero on a circle
+  S curvature{};                                  ///< k = |K|, 1/mm, >= 0
+  S change{};                                     ///< |W|, 1/mm^2, >= 0; zero on a circle
+  S length = std::numeric_limits<S>::infinity();  ///< mm, of the path that bends so; infinite: not known
 };
 
 using Bend = BasicBend<double>;
@@ -34,7 +36,7 @@ struct CapSpeed {
   template <std::floating_point S>
   [[nodiscard]] BasicLimits<S> operator()(const std::type_identity_t<BasicBend<S>>& bend,
                                           BasicLimits<S> limits) const {
-    const auto& [curvature, change] = bend;
+    const auto& [curvature, change, length] = bend;
     if (curvature > S(0))
       limits.velocity = std::min({limits.velocity, std::sqrt(limits.acceleration / curvature),
                                   std::cbrt(limits.jerk / std::hypot(curvature * curvature, change))});
@@ -43,38 +45,74 @@ struct CapSpeed {
 };
 
 /// Shares acceleration and jerk between path and bend, so that the vector sums stay within the limits A and J
-/// (docs/planning.md). With m = v^3 k^2 and w = v^3 |W|:
+/// (docs/planning.md). With m = v^3 k^2 and w = v^3 |W|, for any speed v with v^2 k <= A and m + w <= J:
 ///
-/// 1. v is lowered until v^2 k <= 0.8 A and m + w <= 0.5 J, so that something is left to change speed with;
-/// of
-///    the jerk limit, w is set aside: J' = J - w;
+/// 1. of the jerk limit, w is set aside: J' = J - w;
 /// 2. a ramp at jerk j peaks at no more than sqrt(j v); the jerk sum holds with that peak if
 ///    (j + m)^2 + 9 m j <= J'^2, so j0 = (sqrt(117 m^2 + 4 J'^2) - 11 m) / 2;
-/// 3. a = min(sqrt(A^2 - v^4 k^2), sqrt(j0 v)), and with it j = sqrt(J'^2 - 9 v^2 k^2 a^2) - m, at least j0.
+/// 3. a <= min(sqrt(A^2 - v^4 k^2), sqrt(j0 v)), and with it j = sqrt(J'^2 - 9 v^2 k^2 a^2) - m, at least j0.
 ///
-/// Both sums grow with v, a and j, so they hold below these limits as well.
+/// Both sums grow with v, a and j, so they hold below these limits as well. A higher speed leaves less to
+/// change speed with. Without a length v is such that v^2 k <= 0.8 A and m + w <= 0.5 J, and a is the most
+/// there is. Over a known length a higher v, or a lower a with a higher j, is taken where it saves time: that
+/// of the length at v, and the delay by two ramps from rest and two to rest, as ramps of the neighbours run
+/// through it too.
 struct ShareLimits {
   template <std::floating_point S>
   [[nodiscard]] BasicLimits<S> operator()(const std::type_identity_t<BasicBend<S>>& bend,
-                                          BasicLimits<S> limits) const {
-    const auto& [curvature, change] = bend;
-    if (!(curvature > S(0))) return limits;
-    const S accelerate = limits.acceleration;
-    const S v = std::min({limits.velocity, std::sqrt(S(0.8) * accelerate / curvature),
-                          std::cbrt(S(0.5) * limits.jerk / (curvature * curvature + change))});
+                                          const BasicLimits<S>& limits) const {
+    if (!(bend.curvature > S(0))) return limits;
+    const S least = fastest(bend, limits, S(0.8), S(0.5));
+    BasicLimits<S> best = at(bend, limits, least, S(1));
+    if (!(std::isfinite(limits.jerk) && std::isfinite(bend.length))) return best;
+    constexpr int speeds = 4;
+    const S rise = (fastest(bend, limits, S(1), S(1)) - least) / S(speeds);
+    S shortest = time(best, bend.length);
+    for (int i = 0; i <= speeds; ++i)
+      for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
+        const BasicLimits<S> other = at(bend, limits, least + static_cast<S>(i) * rise, share);
+        const S takes = time(other, bend.length);
+        if (!(takes < shortest)) continue;
+        shortest = takes;
+        best = other;
+      }
+    return best;
+  }
+
+ private:
+  // The speed at which the bend takes these shares of acceleration and jerk.
+  template <std::floating_point S>
+  static S fastest(const BasicBend<S>& bend, const BasicLimits<S>& limits, S acceleration, S jerk) {
+    return std::min({limits.velocity, std::sqrt(acceleration * limits.acceleration / bend.curvature),
+                     std::cbrt(jerk * limits.jerk / (bend.curvature * bend.curvature + bend.change))});
+  }
+
+  // Steps 1 to 3, with a share of the highest a. Not a number, or not positive, where v leaves nothing.
+  template <std::floating_point S>
+  static BasicLimits<S> at(const BasicBend<S>& bend, BasicLimits<S> limits, S v, S share) {
     limits.velocity = v;
-    const S across = v * v * curvature;
-    const S m = across * v * curvature;
+    const S accelerate = limits.acceleration;
+    const S across = v * v * bend.curvature;
+    const S m = across * v * bend.curvature;
     if (std::isfinite(accelerate))
       limits.acceleration = std::sqrt((accelerate - across) * (accelerate + across));
     if (std::isfinite(limits.jerk)) {
-      const S jerk = limits.jerk - v * v * v * change;
+      const S jerk = limits.jerk - v * v * v * bend.change;
       const S least_jerk = (std::sqrt(S(117) * m * m + S(4) * jerk * jerk) - S(11) * m) / S(2);
-      limits.acceleration = std::min(limits.acceleration, std::sqrt(least_jerk * v));
-      const S turned = S(3) * v * curvature * limits.acceleration;
+      limits.acceleration = share * std::min(limits.acceleration, std::sqrt(least_jerk * v));
+      const S turned = S(3) * v * bend.curvature * limits.acceleration;
       limits.jerk = std::sqrt((jerk - turned) * (jerk + turned)) - m;
     }
     return limits;
+  }
+
+  // Seconds over the length, ramps counted twice; no number, or infinite, where that is too short for them.
+  template <std::floating_point S>
+  static S time(const BasicLimits<S>& limits, S length) {
+    const auto& [v, a, j] = limits;
+    if (!(a > S(0) && j > S(0))) return std::numeric_limits<S>::infinity();
+    const S ramp = v * j >= a * a ? v / a + a / j : S(2) * std::sqrt(v / j);
+    return length >= S(2) * v * ramp ? length / v + S(2) * ramp : std::numeric_limits<S>::infinity();
   }
 };
 

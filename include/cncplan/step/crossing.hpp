@@ -25,6 +25,15 @@ concept SteppablePath = ParametricPath<P> && requires(const P& path, int axis, t
   { path.length_at(x) } -> std::same_as<typename P::Scalar>;
 };
 
+/// How an axis turns round. It steps back only once it is `hysteresis` (steps) behind the border, or behind
+/// where the block starts: a border that is reached and hardly crossed would else be crossed twice in one
+/// instant, which no drive follows.
+template <std::floating_point S>
+struct Reversal {
+  int direction{};        ///< of the axis' last step before the block, 0 if there was none
+  S hysteresis{S(1e-4)};  ///< in [0, 1)
+};
+
 /// The edges of one axis over one block, in order of time.
 ///
 ///   steps   n+1 |- - - - - - - - - - - - - - - -
@@ -36,7 +45,8 @@ concept SteppablePath = ParametricPath<P> && requires(const P& path, int axis, t
 /// Count n stands for all positions in [n - 1/2, n + 1/2], ends included, so an edge needs the position to go
 /// beyond the boundary. Between two turnings the axis goes one way: how many boundaries it crosses follows
 /// from the position at the piece's end alone. The count can therefore not drift, whatever rounding does to
-/// the single times, and what a block leaves over is taken up at the start of the next.
+/// the single times, and what a block leaves over is taken up at the start of the next. The first edge after
+/// a reversal is late by its hysteresis, or comes where the piece ends.
 template <SteppablePath P, Clock C>
   requires std::same_as<typename P::Scalar, typename C::Scalar>
 class StepCursor {
@@ -48,17 +58,18 @@ class StepCursor {
   /// path follows whose start is this one's end but for rounding, as where a curve is cut; a boundary within
   /// rounding of it is left to that.
   StepCursor(const P& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count,
-             bool goes_on = false)
+             bool goes_on = false, const Reversal<Scalar>& reversal = {})
       : path_(&path),
         clock_(clock),
         axis_(axis),
         steps_per_unit_(steps_per_unit),
         count_(count),
         goes_on_(goes_on),
+        reversal_(reversal),
         parameter_end_(path.parameter_end()),
         target_(steps_at(Scalar(0))) {}
   StepCursor(const P&& path, const C& clock, int axis, Scalar steps_per_unit, std::int64_t count,
-             bool goes_on = false) = delete;
+             bool goes_on = false, const Reversal<Scalar>& reversal = {}) = delete;
 
   /// The next edge, until the block's end.
   [[nodiscard]] std::optional<BasicEdge<Scalar>> next() {
@@ -91,6 +102,8 @@ class StepCursor {
       const Scalar boundary = first + forward * static_cast<Scalar>(static_cast<int>(i));
       edges[i] = boundary / steps_per_unit_;
     }
+    if (reversal_.direction == -direction_) edges[0] = turned(first) / steps_per_unit_;
+    reversal_.direction = direction_;
     std::span<Scalar> ahead = edges;
     while (!ahead.empty() && forward * (ahead.front() * steps_per_unit_ - origin_) <= Scalar(0)) {
       ahead.front() = path_->length_at(low);
@@ -100,6 +113,14 @@ class StepCursor {
     clock_.lengths_to_times(edges);
     for (Scalar& time : edges) time_ = time = std::max(time_, time);
     return true;
+  }
+
+  // The border, in steps, that is crossed first after a reversal: not before the hysteresis, nor behind the
+  // piece.
+  [[nodiscard]] Scalar turned(Scalar border) const {
+    const Scalar forward = static_cast<Scalar>(direction_);
+    const Scalar late = std::max(forward * border, forward * origin_ + reversal_.hysteresis);
+    return forward * std::min(late, std::max(forward * border, forward * target_));
   }
 
   // Goes on to the next stretch between turnings; false behind the last.
@@ -142,6 +163,7 @@ class StepCursor {
   Scalar steps_per_unit_;
   std::int64_t count_;
   bool goes_on_;
+  Reversal<Scalar> reversal_;
   std::int64_t left_ = 0;  // edges before the next turning, those in the batch not counted
   Scalar parameter_end_;
   Scalar parameter_{};  // of the last edge, or where the piece starts

@@ -82,6 +82,23 @@ template <std::floating_point S>
   return count_at(drive.backlash * drive.steps_per_unit);
 }
 
+/// How far behind the border an axis that turns round steps back (`Reversal`), in steps. One with backlash
+/// goes a tenth: its load stands still then, and the steps that make up for the backlash need the time.
+template <std::floating_point S>
+[[nodiscard]] S hysteresis(const BasicDrive<S>& drive) {
+  return backlash_steps(drive) > 0 ? S(0.1) : S(1e-4);
+}
+
+/// Seconds that the steps which make up for the backlash need, from the last step one way to the first of the
+/// load the other way; 0 without backlash.
+template <std::floating_point S>
+[[nodiscard]] S backlash_time(const BasicDrive<S>& drive) {
+  const std::int64_t extra = backlash_steps(drive);
+  if (extra == 0) return S(0);
+  const S gap = std::max(S(1) / max_step_rate(drive), drive.direction_hold + drive.direction_setup);
+  return static_cast<S>(extra + 1) * gap;
+}
+
 /// A broken rule: `error` has its name, the figure found and the figure allowed.
 struct Violation {
   Error error;
