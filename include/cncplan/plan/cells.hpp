@@ -48,12 +48,12 @@ void cut_by_limits(const B& block, const M& machine, typename M::Scalar speed, t
     BasicLimits<S> limits;
     int depth;
   };
+  const S length = block.path.length();
   const auto limits = [&](S from, S to) {
-    return limits_along(block.path.bounds(from, to), machine, speed, tool_speed);
+    return limits_along(block.path.bounds(from, to), machine, speed, tool_speed, length);
   };
   std::array<Part, static_cast<std::size_t>(deepest + 1)> open;
   std::size_t count = 0;
-  const S length = block.path.length();
   open[count++] = {S(0), length, limits(S(0), length), 0};
   while (count > 0) {
     const Part part = open[--count];

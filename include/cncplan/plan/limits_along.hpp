@@ -39,21 +39,15 @@ void for_each_limited(const M& machine, const BasicPathBounds<typename M::Scalar
   }
 }
 
-/// Shares of the limits that the bends alone may use at the highest speed, so that something is left to
-/// change speed with.
-inline constexpr double bend_acceleration_share = 0.8;
-inline constexpr double bend_jerk_share = 0.5;
-
-/// The highest speed that bends leave.
+/// The highest speed at which the bends take these shares of the limits of acceleration and jerk.
 template <std::floating_point S>
-[[nodiscard]] S speed_of(const Limited<S>& row, S speed) {
+[[nodiscard]] S speed_of(const Limited<S>& row, S speed, S acceleration_share, S jerk_share) {
   const auto& [b, limits] = row;
   if (b.first > S(0)) speed = std::min(speed, limits.velocity / b.first);
   const S second = std::hypot(b.second_along, b.second_across);
-  if (second > S(0))
-    speed = std::min(speed, std::sqrt(S(bend_acceleration_share) * limits.acceleration / second));
+  if (second > S(0)) speed = std::min(speed, std::sqrt(acceleration_share * limits.acceleration / second));
   const S third = b.third_along + b.third_across;
-  if (third > S(0)) speed = std::min(speed, std::cbrt(S(bend_jerk_share) * limits.jerk / third));
+  if (third > S(0)) speed = std::min(speed, std::cbrt(jerk_share * limits.jerk / third));
   return speed;
 }
 
@@ -104,29 +98,67 @@ template <std::floating_point S>
   return (std::sqrt((limits.jerk - across) * (limits.jerk + across)) - along) / b.first;
 }
 
+/// Seconds over a length with two ramps from rest and two to rest; infinite where that is too short for them.
+template <std::floating_point S>
+[[nodiscard]] S time_with_ramps(const BasicLimits<S>& limits, S length) {
+  const auto& [v, a, j] = limits;
+  if (!(v > S(0) && a > S(0) && j > S(0))) return std::numeric_limits<S>::infinity();
+  const S ramp = v * j >= a * a ? v / a + a / j : S(2) * std::sqrt(v / j);
+  return length >= S(2) * v * ramp ? length / v + S(2) * ramp : std::numeric_limits<S>::infinity();
+}
+
 }  // namespace detail
 
 /// Limits along the path, no faster than `speed`, such that for every speed, acceleration and jerk within
 /// them the tool's vectors and each axis stay within the machine's limits (`tool_speed` stands for the
 /// velocity of the tool): |q'| v, |q''| v^2 + |q'| a and |q'''| v^3 + 3 |q''| v a + |q'| j grow with v, a and
 /// j, so it is enough that they hold for the limits themselves (core/path_point.hpp has the formula).
+///
+/// A higher speed on a bend leaves less to change speed with. The bends may take 0.8 of the acceleration and
+/// half of the jerk; over a known `length` a higher speed, or a lower acceleration with a higher jerk, is
+/// taken where that saves time.
 template <MachineModel M>
 [[nodiscard]] BasicLimits<typename M::Scalar> limits_along(
     const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
-    typename M::Scalar speed, typename M::Scalar tool_speed) {
+    typename M::Scalar speed, typename M::Scalar tool_speed,
+    typename M::Scalar length = std::numeric_limits<typename M::Scalar>::infinity()) {
   using S = typename M::Scalar;
-  BasicLimits<S> limits;
-  limits.velocity = speed;
   using Row = detail::Limited<S>;
-  detail::for_each_limited(machine, bounds, tool_speed,
-                           [&](const Row& row) { limits.velocity = detail::speed_of(row, limits.velocity); });
-  detail::for_each_limited(machine, bounds, tool_speed, [&](const Row& row) {
-    limits.acceleration = std::min(limits.acceleration, detail::acceleration_of(row, limits.velocity));
-  });
-  detail::for_each_limited(machine, bounds, tool_speed, [&](const Row& row) {
-    limits.jerk = std::min(limits.jerk, detail::jerk_of(row, limits.velocity, limits.acceleration));
-  });
-  return limits;
+  const auto each = [&](auto&& visit) { detail::for_each_limited(machine, bounds, tool_speed, visit); };
+  const auto fastest = [&](S acceleration_share, S jerk_share) {
+    S v = speed;
+    each([&](const Row& row) { v = detail::speed_of(row, v, acceleration_share, jerk_share); });
+    return v;
+  };
+  const auto at = [&](S v, S share) {
+    BasicLimits<S> limits;
+    limits.velocity = v;
+    each([&](const Row& row) {
+      limits.acceleration = std::min(limits.acceleration, detail::acceleration_of(row, v));
+    });
+    if (share < S(1)) limits.acceleration *= share;
+    each([&](const Row& row) {
+      limits.jerk = std::min(limits.jerk, detail::jerk_of(row, v, limits.acceleration));
+    });
+    return limits;
+  };
+  const S least = fastest(S(0.8), S(0.5));
+  BasicLimits<S> best = at(least, S(1));
+  bool bends = false;
+  each([&](const Row& row) { bends = bends || row.bends(); });
+  if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
+  constexpr int speeds = 4;
+  const S rise = (fastest(S(1), S(1)) - least) / S(speeds);
+  S shortest = detail::time_with_ramps(best, length);
+  for (int i = 0; i <= speeds; ++i)
+    for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
+      const BasicLimits<S> other = at(least + static_cast<S>(i) * rise, share);
+      const S takes = detail::time_with_ramps(other, length);
+      if (!(takes < shortest)) continue;
+      shortest = takes;
+      best = other;
+    }
+  return best;
 }
 
 }  // namespace cncplan::plan
