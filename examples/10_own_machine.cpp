@@ -1,5 +1,7 @@
-// A machine of one's own: a SCARA arm of two links. Its inverse is written once, for numbers and for jets;
-// the library then plans a line within the limits of both elbows and the slide.
+// A machine whose axes are not the program's coordinates: a SCARA arm of two links and a slide. Its map is
+// written once, for numbers and for numbers with derivatives or bounds; the library plans within the limits
+// of the joints. Expected: the tip stays on the programmed line.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cncplan/cncplan.hpp>
@@ -9,12 +11,12 @@ using namespace cncplan;
 
 struct Scara {
   using Scalar = double;
-  static constexpr std::size_t joint_count = 3;  // shoulder, elbow (rad), slide (mm)
+  static constexpr int axis_count = 3;  // shoulder, elbow (rad), slide (mm)
 
   double upper = 200, fore = 150;  // mm
 
-  // The elbow bent to the left. Evaluated with jets it gives the joints' speeds, accelerations and jerks.
-  template <NumberOver<double> T>
+  // The elbow bent to the left.
+  template <class T>
   [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
     using std::atan2, std::sqrt;
     const auto& [x, y, z] = point;
@@ -23,41 +25,30 @@ struct Scara {
     return {atan2(y, x) - atan2(T(fore) * sine, T(upper) + T(fore) * cosine), atan2(sine, cosine), z};
   }
 
-  // How far it is to where the elbow is straight, or folded: there the map ends.
-  [[nodiscard]] double reach(const std::array<double, 3>& point) const {
-    const double distance = std::hypot(point[0], point[1]);
-    return std::min(upper + fore - distance, distance - (upper - fore));
-  }
-
   [[nodiscard]] Vector3 tip(const Vector3& q) const {
     return {upper * std::cos(q[0]) + fore * std::cos(q[0] + q[1]),
             upper * std::sin(q[0]) + fore * std::sin(q[0] + q[1]), q[2]};
   }
 };
-static_assert(Chart<Scara>);
 
 int main() {
-  const Scara machine;
-  const BasicJointLimits<double, 3> limits{
-      .velocity = {2, 3, 100}, .acceleration = {10, 15, 500}, .jerk = {100, 150, 5000}};
-  const path::Line<3> line({250, -180, 0}, {180, 200, 10});
+  const MappedMachine<Scara> arm{
+      .map = {},
+      .axes = {{{.letter = 'J', .kind = AxisKind::rotary, .velocity = 2, .acceleration = 10, .jerk = 100},
+                {.letter = 'K', .kind = AxisKind::rotary, .velocity = 3, .acceleration = 15, .jerk = 150},
+                {.letter = 'Z', .velocity = 100, .acceleration = 500, .jerk = 5000}}},
+      .limits = {.velocity = 150, .acceleration = 2000, .jerk = 40000}};
+  const auto trajectory = plan_text("G1 X180 Y200 Z10 F9000", arm, {.start = {250, -180, 0}});
+  if (!trajectory) return std::printf("%s\n", to_text(trajectory.error()).c_str()), 1;
 
-  plan::JointCourse course{plan::OneChart(machine)};
-  if (!course.append(line, 150.0)) return 1;  // mm/s, where the joints allow
-  const auto plan = plan::whole_plan(course.blocks(), limits, 0.001);
-  if (!plan) return 1;
-
-  std::printf("%8s %10s %10s %10s %18s\n", "s", "shoulder", "elbow", "slide", "tip off the line");
-  plan::Cursor cursor(plan->spans, plan->lengths);
+  const Vector3 start(250, -180, 0), way = (Vector3(180, 200, 10) - start).normalized();
   double worst = 0;
-  for (int k = 0; k <= 10; ++k) {
-    const double time = plan->duration * k / 10;
-    const plan::Place place = cursor.at(time);
-    const auto& path = course.blocks()[place.block].path;
-    const Vector3 q = path.position(path.parameter_at(place.along));
-    const Vector3 gap = machine.tip(q) - line.start();
-    const double off = (gap - line.start_tangent().dot(gap) * line.start_tangent()).norm();
-    std::printf("%8.4f %10.6f %10.6f %10.6f %18.1e\n", time, q[0], q[1], q[2], off);
+  std::printf("%8s %10s %10s %10s %18s\n", "s", "shoulder", "elbow", "slide", "tip off the line");
+  for (const auto& point : trajectory->samples(trajectory->duration() / 10)) {
+    const Vector3 gap = arm.map.tip(point.position) - start;
+    const double off = (gap - way.dot(gap) * way).norm();
+    std::printf("%8.4f %10.6f %10.6f %10.6f %18.1e\n", point.time, point.position[0], point.position[1],
+                point.position[2], off);
     worst = std::max(worst, off);
   }
   return worst < 1e-9 ? 0 : 1;

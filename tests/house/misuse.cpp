@@ -62,7 +62,7 @@ auto tip = kinematics::tip_velocity(ForwardOnly{}, Vector3{}, Vector3{});
 // expect NumbersOnly, Chart: chart.joints(moving)
 struct NumbersOnly {
   using Scalar = double;
-  static constexpr std::size_t joint_count = 3;
+  static constexpr std::size_t axis_count = 3;
   double reach(const std::array<double, 3>&) const;
   std::array<double, 3> joints(const std::array<double, 3>&) const;
 };

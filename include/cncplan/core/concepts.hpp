@@ -81,11 +81,11 @@ template <class C>
 concept Chart = requires(const C& chart, const std::array<typename C::Scalar, 3>& point,
                          const std::array<BasicJet<typename C::Scalar>, 3>& moving) {
   requires std::floating_point<typename C::Scalar>;
-  requires C::joint_count >
+  requires C::axis_count >
   0;
   { chart.reach(point) } -> std::same_as<typename C::Scalar>;
-  { chart.joints(point) } -> std::same_as<std::array<typename C::Scalar, C::joint_count>>;
-  { chart.joints(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, C::joint_count>>;
+  { chart.joints(point) } -> std::same_as<std::array<typename C::Scalar, C::axis_count>>;
+  { chart.joints(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, C::axis_count>>;
 };
 
 /// A chart under which the length of the motion is not the one of the programmed path: `measured` is the

@@ -53,7 +53,7 @@ using Cartesian = BasicCartesian<double>;
 template <std::floating_point S>
 struct BasicCartesianChart {
   using Scalar = S;
-  static constexpr std::size_t joint_count = 3;
+  static constexpr int axis_count = 3;
 
   [[nodiscard]] S reach(const std::array<S, 3>&) const { return std::numeric_limits<S>::infinity(); }
 

@@ -59,7 +59,7 @@ using Polar = BasicPolar<double>;
 template <std::floating_point S>
 struct BasicPolarChart {
   using Scalar = S;
-  static constexpr std::size_t joint_count = 3;
+  static constexpr int axis_count = 3;
 
   BasicAzimuth<S> azimuth;
 

@@ -25,7 +25,7 @@ namespace cncplan::kinematics {
 template <std::floating_point S>
 struct BasicSidewallChart {
   using Scalar = S;
-  static constexpr std::size_t joint_count = 4;
+  static constexpr int axis_count = 4;
 
   BasicProfilePiece<S> piece;
   S begins{};       ///< mm, the flat radius that falls on the piece's start

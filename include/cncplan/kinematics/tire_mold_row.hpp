@@ -20,7 +20,7 @@ template <std::floating_point S>
 struct BasicTireMoldRow {
   using Scalar = S;
   using Joints = VectorN<S, 4>;
-  static constexpr std::size_t joint_count = 4;
+  static constexpr int axis_count = 4;
 
   Joints start = Joints::Zero();
   Joints way = Joints::Zero();

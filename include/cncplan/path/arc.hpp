@@ -174,14 +174,18 @@ class BasicArc {
     const J rate = J(S(1)) / speed;  // of the angle by the length, over the angle
     const T second = rate.first * rate.value;
     const T third = (rate.second * rate.value + rate.first * rate.first) * rate.value;
-    const J angle{u.value, rate.value, second, third};
-    const J rho = J(S(1)) + J(growth_) * angle;
-    const J cosine = rho * cos(angle) - J(S(1));
-    const J sine = rho * sin(angle);
-    std::array<J, 3> result;
+    return point(J{u.value, rate.value, second, third});
+  }
+  /// The point at a parameter that may carry derivatives or bounds: see `Curve`.
+  template <class T>
+  [[nodiscard]] std::array<T, 3> point(const T& u) const {
+    using std::cos, std::sin;
+    const T rho = T(S(1)) + T(growth_) * u;
+    const T cosine = rho * cos(u) - T(S(1)), sine = rho * sin(u);
+    std::array<T, 3> result;
     for (int i = 0; i < 3; ++i)
       result[static_cast<std::size_t>(i)] =
-          J(start_[i]) + J(radial_[i]) * cosine + J(tangential_[i]) * sine + J(axial_[i]) * angle;
+          T(start_[i]) + T(radial_[i]) * cosine + T(tangential_[i]) * sine + T(axial_[i]) * u;
     return result;
   }
 
@@ -296,12 +300,12 @@ class BasicArc {
         });
   }
 
-  // The largest derivatives of a spiral's axes, in eight parts.
+  // The largest derivatives of the axes of a spiral, in parts of a fifth of a radian, eight at most.
   [[nodiscard]] BasicPathBounds<S, 3> spiral_axis_bounds(S low, S high, BasicPathBounds<S, 3> result) const {
-    constexpr int parts = 8;
-    const S from = length_at(low), width = (length_at(high) - from) / S(parts);
+    const int parts = std::clamp(static_cast<int>(S(5) * (high - low)) + 1, 1, 8);
+    const S from = length_at(low), width = (length_at(high) - from) / static_cast<S>(parts);
     for (int i = 0; i < parts; ++i) {
-      const auto part = enclosure(from + S(i) * width, from + S(i + 1) * width);
+      const auto part = enclosure(from + static_cast<S>(i) * width, from + static_cast<S>(i + 1) * width);
       for (int axis = 0; axis < 3; ++axis) {
         const auto& jet = part[static_cast<std::size_t>(axis)];
         result.first[axis] = std::max(result.first[axis], jet.first.largest());

@@ -57,6 +57,14 @@ class BasicLine {
   [[nodiscard]] Vector second_derivative(S) const { return Vector::Zero(); }
   [[nodiscard]] CurvePoint<Vector> at(S u) const { return {position(u), direction_, Vector::Zero()}; }
 
+  /// The point at a parameter that may carry derivatives or bounds: see `Curve`.
+  template <class T>
+  [[nodiscard]] std::array<T, static_cast<std::size_t>(N)> point(const T& u) const {
+    std::array<T, static_cast<std::size_t>(N)> result;
+    for (int i = 0; i < N; ++i) result[static_cast<std::size_t>(i)] = T(start_[i]) + T(direction_[i]) * u;
+    return result;
+  }
+
   /// See `Path`.
   [[nodiscard]] Vector position_at(S s) const { return position(s); }
   [[nodiscard]] PathPoint<Vector> point_at(S s) const {

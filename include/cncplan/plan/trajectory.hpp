@@ -138,18 +138,19 @@ class Trajectory {
   /// When each block that moves runs, in order.
   [[nodiscard]] std::vector<BasicBlockMotion<Scalar>> blocks() const {
     std::vector<BasicBlockMotion<Scalar>> result;
-    for (const auto& [phase, block] : phases_) {
+    for (std::size_t i = 0; i < phases_.size(); ++i) {
+      const auto& [phase, block] = phases_[i];
       if (!(blocks_[block].path.length() > Scalar(0)) || rests(phase)) continue;
-      const BasicState<Scalar> last = phase.at(phase.duration);
       if (result.empty() || result.back().block != block)
         result.push_back({block, blocks_[block].line, blocks_[block].path.length(), phase.time, Scalar(0),
                           phase.velocity, phase.velocity, Scalar(0)});
       BasicBlockMotion<Scalar>& motion = result.back();
       motion.duration = phase.time + phase.duration - motion.start;
-      motion.exit = last.velocity;
-      motion.peak = std::max({motion.peak, phase.velocity, last.velocity});
-      if (phase.acceleration > Scalar(0) && last.acceleration < Scalar(0))
-        motion.peak = std::max(motion.peak, phase.at(-phase.acceleration / phase.jerk).velocity);
+      motion.exit = i + 1 < phases_.size() ? phases_[i + 1].phase.velocity : Scalar(0);
+      motion.peak = std::max({motion.peak, phase.velocity, motion.exit});
+      if (const Scalar top = -phase.acceleration / phase.jerk;
+          phase.jerk != Scalar(0) && top > Scalar(0) && top < phase.duration)
+        motion.peak = std::max(motion.peak, phase.at(top).velocity);
     }
     return result;
   }

@@ -33,9 +33,9 @@ template <Chart C>
 class MappedPath {
  public:
   using Scalar = typename C::Scalar;
-  static constexpr int joint_count = static_cast<int>(C::joint_count);
-  using Vector = VectorN<Scalar, joint_count>;
-  using Rates = BasicJointRates<Scalar, joint_count>;
+  static constexpr int axis_count = static_cast<int>(C::axis_count);
+  using Vector = VectorN<Scalar, axis_count>;
+  using Rates = BasicJointRates<Scalar, axis_count>;
 
   /// From parameter `from` to a higher one, where the measured point does not stand still.
   MappedPath(path::BasicSegment<Scalar> segment, const C& chart, Scalar from, Scalar to)
@@ -120,13 +120,13 @@ class MappedPath {
  private:
   using Jet = BasicJet<Scalar>;
 
-  [[nodiscard]] std::array<Jet, C::joint_count> moving(Scalar u) const {
+  [[nodiscard]] std::array<Jet, C::axis_count> moving(Scalar u) const {
     return chart_.joints(moving_point(segment_, segment_parameter(u)));
   }
   template <class F>
-  static Vector each(const std::array<Jet, C::joint_count>& joints, F&& part) {
+  static Vector each(const std::array<Jet, C::axis_count>& joints, F&& part) {
     Vector result;
-    for (int i = 0; i < joint_count; ++i) result[i] = part(joints[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < axis_count; ++i) result[i] = part(joints[static_cast<std::size_t>(i)]);
     return result;
   }
   [[nodiscard]] Scalar speed(Scalar u) const {

@@ -1,0 +1,73 @@
+// Paths round the axis of a rotary table, cut so that the table's angle goes on without a jump (set-up).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/kinematics/azimuth.hpp"
+#include "cncplan/path/mapped.hpp"
+#include "cncplan/path/part.hpp"
+
+namespace cncplan::plan {
+
+/// The image of a part of a programmed path under a map whose `azimuth` follows the path round the table.
+template <path::Map M, Path P>
+using TablePath = path::Mapped<M, path::Part<P>>;
+
+/// The least distance from the table's axis between two lengths, by golden-section search in eight parts.
+template <Path P>
+[[nodiscard]] typename P::Scalar least_radius(const P& path, typename P::Scalar from, typename P::Scalar to) {
+  using S = typename P::Scalar;
+  const auto radius = [&](S s) {
+    const auto point = path.position_at(s);
+    return std::hypot(point.x(), point.y());
+  };
+  constexpr int parts = 8, rounds = 40;
+  constexpr S golden = S(0.6180339887498949);
+  S least = std::min(radius(from), radius(to));
+  const S width = (to - from) / S(parts);
+  for (int i = 0; i < parts; ++i) {
+    S low = from + width * static_cast<S>(std::max(i - 1, 0)), high = from + width * static_cast<S>(i + 1);
+    const S middle = radius(low + (high - low) / S(2));
+    if (!(middle <= least + width)) continue;  // the radius changes by no more than the length
+    for (int round = 0; round < rounds && high - low > S(1e-9) * (S(1) + least); ++round) {
+      const S a = high - (high - low) * golden, b = low + (high - low) * golden;
+      (radius(a) < radius(b) ? high : low) = radius(a) < radius(b) ? b : a;
+    }
+    least = std::min(least, radius(low + (high - low) / S(2)));
+  }
+  return least;
+}
+
+/// Cuts a path into parts over which the table turns by one radian at most, and calls `add` with the image of
+/// each. `table` is the angle at which the table stands, rad with whole turns; it is moved on. Error:
+/// below_limit with the least radius, for a path that comes nearer to the axis than `smallest_radius` mm.
+template <path::Map M, Path P, std::invocable<const TablePath<M, P>&> Add>
+[[nodiscard]] Expected<void> follow_table(const P& programmed, M map, typename P::Scalar smallest_radius,
+                                          typename P::Scalar& table, Add&& add) {
+  using S = typename P::Scalar;
+  const S length = programmed.length();
+  for (S from = S(0); from < length;) {
+    const auto start = programmed.position_at(from);
+    const S radius = std::hypot(start.x(), start.y());
+    const auto refuse = [&](S least) {
+      return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(least),
+                                  static_cast<double>(smallest_radius)});
+    };
+    if (!(radius >= smallest_radius)) return refuse(radius);
+    const S left = length - from, stride = radius / S(2);
+    const S to = left <= stride ? length : from + (left < S(2) * stride ? left / S(2) : stride);
+    const auto middle = programmed.position_at(from + (to - from) / S(2)), end = programmed.position_at(to);
+    const S least = least_radius(programmed, from, to);
+    if (!(least >= smallest_radius)) return refuse(least);
+    map.azimuth = kinematics::BasicAzimuth<S>(middle.x(), middle.y(), table);
+    table = map.azimuth.of(end.x(), end.y());
+    add(TablePath<M, P>(map, path::Part<P>(programmed, from, to)));
+    from = to;
+  }
+  return {};
+}
+
+}  // namespace cncplan::plan
