@@ -8,6 +8,7 @@
 #include <span>
 
 #include "cncplan/core/phase.hpp"
+#include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/profile/profile.hpp"
 
 namespace cncplan::plan {
@@ -36,20 +37,22 @@ class BasicLeg {
 
   [[nodiscard]] S length() const { return length_; }
   /// Seconds to its end.
-  [[nodiscard]] S left() const { return duration_ - time_; }
+  [[nodiscard]] S left() const { return time_.until(duration_); }
   /// Seconds until a profile has to be better, or it leaves its top speed; negative behind that.
-  [[nodiscard]] S to_turn() const { return turn_ - time_; }
+  [[nodiscard]] S to_turn() const { return time_.until(turn_); }
   /// Seconds to the end of the phase.
-  [[nodiscard]] S to_edge() const { return phase_ + 1 < count_ ? phases_[phase_ + 1].time - time_ : left(); }
+  [[nodiscard]] S to_edge() const {
+    return phase_ + 1 < count_ ? time_.until(phases_[phase_ + 1].time) : left();
+  }
 
   void advance(S seconds) {
-    time_ += seconds;
-    while (phase_ + 1 < count_ && time_ >= phases_[phase_ + 1].time) ++phase_;
+    time_.add(seconds);
+    while (phase_ + 1 < count_ && !(to_edge() > S(0))) ++phase_;
   }
 
   [[nodiscard]] BasicState<S> state() const {
     const BasicPhase<S>& phase = phases_[phase_];
-    BasicState<S> now = phase.at(std::clamp(time_ - phase.time, S(0), phase.duration));
+    BasicState<S> now = phase.at(std::clamp(time_.since(phase.time), S(0), phase.duration));
     now.velocity = std::max(now.velocity, S(0));  // rounding, where it comes to rest
     return now;
   }
@@ -69,7 +72,7 @@ class BasicLeg {
   std::array<BasicPhase<S>, most_phases> phases_{};
   std::size_t count_ = 0;
   std::size_t phase_ = 0;
-  S time_{};
+  BasicElapsed<S> time_;
   S duration_{};
   S turn_{};
   S length_{};

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cncplan/plan/player/brake_ahead.hpp"
+#include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/plan/player/leg.hpp"
 #include "cncplan/plan/player/ramp_ahead.hpp"
 #include "cncplan/plan/player/road.hpp"
@@ -36,7 +37,7 @@ using PlayerMemory = BasicPlayerMemory<double>;
 /// Where the machine is after a tick.
 template <std::floating_point S>
 struct BasicPlayed {
-  std::int64_t block{};  ///< number of the block; that before the first while none has come
+  std::int64_t block{};  ///< number of the block; -1 while there is none
   S along{};             ///< mm from the block's start
   S velocity{};          ///< mm/s along the path, negative when it runs backwards
   S acceleration{};      ///< mm/s^2, likewise
@@ -89,7 +90,7 @@ class BasicPlayer {
 
   /// Comes to rest likewise, and does not go on: the program ends there.
   void stop() {
-    wait_ = S(0);
+    wait_for(S(0));
     ask(road_.asked.stopped, true);
   }
 
@@ -139,7 +140,7 @@ class BasicPlayer {
     road_.asked.stopped = false;
     road_.passed_pause = -1;
     at_ = {block, S(0)};
-    wait_ = S(0);
+    wait_for(S(0));
     pending_ = false;
     return true;
   }
@@ -152,9 +153,9 @@ class BasicPlayer {
     int plans = most_plans;
     const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: legs end blocks
     for (std::size_t hops = 0; (left > S(0) || leg_over()) && hops < most_hops; ++hops) {
-      if (wait_ > S(0)) {
-        const S waited = std::min(wait_, left);
-        wait_ -= waited;
+      if (const S wait = waits(); wait > S(0)) {
+        const S waited = std::min(wait, left);
+        dwell_.add(waited);
         left -= waited;
       } else if (idle_) {
         if (!pending_ || plans-- == 0) break;
@@ -174,13 +175,13 @@ class BasicPlayer {
         if (next_leg(plans > 0)) --plans;
       }
     }
-    rested_ = idle_ && !(wait_ > S(0)) ? rested_ + left : S(0);
+    rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
     return played();
   }
 
   /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
   [[nodiscard]] S until_change() const {
-    if (wait_ > S(0)) return wait_;
+    if (waits() > S(0)) return waits();
     if (idle_) return std::numeric_limits<S>::infinity();
     const S turn = leg_.to_turn();
     return could_better() && turn > S(0) ? std::min(turn, leg_.to_edge()) : leg_.to_edge();
@@ -191,7 +192,7 @@ class BasicPlayer {
 
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && !(wait_ > S(0)) && road_.direction > 0 && at_.block >= road_.ring.end();
+    return idle_ && !(waits() > S(0)) && road_.direction > 0 && at_.block >= road_.ring.end();
   }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return road_.asked.stopped && idle_; }
@@ -209,6 +210,13 @@ class BasicPlayer {
     pending_ = true;
   }
 
+  // Seconds of a dwell that are left.
+  [[nodiscard]] S waits() const { return dwell_.until(S(0)); }
+  void wait_for(S seconds) {
+    dwell_ = {};
+    dwell_.add(-seconds);
+  }
+
   // Whether blocks that the plan does not know could spare the way down that this leg ends with.
   [[nodiscard]] bool could_better() const { return more_ && !leg_settled_; }
 
@@ -224,7 +232,7 @@ class BasicPlayer {
 
   [[nodiscard]] BasicPlayed<S> played() {
     const BlockRing<S>& ring = road_.ring;
-    if (ring.end() == ring.oldest()) return {at_.block - 1, S(0), S(0), S(0), S(0), true};
+    if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = leg_.state();
     BasicSpot<S> at = locate();
     if (!ring.holds(at.block))  // behind the last
@@ -242,7 +250,7 @@ class BasicPlayer {
 
   // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
   void renew() {
-    if (wait_ > S(0)) return;
+    if (waits() > S(0)) return;
     pending_ = false;
     if (idle_)
       start();
@@ -336,13 +344,18 @@ class BasicPlayer {
     const BasicState<S> end = leg_.state();
     const BasicSpot<S> from = at_;
     at_ = road_.snapped(road_.advance(at_, leg_.length()));
+    const bool rests = !(end.velocity > negligible_speed<S>);
+    const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
     if (next_gate_ == no_gate) {
-      if (end.velocity > negligible_speed<S> && road_.ring.holds(at_.block))
+      if (!rests && road_.ring.holds(at_.block))
         return follow(braking_on(road_, at_, end, memory_.ahead), at_, no_gate), false;
-      const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
       return at_junction && !road_.asked.stopped ? rest_as_planned() : rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
+    // a ramp that began on the way to a stop, and ends there
+    const std::int64_t done = at_.block - road_.direction;
+    if (rests && at_junction && road_.ring.holds(done) && road_.stops_behind(done))
+      return rest_as_planned(), false;
     // nothing that comes can change where a span ends that is settled
     const bool plans = may_plan && more_ && !memory_.gates[next_knot<S>(memory_.gates, next_gate_)].settled;
     if (plans && plan_from(at_, memory_.gates[next_gate_].speed))
@@ -357,7 +370,7 @@ class BasicPlayer {
     const std::int64_t done = at_.block - road_.direction;
     const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;
     BasicRequests<S>& asked = road_.asked;
-    if (block != nullptr && road_.direction > 0) wait_ = block->caps.pause;
+    if (block != nullptr && road_.direction > 0) wait_for(block->caps.pause);
     if (asked.single_step || (asked.optional_stops && block != nullptr && block->optional_stop))
       asked.held = true;
     if (road_.pauses_before(at_.block, block != nullptr ? block->line : 0)) {
@@ -382,7 +395,7 @@ class BasicPlayer {
   std::size_t gate_count_ = 0;
   std::size_t spare_count_ = 0;
   std::size_t next_gate_ = no_gate;
-  S wait_{};                  // s of a dwell that are left
+  BasicElapsed<S> dwell_;     // s to its end, below 0
   S rested_{};                // s
   bool pending_ = false;      // a request has not been met yet
   bool more_ = false;         // there are blocks that the plan does not know
