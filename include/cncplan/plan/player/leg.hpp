@@ -28,11 +28,13 @@ class BasicLeg {
     constexpr S early = S(0.05);
     turn_ = std::max(phases[3].time, phases[4].time - early * (duration_ - phases[4].time));
     for (const BasicPhase<S>& phase : phases) append(phase);
+    advance(S(0));  // over a phase that is gone by rounding
   }
   /// At most `most_phases`, each with the time at which it starts, and the length of them all.
   BasicLeg(std::span<const BasicPhase<S>> phases, S length) : length_(length) {
     for (const BasicPhase<S>& phase : phases) append(phase);
     if (count_ > 0) duration_ = phases_[count_ - 1].time + phases_[count_ - 1].duration;
+    advance(S(0));
   }
 
   [[nodiscard]] S length() const { return length_; }
@@ -55,6 +57,12 @@ class BasicLeg {
     BasicState<S> now = phase.at(std::clamp(time_.since(phase.time), S(0), phase.duration));
     now.velocity = std::max(now.velocity, S(0));  // rounding, where it comes to rest
     return now;
+  }
+
+  /// Where it ends. Of an empty one, nothing but zeros.
+  [[nodiscard]] BasicState<S> end() const {
+    const BasicPhase<S>& last = phases_[count_ > 0 ? count_ - 1 : 0];
+    return last.at(last.duration);
   }
 
   /// Speed where a length has been travelled.

@@ -218,7 +218,9 @@ class BasicPlayer {
   }
 
   // Whether blocks that the plan does not know could spare the way down that this leg ends with.
-  [[nodiscard]] bool could_better() const { return more_ && !leg_settled_; }
+  [[nodiscard]] bool could_better() const {
+    return more_ && !leg_settled_ && leg_.state().position > road_rounding<S>;
+  }
 
   [[nodiscard]] bool leg_over() const { return !idle_ && !(leg_.left() > S(0)); }
 
@@ -251,11 +253,11 @@ class BasicPlayer {
   // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
   void renew() {
     if (waits() > S(0)) return;
-    pending_ = false;
+    const bool asked = std::exchange(pending_, false);
     if (idle_)
       start();
     else
-      pending_ = !replan();
+      pending_ = !replan(asked) && asked;
   }
 
   void start() {
@@ -264,7 +266,7 @@ class BasicPlayer {
     if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
   }
 
-  bool replan() {
+  bool replan(bool asked) {
     const BasicState<S> now = leg_.state();
     const BasicSpot<S> at = locate();
     if (!road_.ring.holds(at.block)) return false;
@@ -283,6 +285,7 @@ class BasicPlayer {
     for (const S target : {wanted, settled > negligible_speed<S> ? std::min(settled, wanted) : S(0)}) {
       const auto ramp = ramp_ahead(road_, at, now, target);
       if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
+      if (!asked && !betters(*ramp)) continue;
       take_spare();
       follow(BasicLeg<S>(*ramp), at, 0);
       return true;
@@ -302,6 +305,28 @@ class BasicPlayer {
     GatePlanner planner(memory_.spare_gates.first(spare_count_));
     planner.solve();
     return !(memory_.spare_gates[0].speed < speed);
+  }
+
+  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the leg ends, and no
+  // slower there. A way down that has begun is given up for nothing less: let go, it has to begin anew.
+  [[nodiscard]] bool betters(const profile::BasicProfile<S>& ramp) const {
+    const S whole = leg_.length() - leg_.state().position;
+    const S slowest = leg_.end().velocity * (S(1) - road_rounding<S>);
+    S time = ramp.time_at(whole);
+    S position = ramp.length();
+    S speed = ramp.at(time).velocity;
+    GatePlanner planner(memory_.spare_gates.first(spare_count_));
+    for (std::size_t gate = 0; gate + 1 < spare_count_ && position < whole;) {
+      const std::size_t next = next_knot<S>(memory_.spare_gates, gate);
+      const auto profile = planner.profile(gate, next);
+      if (!profile) return false;
+      const S within = profile->time_at(whole - position);
+      time += within;
+      speed = profile->at(within).velocity;
+      position += profile->length();
+      gate = next;
+    }
+    return time < leg_.left() * (S(1) - road_rounding<S>) && !(speed < slowest);
   }
 
   // Makes the plan in the spare gates the one that holds.
