@@ -20,13 +20,15 @@ class BasicLeg {
   static constexpr std::size_t most_phases = profile::BasicProfile<S>::phase_count;
 
   BasicLeg() = default;
-  explicit BasicLeg(const profile::BasicProfile<S>& profile)
+  /// `braking`: seconds from the end speed to rest, which may be asked behind the end.
+  explicit BasicLeg(const profile::BasicProfile<S>& profile, S braking = S(0))
       : duration_(profile.duration()), length_(profile.length()) {
     const auto phases = profile.phases();
     // Still within the cruise, where it can be planned anew: a ramp that ends at speed can be 9 % longer than
-    // one to rest, which is 5 % of its duration at the speed it begins with.
-    constexpr S early = S(0.05);
-    turn_ = std::max(phases[3].time, phases[4].time - early * (duration_ - phases[4].time));
+    // one to rest, and more where it begins in a block of lower limits.
+    constexpr S early = S(0.25);
+    const S down = duration_ - phases[4].time;
+    turn_ = std::max(phases[3].time, phases[4].time - early * std::max(down, braking));
     for (const BasicPhase<S>& phase : phases) append(phase);
     advance(S(0));  // over a phase that is gone by rounding
   }

@@ -307,26 +307,28 @@ class BasicPlayer {
     return !(memory_.spare_gates[0].speed < speed);
   }
 
-  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the leg ends, and no
-  // slower there. A way down that has begun is given up for nothing less: let go, it has to begin anew.
+  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the leg ends, no
+  // slower there, and does not brake there. A way down that has begun is given up for nothing less: once the
+  // brake is released it has to begin anew.
   [[nodiscard]] bool betters(const profile::BasicProfile<S>& ramp) const {
-    const S whole = leg_.length() - leg_.state().position;
-    const S slowest = leg_.end().velocity * (S(1) - road_rounding<S>);
-    S time = ramp.time_at(whole);
-    S position = ramp.length();
-    S speed = ramp.at(time).velocity;
+    const BasicState<S> now = leg_.state(), end = leg_.end();
+    S left = leg_.length() - now.position;
+    S time = ramp.time_at(left);
+    BasicState<S> there = ramp.at(time);
+    left -= ramp.length();
     GatePlanner planner(memory_.spare_gates.first(spare_count_));
-    for (std::size_t gate = 0; gate + 1 < spare_count_ && position < whole;) {
+    for (std::size_t gate = 0; gate + 1 < spare_count_ && left > S(0);) {
       const std::size_t next = next_knot<S>(memory_.spare_gates, gate);
       const auto profile = planner.profile(gate, next);
       if (!profile) return false;
-      const S within = profile->time_at(whole - position);
+      const S within = profile->time_at(left);
       time += within;
-      speed = profile->at(within).velocity;
-      position += profile->length();
+      there = profile->at(within);
+      left -= profile->length();
       gate = next;
     }
-    return time < leg_.left() * (S(1) - road_rounding<S>) && !(speed < slowest);
+    constexpr S but_for_rounding = S(1) - road_rounding<S>;
+    return time < leg_.left() * but_for_rounding && there.velocity >= end.velocity * but_for_rounding;
   }
 
   // Makes the plan in the spare gates the one that holds.
@@ -358,7 +360,11 @@ class BasicPlayer {
   void begin_span(std::size_t gate) {
     GatePlanner planner(memory_.gates.first(gate_count_));
     const std::size_t next = next_knot<S>(memory_.gates, gate);
-    if (const auto profile = planner.profile(gate, next)) return follow(BasicLeg<S>(*profile), at_, next);
+    if (const auto profile = planner.profile(gate, next)) {
+      const Gate& end = memory_.gates[next];
+      const profile::BasicRampLaw<S> law = profile::seven_phase_law(end.limits);
+      return follow(BasicLeg<S>(*profile, S(2) * law.half_duration(std::sqrt(end.speed))), at_, next);
+    }
     const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
                                     memory_.gates[gate].limits);
     follow(BasicLeg<S>(*stop), at_, no_gate);
