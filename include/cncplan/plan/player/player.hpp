@@ -263,6 +263,7 @@ class BasicPlayer {
   void start() {
     if (road_.asked.held || road_.asked.stopped || road_.ring.end() == road_.ring.oldest()) return;
     at_ = road_.turn_round(at_);
+    if (at_.along == S(0) && pauses_here()) return;
     if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
   }
 
@@ -404,11 +405,19 @@ class BasicPlayer {
     if (block != nullptr && road_.direction > 0) wait_for(block->caps.pause);
     if (asked.single_step || (asked.optional_stops && block != nullptr && block->optional_stop))
       asked.held = true;
-    if (road_.pauses_before(at_.block, block != nullptr ? block->line : 0)) {
-      asked.held = true;
+    pauses_here();
+    rest();
+  }
+
+  // Holds at a junction where a pause is asked for. Whether one is.
+  bool pauses_here() {
+    const std::int64_t done = at_.block - 1;
+    const bool pauses = road_.pauses_before(at_.block, road_.ring.holds(done) ? road_.ring[done].line : 0);
+    if (pauses) {
+      road_.asked.held = true;
       road_.passed_pause = at_.block;
     }
-    rest();
+    return pauses;
   }
 
   void rest() {
