@@ -304,6 +304,7 @@ TEST_CASE("motions carry how closely the path is kept") {
   CHECK(motions[4].tolerance == 25.4);
   CHECK(motions[4].merge_tolerance == 0.0);
   for (const int i : {0, 1, 2, 5, 6}) CHECK_FALSE(motions[static_cast<std::size_t>(i)].tolerance);
+}
 
 TEST_CASE("a program begins where the axes stand") {
   gcode::Dialect dialect;

@@ -106,6 +106,7 @@ TEST_CASE("over a known length limits are shared so that it takes less time, and
     INFO(radius << ' ' << turns);
     CHECK(gain(radius, turns) >= -1e-12);
   }
+}
 
 TEST_CASE("a single arc keeps its limits as vectors, which its profile alone does not") {
   // the quarter circle of the first example, differenced twice and thrice over 0.1 ms
