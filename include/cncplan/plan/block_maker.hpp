@@ -50,7 +50,7 @@ class BlockMaker {
   // Where no block is open, one of no length; but a stop before any motion stops nothing.
   void rest(double seconds) {
     if (!open_ && !moved_ && !(seconds > 0.0)) return;
-    if (!open_) open_ = Block{path::Line(at_, at_), limits_, junction::Kind::rapid, true, 0.0};
+    if (!open_) open_ = Block{path::Line<3>(at_, at_), limits_, junction::Kind::rapid, true, 0.0};
     open_->stop_at_end = true;
     open_->pause += seconds;
   }
