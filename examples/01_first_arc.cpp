@@ -9,7 +9,8 @@ int main() {
   if (!arc) return 1;
 
   const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
-  const auto profile = profile::five_phase(arc->length(), {.start = 0.0, .end = 0.0}, limits);
+  const Limits along = plan::limits_on(*arc, limits);  // leaves room for what the bend adds
+  const auto profile = profile::five_phase(arc->length(), {.start = 0.0, .end = 0.0}, along);
   if (!profile) return 1;
 
   for (const auto& sample : interpolate::samples(*arc, *profile, 1e-3))

@@ -43,14 +43,15 @@ void tick() {
 }
 
 // Waits for room, while the machine runs. Caps say what the machine bears, whatever the program's feed: so
-// far an override may go.
+// far an override may go. Rapids have an override of their own, up to their rate.
 void run(plan::Block block) {
   const double feed = block.limits.velocity;
-  block.limits.velocity = limits.velocity;
+  const bool rapid = block.kind == junction::Kind::rapid;
+  if (!rapid) block.limits.velocity = limits.velocity;
   const plan::Block& before = blocks[(pushed + room - 1) % room];
   const auto caps = pushed == 0 ? plan::caps_from_rest(block, plan::ShareLimits{})
                                 : plan::caps(before, block, junction::Deviation{0.01}, plan::ShareLimits{});
-  while (!player.push({.caps = caps, .feed = feed})) tick();
+  while (!player.push({.caps = caps, .feed = feed, .rapid = rapid})) tick();
   blocks[pushed++ % room] = block;
 }
 

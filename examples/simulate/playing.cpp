@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "support/failure.hpp"
@@ -120,9 +121,10 @@ support::Plan play(const std::vector<plan::PlayedBlock>& pieces, const std::vect
   std::vector<plan::Gate> gates(window + 1), spare_gates(window + 1);
   plan::Player player({memory, ahead, gates, spare_gates});
   Record record(pieces, plan);
-  constexpr std::int64_t most_ticks = 10'000'000'000;
+  constexpr double most_ticks = 1e10;
   double time = 0.0;
   std::int64_t ticks = 1;  // the next one ends at so many periods
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::size_t fed = 0;
   auto event = events.begin();
   plan::Played now{};
@@ -133,17 +135,22 @@ support::Plan play(const std::vector<plan::PlayedBlock>& pieces, const std::vect
     const bool done = fed == pieces.size() && player.finished();
     const double lasts = player.until_change();
     if (done || player.stopped() || (std::isinf(lasts) && event == events.end())) break;
+    const double next_event = event != events.end() ? event->time : infinity;
+    if (std::min(time + lasts, next_event) > most_ticks * period)
+      throw support::Failure(
+          support::Exit::bad_input,
+          fmt::format("with its events the program takes more than {:.0e} periods of {:.6g} s", most_ticks,
+                      period));
+    if (std::isinf(lasts))
+      ticks = static_cast<std::int64_t>(next_event / period);  // at rest nothing is ticked
+    while (!(static_cast<double>(ticks) * period > time)) ++ticks;
     const double next_tick = static_cast<double>(ticks) * period;
-    const double due = event != events.end() ? std::min(next_tick, event->time) : next_tick;
+    const double due = std::isinf(lasts) ? next_event : std::min(next_tick, next_event);
     const bool edge = lasts < due - time;
     const double step = edge ? lasts : due - time;
     record.add(now, time, step);
     player.tick(step);
     time = edge ? time + step : due;
-    if (time >= next_tick && ++ticks > most_ticks)
-      throw support::Failure(support::Exit::bad_input,
-                             fmt::format("with its events the program takes more than {} periods of {:.6g} s",
-                                         most_ticks, period));
   }
   record.finish();
   plan.duration = time;

@@ -3,6 +3,7 @@
 
 #include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/box.hpp"
+#include "cncplan/core/compiler.hpp"
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/error.hpp"
@@ -45,6 +46,7 @@
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/junction/geometry.hpp"
 #include "cncplan/junction/minimum.hpp"
+#include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/cartesian.hpp"
@@ -109,6 +111,7 @@
 #include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/plan/player/brake.hpp"
 #include "cncplan/plan/player/brake_ahead.hpp"
+#include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/plan/player/horizon.hpp"
 #include "cncplan/plan/player/leg.hpp"
 #include "cncplan/plan/player/player.hpp"

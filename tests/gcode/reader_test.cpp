@@ -1,7 +1,9 @@
 #include "cncplan/gcode/reader.hpp"
 
 #include <array>
+#include <cmath>
 #include <string>
+#include <variant>
 
 #include "gcode/support.hpp"
 #include "support/catch.hpp"
@@ -302,4 +304,22 @@ TEST_CASE("motions carry how closely the path is kept") {
   CHECK(motions[4].tolerance == 25.4);
   CHECK(motions[4].merge_tolerance == 0.0);
   for (const int i : {0, 1, 2, 5, 6}) CHECK_FALSE(motions[static_cast<std::size_t>(i)].tolerance);
+}
+
+TEST_CASE("a program begins where the axes stand") {
+  gcode::Dialect dialect;
+  dialect.work_offsets[0] = {1.0, 0.0, 0.0};
+  gcode::Reader reader(dialect, {5.0, -2.0, 3.0});
+  std::array<gcode::Item, gcode::max_items_per_line> items;
+  CHECK(reader.position()[0] == 4.0);
+  REQUIRE(reader.read_line("G91 G1 X1 F600", items.begin()));
+  const auto motion = std::get<gcode::Motion>(items[0]);
+  CHECK(motion.start[0] + motion.offset[0] == 5.0);
+  CHECK(motion.end[0] + motion.offset[0] == 6.0);
+  REQUIRE(reader.read_line("G90 G53 G0 X0", items.begin()));
+  CHECK(std::get<gcode::Motion>(items[0]).start[0] == 5.0);
+  gcode::Reader nowhere({}, {std::nan(""), 0.0, 0.0});
+  const auto refused = nowhere.read_line("G1 X1 F600", items.begin());
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().error.code == ErrorCode::not_finite);
 }

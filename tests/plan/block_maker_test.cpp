@@ -1,7 +1,10 @@
 #include "cncplan/plan/block_maker.hpp"
 
 #include <string_view>
+#include <utility>
 
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/read_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
@@ -42,6 +45,36 @@ TEST_CASE("a pause before any motion stands on a block of length zero, a stop th
   CHECK(made->front().pause == 2.0);
   CHECK(blocks("T1\nM30\n")->empty());
   CHECK(blocks("")->empty());
+}
+
+TEST_CASE("behind a flush, dwells and stops stand where the motion stands") {
+  const Vector3 start(7.0, -3.0, 1.0);
+  plan::BlockMaker maker(limits, 25.0, {}, start);
+  const gcode::Item dwell = gcode::Dwell{.seconds = 0.5}, stop = gcode::Stop{};
+  const gcode::Item move =
+      gcode::Motion{.kind = gcode::MotionKind::line, .start = {7, -3, 1}, .end = {10.0, 4.0, 2.0}};
+  CHECK_FALSE(*maker.take(stop));
+  CHECK_FALSE(maker.finish());  // there is no motion to be stopped
+  CHECK_FALSE(*maker.take(dwell));
+  const auto first = maker.finish();
+  REQUIRE(first);
+  CHECK(first->segment.start() == start);
+  CHECK(first->segment.end() == start);
+  CHECK_FALSE(*maker.take(move));
+  const auto moved = maker.finish();
+  REQUIRE(moved);
+  CHECK_FALSE(moved->stop_at_end);
+  for (const auto& [item, pause] : {std::pair(dwell, 0.5), std::pair(stop, 0.0)}) {
+    CHECK_FALSE(*maker.take(item));
+    const auto rest = maker.finish();
+    REQUIRE(rest);
+    CHECK(rest->segment.start() == Vector3(10.0, 4.0, 2.0));
+    CHECK(rest->segment.length() == 0.0);
+    CHECK(rest->stop_at_end);
+    CHECK(rest->pause == pause);
+    const auto caps = plan::caps(*moved, *rest, junction::Deviation{1e3}, plan::ShareLimits{});
+    CHECK(caps.entry == 0.0);
+  }
 }
 
 TEST_CASE("what cannot be read and what is no arc is an error at its place") {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cncplan/path/arc_from_radius.hpp"
+#include "cncplan/profile/five_phase.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -104,6 +106,32 @@ TEST_CASE("over a known length limits are shared so that it takes less time, and
     INFO(radius << ' ' << turns);
     CHECK(gain(radius, turns) >= -1e-12);
   }
+}
+
+TEST_CASE("a single arc keeps its limits as vectors, which its profile alone does not") {
+  // the quarter circle of the first example, differenced twice and thrice over 0.1 ms
+  const auto arc = path::arc_from_radius({0, 0, 0}, {5, 5, 0}, 5.0, Turn::clockwise, Plane::xy);
+  REQUIRE(arc);
+  const Limits limits{30.0, 1000.0, 10000.0};
+  const auto worst = [&](const Limits& along) {
+    const auto profile = profile::five_phase(arc->length(), {0.0, 0.0}, along);
+    constexpr double h = 1e-4;
+    Sums sums{};
+    const auto at = [&](double t) { return arc->position(arc->parameter_at(profile->at(t).position)); };
+    for (double t = 2.0 * h; t < profile->duration() - 2.0 * h; t += h) {
+      const Vector3 a = (at(t + h) - 2.0 * at(t) + at(t - h)) / (h * h);
+      const Vector3 j =
+          (at(t + 1.5 * h) - 3.0 * at(t + 0.5 * h) + 3.0 * at(t - 0.5 * h) - at(t - 1.5 * h)) / (h * h * h);
+      sums.acceleration = std::max<long double>(sums.acceleration, a.norm() / limits.acceleration);
+      sums.jerk = std::max<long double>(sums.jerk, j.norm() / limits.jerk);
+    }
+    return sums;
+  };
+  CHECK(worst(limits).jerk > 1.1L);
+  const Sums kept = worst(plan::limits_on(*arc, limits));
+  CHECK(kept.acceleration <= 1.0L);
+  CHECK(kept.jerk < 1.001L);
+  CHECK(kept.jerk > 0.7L);
 }
 
 TEST_CASE("speed alone: v^2/R and v^3/R^2 reach the limits and no more") {

@@ -4,9 +4,11 @@
 #include <string>
 
 #include "simulate/laws.hpp"
+#include "simulate/programs.hpp"
 #include "simulate/run.hpp"
 #include "simulate/table.hpp"
 #include "support/catch.hpp"
+#include "support/random.hpp"
 
 using namespace cncplan;
 
@@ -35,6 +37,58 @@ TEST_CASE("without events a played program takes the planned time") {
     CHECK(played["completed"] == true);
     CHECK(planned["completed"] == true);
     CHECK(played["end_error_mm"] == 0.0);
+  }
+}
+
+TEST_CASE("real programs end with events, and take the planned time without any") {
+  const test::Folder folder;
+  folder.write("none.csv", "t,event,value\n");
+  test::Random random;
+  const auto check = [&](const std::string& name, const std::string& program, int disturbed) {
+    CAPTURE(name);
+    const double planned = folder.run(program + " --json").json()["time_s"];
+    const auto played = folder.run(program + " --json --events none.csv").json();
+    CHECK(played["time_s"].get<double>() == Approx(planned).epsilon(1e-3));
+    CHECK(played["completed"] == true);
+    for (int sequence = 0; sequence < disturbed; ++sequence) {
+      std::string events;
+      double time = 0.0;
+      for (int i = 0; i < 30; ++i) {
+        time += random.log_uniform(1e-4, 0.1 * planned);
+        const char* const kinds[] = {"hold,", "resume,", "feed,", "rapid,"};
+        const int kind = random.integer(0, 3);
+        events += std::to_string(time) + "," + kinds[kind] +
+                  (kind < 2 ? "" : std::to_string(random.uniform(0.2, 1.0))) + "\n";
+      }
+      events += std::to_string(time + 1.0) + ",resume\n" + std::to_string(time + 1.0) + ",feed,1\n";
+      folder.write("events.csv", events);
+      CAPTURE(events);
+      const auto run = folder.run(program + " --json --events events.csv");
+      REQUIRE(run.exit == 0);
+      CHECK(run.json()["completed"] == true);
+    }
+  };
+  check("endless ticks", test::quoted(CNCPLAN_TEST_PROGRAMS "/endless_ticks.ngc"), 20);
+  test::for_real_programs(
+      [&](const std::string& name, const std::string& path) { check(name, test::quoted(path + ".ngc"), 2); });
+}
+
+TEST_CASE("a pause before the first motion is made") {
+  const test::Folder folder;
+  folder.write("e.csv", "0,pause,2\n3,resume\n");
+  REQUIRE(folder.run_text("G21\nG1 X10\nX20\n", "--quiet --events e.csv --samples s.csv").exit == 0);
+  const test::Table samples(folder / "s.csv");
+  CHECK(samples["x"][row_at(samples, 2.99)] == 0.0);
+  CHECK(samples["x"].back() == 20.0);
+}
+
+TEST_CASE("a run that takes too long is refused at once") {
+  const test::Folder folder;
+  for (const char* events : {"0,feed,1e-8\n", "0.1,hold\n1e9,resume\n"}) {
+    folder.write("e.csv", events);
+    const auto run = folder.run_text("G1 X10 F600\n", "--json --events e.csv");
+    CHECK(run.exit == 2);
+    CHECK(run.err == "error: with its events the program takes more than 1e+10 periods of 0.001 s\n");
   }
 }
 

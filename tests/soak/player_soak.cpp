@@ -24,6 +24,7 @@ int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
                  {"travel (mm)", &F::travel, 1e-9},
                  {"acceleration in space (relative)", &F::sum_acceleration, 1e-9},
                  {"jerk in space (relative)", &F::sum_jerk, 1e-6},
+                 {"dwells (s)", &F::dwell, 1e-9},
                  {"end (mm)", &F::end, 1e-9}};
   std::uint64_t ticks = 0, blocks = 0, requests = 0, unfinished = 0;
   for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {

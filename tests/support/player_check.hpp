@@ -25,6 +25,7 @@ struct PlayerFaults {
   double sum_acceleration{};  ///< of the point in space, by its velocity at both ends of a tick, above the
                               ///< limit, relative
   double sum_jerk{};          ///< of the point in space, by its acceleration at both ends of a tick, likewise
+  double dwell{};             ///< s of a dwell that were not waited for, beyond two ticks
   double end{};               ///< mm from the end of the last block
   bool finished{};
   long ticks{};
@@ -70,7 +71,7 @@ inline PlayedProgram random_played(Random& random, int count) {
       motion.limits.acceleration *= random.uniform(0.4, 1.0);
       motion.limits.jerk *= random.uniform(0.3, 1.0);
     }
-    if (random.integer(0, 30) == 0) motion.pause = 0.01;
+    if (random.integer(0, 7) == 0) motion.pause = 0.01;
     plan::PlayedBlock block;
     block.caps = i == 0 ? plan::caps_from_rest(motion, plan::ShareLimits{})
                         : plan::caps(program.motions.back(), motion, policy, plan::ShareLimits{});
@@ -122,6 +123,7 @@ inline PlayerFaults play(const PlayedProgram& played, Random& random, int mean_g
   const auto grow = [](double& worst, double value) { worst = std::max(worst, value); };
   plan::Played before{0, 0.0, 0.0, 0.0, 0.0, true};
   double position = 0.0;
+  long still = 0;  // ticks at the place where it is
   std::size_t fed = 0;
   for (; faults.ticks < most_ticks; ++faults.ticks) {
     const bool calm = faults.ticks >= restless;
@@ -172,6 +174,16 @@ inline PlayerFaults play(const PlayedProgram& played, Random& random, int mean_g
       limits.acceleration = std::max(limits.acceleration, program[i].caps.limits.acceleration);
       limits.jerk = std::max(limits.jerk, program[i].caps.limits.jerk);
     }
+    {
+      const double here = start[static_cast<std::size_t>(now.block)] + now.along;
+      for (std::size_t i = low; i <= high; ++i) {
+        const double pause = i > 0 ? program[i - 1].caps.pause : 0.0;
+        const bool passed = position < start[i] + 1e-9 && here > start[i] + 1e-9;
+        const double waited =
+            std::abs(position - start[i]) < 1e-9 ? static_cast<double>(still) * period : 0.0;
+        if (passed && pause > 0.0) grow(faults.dwell, pause - waited - 2.0 * period);
+      }
+    }
     const double change = limits.jerk * period;
     const double slack = change * period;  // speed that may hide within a tick
     grow(faults.jerk, std::abs(now.acceleration - before.acceleration) / change - 1);
@@ -184,6 +196,7 @@ inline PlayerFaults play(const PlayedProgram& played, Random& random, int mean_g
     grow(faults.travel,
          std::max(-now.along, now.along - program[static_cast<std::size_t>(now.block)].caps.length));
     grow(faults.travel, std::abs(moved - period * (now.velocity + before.velocity) / 2) - slack * period / 4);
+    still = std::abs(moved) < 1e-9 ? still + 1 : 0;
     position += moved;
     if (now.block == before.block && !turned) {
       // over a tick in one block a difference is a mean, and so within the limit too

@@ -1,6 +1,8 @@
 // A curve at one parameter: where it is and how it goes on.
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan {
 
 /// What `at(u)` of a path gives in one evaluation; otherwise position(u), derivative(u),

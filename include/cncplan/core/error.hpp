@@ -1,6 +1,8 @@
 // Errors as values: a stable code, the field at fault, its value and the bound it broke.
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <tl/expected.hpp>
 
 #include <array>

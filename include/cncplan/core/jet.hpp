@@ -1,6 +1,8 @@
 // A number together with its first three derivatives along one parameter.
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <cmath>
 #include <concepts>
 

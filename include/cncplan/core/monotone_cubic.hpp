@@ -1,6 +1,8 @@
 // The inverse of a distance that grows as a cubic of time: how planned motion is turned round into times.
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,8 @@
 // Working planes and the sense of rotation in them (KK22 Table 2).
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <array>
 #include <cstdint>
 

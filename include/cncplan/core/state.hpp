@@ -1,6 +1,8 @@
 // The state of motion along a path at one instant.
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <concepts>
 
 namespace cncplan {

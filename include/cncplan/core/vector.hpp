@@ -1,6 +1,8 @@
 // The vector of the whole library: a fixed-size Eigen column.
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <Eigen/Core>
 #include <concepts>
 

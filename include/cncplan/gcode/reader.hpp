@@ -28,8 +28,8 @@ inline constexpr std::size_t max_items_per_line = max_passed + 10;
 /// Radians per degree, the unit of rotary axes in the text.
 inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 
-/// The state of an RS274/NGC interpreter. At the start all axes are at 0 and G17 G21 G90 G91.1 G94 G54 hold;
-/// no motion code does, and no feed.
+/// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
+/// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
 ///
 ///     gcode::Reader reader(dialect);
 ///     for (std::string_view line : lines)
@@ -37,14 +37,18 @@ inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 class Reader {
  public:
   /// With a dialect that `validate` refuses every line is in error, with what is wrong with the dialect.
-  /// `start`: where the axes are, machine coordinates.
+  /// `start`: where the axes stand, in machine coordinates, mm and rad; not finite, it is refused alike.
   explicit Reader(const Dialect& dialect = {}, const Position& start = {})
       : readable_(validate(dialect).map([](const Dialect&) {})),
         dialect_(readable_ ? dialect : Dialect{}),
-        alphabet_(dialect_) {
+        alphabet_(dialect_),
+        machine_(start) {
     offset_ = dialect_.work_offsets[0];
-    machine_ = start;
-    for (std::size_t i = 0; i < axis_count(); ++i) current_[i] = start[i] - offset_[i];
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      current_[i] = machine_[i] - offset_[i];
+      if (readable_ && !std::isfinite(machine_[i]))
+        readable_ = tl::unexpected(Error{ErrorCode::not_finite, "start", machine_[i], 0.0});
+    }
   }
 
   /// Reads one line (without its end; carriage returns there are passed over) and writes its items in the

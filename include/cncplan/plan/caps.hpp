@@ -26,17 +26,16 @@ using BlockCaps = BasicBlockCaps<double>;
 /// The caps of the first block of a program, or of one behind a stop.
 template <std::floating_point S, CurveRule<S> Rule>
 [[nodiscard]] BasicBlockCaps<S> caps_from_rest(const BasicBlock<S>& block, const Rule& rule) {
-  const S length = block.segment.length();
-  const BasicBend<S> bend{block.segment.max_curvature(), block.segment.max_curvature_change(), length};
-  return {length, S(0), rule(bend, block.limits), block.pause};
+  return {block.segment.length(), S(0), limits_on(block.segment, block.limits, rule), block.pause};
 }
 
-/// The caps of a block that follows another: the junction by the policy, the inside by its bend.
+/// The caps of a block that follows another: the junction by the policy, the inside by its bend. A block of
+/// no length is a rest.
 template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule>
 [[nodiscard]] BasicBlockCaps<S> caps(const BasicBlock<S>& before, const BasicBlock<S>& block,
                                      const Policy& policy, const Rule& rule) {
   BasicBlockCaps<S> result = caps_from_rest(block, rule);
-  if (before.stop_at_end || before.pause > S(0)) return result;
+  if (before.stop_at_end || before.pause > S(0) || !(result.length > S(0))) return result;
   junction::BasicGeometry<S> junction{side(before, true), side(block, false), block.limits};
   junction.limits.velocity = std::min(before.limits.velocity, block.limits.velocity);
   junction.limits.acceleration = std::min(before.limits.acceleration, block.limits.acceleration);

@@ -116,4 +116,12 @@ struct ShareLimits {
   }
 };
 
+/// Limits along a whole curve (of `path/`), mm, s, from limits of the motion: by default such that the
+/// vectors of acceleration and jerk keep them, whatever a profile within the result does.
+template <class Curve, std::floating_point S, CurveRule<S> Rule = ShareLimits>
+[[nodiscard]] BasicLimits<S> limits_on(const Curve& curve, const BasicLimits<S>& limits,
+                                       const Rule& rule = {}) {
+  return rule(BasicBend<S>{curve.max_curvature(), curve.max_curvature_change(), curve.length()}, limits);
+}
+
 }  // namespace cncplan::plan

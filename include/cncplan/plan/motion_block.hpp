@@ -44,19 +44,19 @@ namespace cncplan::plan {
   }
 }
 
-/// The speed that a motion asks for along `length` mm: rapids run at the rapid rate, and feed moves without a
-/// feed so far at `fastest`; nothing is faster than `fastest`.
+/// The speed that a motion asks for along `length` mm: rapids run at the rapid rate, whatever `fastest` is;
+/// feed moves at no more than `fastest`, and at that where there is no feed so far.
 [[nodiscard]] inline double feed(const gcode::Motion& motion, double length, double fastest,
                                  double rapid_rate) {
-  if (motion.kind == gcode::MotionKind::rapid) return std::min(rapid_rate, fastest);
+  if (motion.kind == gcode::MotionKind::rapid) return rapid_rate;
   if (!motion.feed) return fastest;
   const double wanted =
       motion.feed_mode == gcode::FeedMode::inverse_time ? *motion.feed * length : *motion.feed;
   return std::min(wanted, fastest);
 }
 
-/// The block of a motion under limits along the path. Errors: those of `segment` and of `validate`, and
-/// not_positive for the rapid rate (mm/s) or a feed of zero.
+/// The block of a motion under limits along the path; the velocity limit is that of feed moves. Errors: those
+/// of `segment` and of `validate`, and not_positive for the rapid rate (mm/s) or a feed of zero.
 [[nodiscard]] inline Expected<Block> block(const gcode::Motion& motion, const Limits& limits,
                                            double rapid_rate,
                                            const path::ArcTolerance<double>& tolerance = {}) {

@@ -28,6 +28,7 @@ struct BasicGate {
   bool knot{};            ///< zero acceleration here
   bool fixed{};           ///< a knot by force
   bool settled{};         ///< its speed would be the same whatever came behind it
+  S sure{};  ///< mm/s, the highest speed here that can be brought down to whatever is asked behind
 };
 
 using Gate = BasicGate<double>;
@@ -35,6 +36,10 @@ using Gate = BasicGate<double>;
 /// A span keeps the lowest acceleration and jerk limits of its blocks. Where they differ by more than this, a
 /// knot divides them.
 inline constexpr double shared_limits_ratio = 1.3;
+
+/// A ramp from a speed v to a lower one can be this much longer than that to rest: to v/3, where the jerk
+/// limit alone binds, by the highest value of (1 + x) sqrt(1 - x), rounded up.
+inline constexpr double longest_ramp = 1.09;
 
 /// Reduces blocks to gates: writes at most one more than there are blocks into `gates`, the last behind the
 /// end, and returns how many. The motion starts at `start_speed` and ends at rest. The start of block
@@ -56,10 +61,10 @@ std::size_t make_gates(std::span<const BasicBlockCaps<S>> blocks, S start_speed,
         i == 0 || i == divide || high.acceleration > ratio * low.acceleration || high.jerk > ratio * low.jerk;
     if (fixed) low = high = limits;
     if (fixed || limits != before || cap < limits.velocity)
-      gates[count++] = {i, cap, cap, S(0), limits, true, fixed, false};
+      gates[count++] = {i, cap, cap, S(0), limits, true, fixed, false, S(0)};
     gates[count - 1].gap += blocks[i].length;
   }
-  gates[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true, false};
+  gates[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true, false, S(-1)};
   return count;
 }
 
@@ -137,11 +142,14 @@ class GatePlanner {
       Gate& gate = gates_[i];
       distance += gate.gap;
       share(limits, gate.limits);
+      const bool right_is_sure = gates_[right].speed <= gates_[right].sure;
       const S reachable = solver_(limits).reachable_speed(gates_[right].speed, distance);
+      gate.sure = right_is_sure
+                      ? reachable
+                      : solver_(limits).reachable_speed(S(0), distance / static_cast<S>(longest_ramp));
       gate.knot = gate.fixed || gate.cap <= reachable;
       if (!gate.knot) continue;
       gate.speed = std::min(gate.cap, reachable);
-      gate.settled = gate.cap <= reachable;
       right = i;
       distance = S(0);
       limits = {fastest_, infinity, infinity};
@@ -160,8 +168,8 @@ class GatePlanner {
       const S reachable = solver_(limits).reachable_speed(gates_[left].speed, distance);
       gate.knot = gate.fixed || gate.speed <= reachable;
       if (!gate.knot) continue;
-      gate.settled = gate.settled || reachable <= gate.speed;
       gate.speed = std::min(gate.speed, reachable);
+      gate.settled = gate.speed <= gate.sure;
       left = i;
       distance = S(0);
       limits = {fastest_, infinity, infinity};

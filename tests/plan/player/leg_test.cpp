@@ -38,7 +38,7 @@ TEST_CASE("edges are where the jerk changes, the turn lies in the cruise, before
   const auto phases = profile->phases();
   plan::BasicLeg<double> leg(*profile);
   const double down = profile->duration() - phases[4].time;
-  CHECK(leg.to_turn() == Approx(phases[4].time - 0.05 * down));
+  CHECK(leg.to_turn() == Approx(phases[4].time - 0.25 * down));
   for (const double jerk : {10000.0, -10000.0, 0.0, -10000.0, 10000.0}) {
     CHECK(leg.state().jerk == jerk);
     const double edge = leg.to_edge();

@@ -156,7 +156,7 @@ TEST_CASE("it begins at any block, and goes on elsewhere after a stop") {
   Rig rig(4, 2);
   REQUIRE(rig.player.skip_to(1000));
   CHECK(rig.player.finished());
-  CHECK(rig.player.tick(1e-3) == plan::Played{999, 0.0, 0.0, 0.0, 0.0, true});
+  CHECK(rig.player.tick(1e-3) == plan::Played{-1, 0.0, 0.0, 0.0, 0.0, true});
   auto fast = straight(5.0);  // would be entered at speed
   int pushed = 0;
   while (rig.player.push(fast)) ++pushed;
@@ -209,6 +209,7 @@ TEST_CASE("random requests break no limit, and the end stays exact") {
     CHECK(faults.travel < 1e-9);
     CHECK(faults.sum_acceleration < 1e-9);
     CHECK(faults.sum_jerk < 1e-6);
+    CHECK(faults.dwell < 1e-9);
     CHECK(faults.finished);
     CHECK(faults.end < 1e-9);
   }

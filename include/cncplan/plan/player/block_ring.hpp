@@ -12,7 +12,8 @@ namespace cncplan::plan {
 
 /// A block as real-time control needs it. The velocity in `caps.limits` is what its shape and its axes bear;
 /// the feed is what the program asks for, and what the override acts on. Domain, which is not checked: a
-/// finite length > 0, limits that `validate` accepts and whose jerk is finite, entry and pause finite, >= 0.
+/// finite length >= 0, limits that `validate` accepts and whose jerk is finite, entry and pause finite, >= 0.
+/// A block of no length waits where it stands: the motion rests before it, as its entry says, and behind it.
 /// A feed that is not positive, or NaN, is never run: the motion rests before it.
 template <std::floating_point S>
 struct BasicPlayedBlock {

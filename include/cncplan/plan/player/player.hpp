@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cncplan/plan/player/brake_ahead.hpp"
+#include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/plan/player/leg.hpp"
 #include "cncplan/plan/player/ramp_ahead.hpp"
 #include "cncplan/plan/player/road.hpp"
@@ -36,7 +37,7 @@ using PlayerMemory = BasicPlayerMemory<double>;
 /// Where the machine is after a tick.
 template <std::floating_point S>
 struct BasicPlayed {
-  std::int64_t block{};  ///< number of the block; that before the first while none has come
+  std::int64_t block{};  ///< number of the block; -1 while there is none
   S along{};             ///< mm from the block's start
   S velocity{};          ///< mm/s along the path, negative when it runs backwards
   S acceleration{};      ///< mm/s^2, likewise
@@ -89,7 +90,7 @@ class BasicPlayer {
 
   /// Comes to rest likewise, and does not go on: the program ends there.
   void stop() {
-    wait_ = S(0);
+    wait_for(S(0));
     ask(road_.asked.stopped, true);
   }
 
@@ -139,7 +140,7 @@ class BasicPlayer {
     road_.asked.stopped = false;
     road_.passed_pause = -1;
     at_ = {block, S(0)};
-    wait_ = S(0);
+    wait_for(S(0));
     pending_ = false;
     return true;
   }
@@ -152,9 +153,9 @@ class BasicPlayer {
     int plans = most_plans;
     const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: legs end blocks
     for (std::size_t hops = 0; (left > S(0) || leg_over()) && hops < most_hops; ++hops) {
-      if (wait_ > S(0)) {
-        const S waited = std::min(wait_, left);
-        wait_ -= waited;
+      if (const S wait = waits(); wait > S(0)) {
+        const S waited = std::min(wait, left);
+        dwell_.add(waited);
         left -= waited;
       } else if (idle_) {
         if (!pending_ || plans-- == 0) break;
@@ -174,13 +175,13 @@ class BasicPlayer {
         if (next_leg(plans > 0)) --plans;
       }
     }
-    rested_ = idle_ && !(wait_ > S(0)) ? rested_ + left : S(0);
+    rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
     return played();
   }
 
   /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
   [[nodiscard]] S until_change() const {
-    if (wait_ > S(0)) return wait_;
+    if (waits() > S(0)) return waits();
     if (idle_) return std::numeric_limits<S>::infinity();
     const S turn = leg_.to_turn();
     return could_better() && turn > S(0) ? std::min(turn, leg_.to_edge()) : leg_.to_edge();
@@ -191,7 +192,7 @@ class BasicPlayer {
 
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && !(wait_ > S(0)) && road_.direction > 0 && at_.block >= road_.ring.end();
+    return idle_ && !(waits() > S(0)) && road_.direction > 0 && at_.block >= road_.ring.end();
   }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return road_.asked.stopped && idle_; }
@@ -209,8 +210,17 @@ class BasicPlayer {
     pending_ = true;
   }
 
+  // Seconds of a dwell that are left.
+  [[nodiscard]] S waits() const { return dwell_.until(S(0)); }
+  void wait_for(S seconds) {
+    dwell_ = {};
+    dwell_.add(-seconds);
+  }
+
   // Whether blocks that the plan does not know could spare the way down that this leg ends with.
-  [[nodiscard]] bool could_better() const { return more_ && !leg_settled_; }
+  [[nodiscard]] bool could_better() const {
+    return more_ && !leg_settled_ && leg_.state().position > road_rounding<S>;
+  }
 
   [[nodiscard]] bool leg_over() const { return !idle_ && !(leg_.left() > S(0)); }
 
@@ -224,7 +234,7 @@ class BasicPlayer {
 
   [[nodiscard]] BasicPlayed<S> played() {
     const BlockRing<S>& ring = road_.ring;
-    if (ring.end() == ring.oldest()) return {at_.block - 1, S(0), S(0), S(0), S(0), true};
+    if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = leg_.state();
     BasicSpot<S> at = locate();
     if (!ring.holds(at.block))  // behind the last
@@ -242,21 +252,22 @@ class BasicPlayer {
 
   // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
   void renew() {
-    if (wait_ > S(0)) return;
-    pending_ = false;
+    if (waits() > S(0)) return;
+    const bool asked = std::exchange(pending_, false);
     if (idle_)
       start();
     else
-      pending_ = !replan();
+      pending_ = !replan(asked) && asked;
   }
 
   void start() {
     if (road_.asked.held || road_.asked.stopped || road_.ring.end() == road_.ring.oldest()) return;
     at_ = road_.turn_round(at_);
+    if (at_.along == S(0) && pauses_here()) return;
     if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
   }
 
-  bool replan() {
+  bool replan(bool asked) {
     const BasicState<S> now = leg_.state();
     const BasicSpot<S> at = locate();
     if (!road_.ring.holds(at.block)) return false;
@@ -275,6 +286,7 @@ class BasicPlayer {
     for (const S target : {wanted, settled > negligible_speed<S> ? std::min(settled, wanted) : S(0)}) {
       const auto ramp = ramp_ahead(road_, at, now, target);
       if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
+      if (!asked && !betters(*ramp)) continue;
       take_spare();
       follow(BasicLeg<S>(*ramp), at, 0);
       return true;
@@ -294,6 +306,30 @@ class BasicPlayer {
     GatePlanner planner(memory_.spare_gates.first(spare_count_));
     planner.solve();
     return !(memory_.spare_gates[0].speed < speed);
+  }
+
+  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the leg ends, no
+  // slower there, and does not brake there. A way down that has begun is given up for nothing less: once the
+  // brake is released it has to begin anew.
+  [[nodiscard]] bool betters(const profile::BasicProfile<S>& ramp) const {
+    const BasicState<S> now = leg_.state(), end = leg_.end();
+    S left = leg_.length() - now.position;
+    S time = ramp.time_at(left);
+    BasicState<S> there = ramp.at(time);
+    left -= ramp.length();
+    GatePlanner planner(memory_.spare_gates.first(spare_count_));
+    for (std::size_t gate = 0; gate + 1 < spare_count_ && left > S(0);) {
+      const std::size_t next = next_knot<S>(memory_.spare_gates, gate);
+      const auto profile = planner.profile(gate, next);
+      if (!profile) return false;
+      const S within = profile->time_at(left);
+      time += within;
+      there = profile->at(within);
+      left -= profile->length();
+      gate = next;
+    }
+    constexpr S but_for_rounding = S(1) - road_rounding<S>;
+    return time < leg_.left() * but_for_rounding && there.velocity >= end.velocity * but_for_rounding;
   }
 
   // Makes the plan in the spare gates the one that holds.
@@ -325,7 +361,11 @@ class BasicPlayer {
   void begin_span(std::size_t gate) {
     GatePlanner planner(memory_.gates.first(gate_count_));
     const std::size_t next = next_knot<S>(memory_.gates, gate);
-    if (const auto profile = planner.profile(gate, next)) return follow(BasicLeg<S>(*profile), at_, next);
+    if (const auto profile = planner.profile(gate, next)) {
+      const Gate& end = memory_.gates[next];
+      const profile::BasicRampLaw<S> law = profile::seven_phase_law(end.limits);
+      return follow(BasicLeg<S>(*profile, S(2) * law.half_duration(std::sqrt(end.speed))), at_, next);
+    }
     const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
                                     memory_.gates[gate].limits);
     follow(BasicLeg<S>(*stop), at_, no_gate);
@@ -336,13 +376,18 @@ class BasicPlayer {
     const BasicState<S> end = leg_.state();
     const BasicSpot<S> from = at_;
     at_ = road_.snapped(road_.advance(at_, leg_.length()));
+    const bool rests = !(end.velocity > negligible_speed<S>);
+    const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
     if (next_gate_ == no_gate) {
-      if (end.velocity > negligible_speed<S> && road_.ring.holds(at_.block))
+      if (!rests && road_.ring.holds(at_.block))
         return follow(braking_on(road_, at_, end, memory_.ahead), at_, no_gate), false;
-      const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
       return at_junction && !road_.asked.stopped ? rest_as_planned() : rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
+    // a ramp that began on the way to a stop, and ends there
+    const std::int64_t done = at_.block - road_.direction;
+    if (rests && at_junction && road_.ring.holds(done) && road_.stops_behind(done))
+      return rest_as_planned(), false;
     // nothing that comes can change where a span ends that is settled
     const bool plans = may_plan && more_ && !memory_.gates[next_knot<S>(memory_.gates, next_gate_)].settled;
     if (plans && plan_from(at_, memory_.gates[next_gate_].speed))
@@ -357,14 +402,22 @@ class BasicPlayer {
     const std::int64_t done = at_.block - road_.direction;
     const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;
     BasicRequests<S>& asked = road_.asked;
-    if (block != nullptr && road_.direction > 0) wait_ = block->caps.pause;
+    if (block != nullptr && road_.direction > 0) wait_for(block->caps.pause);
     if (asked.single_step || (asked.optional_stops && block != nullptr && block->optional_stop))
       asked.held = true;
-    if (road_.pauses_before(at_.block, block != nullptr ? block->line : 0)) {
-      asked.held = true;
+    pauses_here();
+    rest();
+  }
+
+  // Holds at a junction where a pause is asked for. Whether one is.
+  bool pauses_here() {
+    const std::int64_t done = at_.block - 1;
+    const bool pauses = road_.pauses_before(at_.block, road_.ring.holds(done) ? road_.ring[done].line : 0);
+    if (pauses) {
+      road_.asked.held = true;
       road_.passed_pause = at_.block;
     }
-    rest();
+    return pauses;
   }
 
   void rest() {
@@ -382,7 +435,7 @@ class BasicPlayer {
   std::size_t gate_count_ = 0;
   std::size_t spare_count_ = 0;
   std::size_t next_gate_ = no_gate;
-  S wait_{};                  // s of a dwell that are left
+  BasicElapsed<S> dwell_;     // s to its end, below 0
   S rested_{};                // s
   bool pending_ = false;      // a request has not been met yet
   bool more_ = false;         // there are blocks that the plan does not know

@@ -58,7 +58,8 @@ template <std::floating_point S>
       const BasicLimits<S>& there = road.ring[at.block].caps.limits;
       touched.acceleration = std::min(touched.acceleration, there.acceleration);
       touched.jerk = std::min(touched.jerk, there.jerk);
-      const bool last = !(until < whole);
+      // at speed it must not end at a junction, which would go unseen
+      const bool last = !(until < (target > S(0) ? whole + road_rounding<S> : whole));
       const S next_speed = last ? target : ramp.at(ramp.time_at(until)).velocity;
       const bool crest_here = crest.position >= position && crest.position <= until;
       const S highest = crest_here ? crest.velocity : std::max(speed, next_speed);

@@ -79,12 +79,14 @@ class BasicRoad {
     return direction > 0 ? ring[block].caps.entry : ring[block + 1].caps.entry;
   }
 
-  /// A spot so much farther on; `along` is below the block's length but where no block follows.
+  /// A spot so much farther on; `along` is below the block's length but where no block follows. A block
+  /// behind which the motion rests is not left by rounding: that is for `snapped`, once it rests.
   [[nodiscard]] Spot advance(Spot from, S distance) const {
     from.along += distance;
-    while (ring.holds(from.block) && from.along >= ring.length(from.block) &&
-           ring.holds(from.block + direction)) {
-      from.along -= ring.length(from.block);
+    while (ring.holds(from.block) && ring.holds(from.block + direction)) {
+      const S length = ring.length(from.block);
+      if (from.along < (stops_behind(from.block) ? length + road_rounding<S> : length)) break;
+      from.along -= length;
       from.block += direction;
     }
     return from;
@@ -93,7 +95,7 @@ class BasicRoad {
   /// A spot that is a junction but for rounding, at the junction.
   [[nodiscard]] Spot snapped(Spot spot) const {
     if (!ring.holds(spot.block)) return spot;
-    if (spot.along > ring.length(spot.block) - road_rounding<S>) return {spot.block + direction, S(0)};
+    if (spot.along >= ring.length(spot.block) - road_rounding<S>) return {spot.block + direction, S(0)};
     return {spot.block, spot.along < road_rounding<S> ? S(0) : spot.along};
   }
 
