@@ -124,8 +124,10 @@ class AxisPeaks {
 template <class P, class Paths>
 [[nodiscard]] AxisPeaks<P> axis_peaks(const Plan& plan, const Paths& path) {
   AxisPeaks<P> peaks;
-  plan.each_piece([&](std::size_t i, std::span<const cncplan::Phase> phases, double start, double origin) {
-    if (!(plan.lengths[i] > 0.0)) return;
+  DrivenPieces pieces(plan);
+  while (const auto driven = pieces.next()) {
+    const auto& [i, phases, start, origin] = *driven;
+    if (!(plan.lengths[i] > 0.0)) continue;
     const double begin = plan.timings[i].start - start;
     const double end = begin + plan.timings[i].duration;
     for (const cncplan::Phase& phase : phases) {
@@ -133,7 +135,7 @@ template <class P, class Paths>
       const double last = std::min(end - phase.time, phase.duration);
       if (first < last) peaks.grow(path(i), phase, origin, first, last);
     }
-  });
+  }
   return peaks;
 }
 

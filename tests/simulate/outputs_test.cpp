@@ -29,8 +29,8 @@ TEST_CASE("headers are the contract's") {
 
 TEST_CASE("the summary has all keys, each of its kind") {
   const test::Folder folder;
-  const auto run =
-      folder.run(test::example("pocket") + " --json --period 0.002 --vmax 25 --amax 900 --jmax 9000");
+  const auto run = folder.run(test::example("pocket") +
+                              " --json --count-steps --period 0.002 --vmax 25 --amax 900 --jmax 9000");
   REQUIRE(run.exit == 0);
   CHECK(run.err.empty());
   const auto json = run.json();
@@ -67,6 +67,24 @@ TEST_CASE("the summary has all keys, each of its kind") {
   CHECK(json["arcs"] == 7);
 }
 
+TEST_CASE("steps are in the summary where they are asked for") {
+  const test::Folder folder;
+  folder.write("m.toml", "");
+  const auto has_steps = [&](const std::string& options) {
+    const auto json = folder.run(test::example("pocket") + " --json " + options).json();
+    const auto table = folder.run(test::example("pocket") + " " + options).out;
+    const bool has = json.contains("steps");
+    for (const char* key : {"net_steps", "step_error_max", "rmse", "steps_s"})
+      CHECK(json.contains(key) == has);
+    CHECK((table.find("edges") != std::string::npos) == has);
+    return has;
+  };
+  CHECK_FALSE(has_steps(""));
+  CHECK(has_steps("--count-steps"));
+  CHECK(has_steps("--steps x.vcd"));
+  CHECK(has_steps("--machine m.toml"));
+}
+
 TEST_CASE("numbers keep all bits of a double") {
   const test::Folder folder;
   const auto run =
@@ -86,7 +104,7 @@ TEST_CASE("a table for people, JSON for programs, nothing when quiet") {
   const auto table = folder.run(test::example("pocket"));
   CHECK(table.exit == 0);
   CHECK(table.out.find("path length") != std::string::npos);
-  CHECK(table.out.find("error steps") != std::string::npos);
+  CHECK(table.out.find("peak /s^2") != std::string::npos);
   CHECK(table.err.empty());  // no bar where there is no terminal
   const auto quiet = folder.run(test::example("pocket") + " --quiet");
   CHECK(quiet.exit == 0);
