@@ -51,6 +51,8 @@ std::string json_summary(const Program& program, const Plan& plan, const Options
       per_axis(machine, [&](std::size_t i) { return m.axis_velocity[static_cast<int>(i)]; });
   json["axis_peak"]["acceleration"] =
       per_axis(machine, [&](std::size_t i) { return m.axis_acceleration[static_cast<int>(i)]; });
+  json["axis_peak"]["jerk"] =
+      per_axis(machine, [&](std::size_t i) { return m.axis_jerk[static_cast<int>(i)]; });
   json["corner_velocity_step"] = m.corner_velocity_step;
   json["end_error_mm"] = m.end_error;
   json["contour_error_mm"] = m.contour_error;

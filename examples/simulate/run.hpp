@@ -37,6 +37,7 @@ struct Measures {
   cncplan::State peak;
   PerAxis axis_velocity;
   PerAxis axis_acceleration;
+  PerAxis axis_jerk;
   double corner_velocity_step = 0.0;
   double end_error = 0.0;
   double contour_error = 0.0;
