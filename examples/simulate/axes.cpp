@@ -16,10 +16,12 @@ void measure_axes(const Route<P>& route, const Plan& plan, const Machine& machin
   const auto axes = static_cast<Eigen::Index>(machine.axes.size());
   measures.axis_velocity.resize(axes);
   measures.axis_acceleration.resize(axes);
+  measures.axis_jerk.resize(axes);
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const auto k = static_cast<Eigen::Index>(axis);
     measures.axis_velocity[k] = machine.shown(axis, peaks.velocity(axis));
     measures.axis_acceleration[k] = machine.shown(axis, peaks.acceleration(axis));
+    measures.axis_jerk[k] = machine.shown(axis, peaks.jerk(axis));
   }
   for (std::size_t i = 1; i < route.size(); ++i) {
     const P& before = path(i - 1);

@@ -11,6 +11,7 @@
 namespace simulate {
 
 namespace junction = cncplan::junction;
+namespace published = cncplan::published;
 using support::Exit;
 using support::Failure;
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <boost/timer/progress_display.hpp>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -26,26 +27,35 @@ using support::Failure;
 
 namespace {
 
-// Shows on a terminal how far the samples are.
+// Shows on a terminal how far a run is, and ends its line whatever ends the run.
 class Progress {
  public:
-  Progress(bool wanted, double duration, double period)
-      : stride_(std::max<std::size_t>(1, static_cast<std::size_t>(duration / period) / 50)) {
+  /// `total`: seconds of the program's time, counted for each stage.
+  Progress(bool wanted, double total) : total_(total) {
     if (wanted && ::isatty(STDERR_FILENO) != 0)
-      bar_ = std::make_unique<boost::timer::progress_display>(
-          static_cast<unsigned long>(duration / period) + 1, std::cerr);
+      bar_ = std::make_unique<boost::timer::progress_display>(marks, std::cerr);
   }
-  void step() {
-    if (bar_ && ++since_ == stride_) {
-      *bar_ += static_cast<unsigned long>(stride_);
-      since_ = 0;
-    }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() {
+    if (bar_ && bar_->count() < marks) std::cerr << std::endl;
+  }
+
+  /// Before the last mark, which `finish` sets.
+  void reach(double done) {
+    if (!bar_ || !(total_ > 0.0)) return;
+    const auto reached = static_cast<unsigned long>(std::clamp(done / total_, 0.0, 1.0) * (marks - 1));
+    if (reached > bar_->count()) *bar_ += reached - bar_->count();
+  }
+  void finish() {
+    if (bar_) *bar_ += marks - bar_->count();
   }
 
  private:
+  static constexpr unsigned long marks = 50;
+
   std::unique_ptr<boost::timer::progress_display> bar_;
-  std::size_t stride_;
-  std::size_t since_ = 0;
+  double total_;
 };
 
 // Refuses what would not come to its end: a period or a number of steps that is a slip of the keyboard.
@@ -57,6 +67,7 @@ void check_size(const Route<P>& route, const Plan& plan, const Options& options,
     throw Failure(Exit::bad_input, fmt::format("the program takes {:.6g} s, which is {:.3g} samples at a "
                                                "period of {:.6g} s: more than {:.0e}",
                                                plan.duration, samples, options.period, most));
+  if (!options.makes_steps()) return;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const MachineAxis& axis = machine.axes[i];
     double travelled = plan.length;
@@ -113,30 +124,37 @@ int run(const Options& options, const Machine& machine, const Program& program, 
   std::ostream* const steps = files.open(options.steps);
   if (samples != nullptr) write_samples_header(*samples, machine);
 
-  Progress progress(!options.quiet, plan.duration, options.period);
+  Progress progress(!options.quiet, plan.duration * (options.makes_steps() ? 2.0 : 1.0));
   std::vector<Sample> drawn;
   const auto every = static_cast<std::size_t>(plan.duration / options.period) / drawn_points + 1;
   make_samples(program, route, plan, options, measures, [&](const Sample& sample) {
     if (samples != nullptr) write_sample(*samples, program, machine, sample);
     if (options.plot && (measures.samples % every == 0 || !(sample.time < plan.duration)))
       drawn.push_back(sample);
-    progress.step();
+    progress.reach(sample.time);
   });
   measure_axes(route, plan, machine, measures);
 
+  const auto step = [&](const std::function<void(const cncplan::step::Edge&)>& take) {
+    make_steps(program, route, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
+      take(edge);
+      progress.reach(plan.duration + edge.time);
+    });
+  };
   if (steps != nullptr) {
     auto vcd = cncplan::step::vcd_writer(*steps, support::traces_of(machine));
-    make_steps(program, route, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
+    step([&](const cncplan::step::Edge& edge) {
       if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
     });
     vcd.finish();
-  } else {
-    make_steps(program, route, plan, options, machine, measures, [](const cncplan::step::Edge&) {});
+  } else if (options.makes_steps()) {
+    step([](const cncplan::step::Edge&) {});
   }
 
   files.finish();
   if (options.plot) draw(*options.plot, options.quiet, machine, drawn);
   files.commit();
+  progress.finish();
   if (options.json)
     support::print(json_summary(program, plan, options, machine, measures));
   else if (!options.quiet)

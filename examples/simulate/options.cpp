@@ -66,6 +66,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--motions", options.motions, "write the program's motions, CSV");
   app.add_option("--blocks", options.blocks, "write the planned blocks, CSV");
   support::add_run_options(app, options);
+  app.add_flag("--count-steps", options.count_steps,
+               "make and count step edges where neither --steps nor --machine asks for them");
   if (!support::parse(app, argc, argv)) return std::nullopt;
   options.junction = junction_choice(junction);
   support::refuse_shared_files({{"PROGRAM", options.program},
@@ -74,8 +76,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                                 {"--motions", options.motions},
                                 {"--blocks", options.blocks},
                                 {"--samples", options.samples},
-                                {"--steps", options.steps},
-                                {"--plot", options.plot}});
+                                {"--steps", options.steps}});
+  support::refuse_shared_files({{"--plot", options.plot}});  // a folder: another output may be in it
   return options;
 }
 

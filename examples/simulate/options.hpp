@@ -28,6 +28,10 @@ struct Options : support::RunOptions {
   bool check = false;  ///< read the program, plan nothing
   std::optional<std::string> motions;
   std::optional<std::string> blocks;
+  bool count_steps = false;
+
+  /// Step edges are made, and held against the drives' rules.
+  [[nodiscard]] bool makes_steps() const { return count_steps || steps || machine; }
 };
 
 /// The options of a command line; nothing after `--help` or `--version`, which print what they promise.

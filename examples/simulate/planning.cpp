@@ -29,8 +29,11 @@ Caps block_caps(const Program& program, const Options& options) {
 }
 
 // A mill's pieces are the program's blocks.
-Caps route_caps(const Program& program, const Route<MillPath>&, const Options& options, const Machine&) {
-  return block_caps(program, options);
+Caps route_caps(const Program& program, const Route<MillPath>& route, const Options& options,
+                const Machine& machine) {
+  Caps caps = block_caps(program, options);
+  slow_reversals(route, machine, caps);
+  return caps;
 }
 
 // Behind a rotary table, each piece keeps to the limits of its block, and the axes to theirs.
@@ -65,6 +68,7 @@ Caps route_caps(const Program& program, const Route<P>& route, const Options& op
     if (i > 0 && route[i].block != route[i - 1].block)
       caps[i].entry = std::min(caps[i].entry, block_caps.entry);
   }
+  slow_reversals(route, machine, caps);
   return caps;
 }
 
@@ -84,7 +88,7 @@ std::vector<plan::Span> spans_of(const Caps& caps, const Options& options) {
   const auto planned = published::plan_blocks(std::span<const plan::BlockCaps>(caps), law, std::span(speeds),
                                               std::back_inserter(spans));
   if (!planned)
-    throw Failure(Exit::other,
+    throw Failure(Exit::bad_input,
                   fmt::format("planning: {} {}", planned.error().field, message(planned.error().code)));
   return spans;
 }

@@ -92,7 +92,7 @@ class Builder {
     }
     if (machine_.kinematics == Kinematics::cartesian) {
       const auto bounds = block->segment.box();
-      if (!stays_within_travel<3>(motion, bounds.low, bounds.high)) return false;
+      if (!stays_within_travel<3>(motion, block->segment.start(), bounds.low, bounds.high)) return false;
       block->limits = limits_along(machine_, *block);
     }
     add(*block,
@@ -107,7 +107,7 @@ class Builder {
       return result;
     };
     const Joints start = joints(motion.start), end = joints(motion.end);
-    if (!stays_within_travel<4>(motion, start.cwiseMin(end), start.cwiseMax(end))) return false;
+    if (!stays_within_travel<4>(motion, start, start.cwiseMin(end), start.cwiseMax(end))) return false;
     const TireMoldRow row = kinematics::tire_mold_row(tool_length_, start, end);
     double length = 0.0;
     cut_row(row, [&](const RowPath& path) { length += path.length(); });
@@ -122,8 +122,8 @@ class Builder {
 
   // Against the lowest and the highest place of each axis; a mill that lacks an axis does not move it.
   template <int N>
-  bool stays_within_travel(const gcode::Motion& motion, const VectorN<double, N>& low,
-                           const VectorN<double, N>& high) {
+  bool stays_within_travel(const gcode::Motion& motion, const VectorN<double, N>& start,
+                           const VectorN<double, N>& low, const VectorN<double, N>& high) {
     for (std::size_t i = 0; i < N; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const MachineAxis axis = i < machine_.axes.size()
@@ -131,9 +131,10 @@ class Builder {
                                    : MachineAxis{.letter = "XYZ"[i], .low = 0.0, .high = 0.0};
       const double lowest = axis.low * axis.unit(), highest = axis.high * axis.unit();
       if (low[k] >= lowest && high[k] <= highest) continue;
-      const double beyond = low[k] < lowest ? low[k] : high[k];
+      const bool at_start = !(start[k] >= lowest && start[k] <= highest);
+      const double beyond = at_start ? start[k] : low[k] < lowest ? low[k] : high[k];
       problems_.add({motion.line, motion.column, fmt::format("axis {} would leave its travel", axis.letter),
-                     support::beyond_travel(axis, beyond)});
+                     support::beyond_travel(axis, beyond, at_start)});
       return false;
     }
     return true;

@@ -38,7 +38,6 @@ Json per_axis(const Machine& machine, F&& value) {
 std::string json_summary(const Program& program, const Plan& plan, const Options& options,
                          const Machine& machine, const Measures& m) {
   const auto [motions, arcs] = count(program);
-  const auto steps = [&](std::size_t i) -> const auto& { return m.steps[i]; };
   Json json;
   json["lines"] = program.lines;
   json["motions"] = motions;
@@ -52,18 +51,23 @@ std::string json_summary(const Program& program, const Plan& plan, const Options
       per_axis(machine, [&](std::size_t i) { return m.axis_velocity[static_cast<int>(i)]; });
   json["axis_peak"]["acceleration"] =
       per_axis(machine, [&](std::size_t i) { return m.axis_acceleration[static_cast<int>(i)]; });
+  json["axis_peak"]["jerk"] =
+      per_axis(machine, [&](std::size_t i) { return m.axis_jerk[static_cast<int>(i)]; });
   json["corner_velocity_step"] = m.corner_velocity_step;
   json["end_error_mm"] = m.end_error;
   json["contour_error_mm"] = m.contour_error;
   json["junctions_limited"] = m.junctions_limited;
-  json["steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).total_steps; });
-  json["net_steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).net_steps; });
-  json["step_error_max"] = per_axis(
-      machine, [&](std::size_t i) { return steps(i).max_error * machine.axes[i].drive.steps_per_unit; });
-  json["rmse"] = per_axis(machine, [&](std::size_t i) { return steps(i).rms_error; });
+  if (options.makes_steps()) {
+    const auto steps = [&](std::size_t i) -> const auto& { return m.steps[i]; };
+    json["steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).total_steps; });
+    json["net_steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).net_steps; });
+    json["step_error_max"] = per_axis(
+        machine, [&](std::size_t i) { return steps(i).max_error * machine.axes[i].drive.steps_per_unit; });
+    json["rmse"] = per_axis(machine, [&](std::size_t i) { return steps(i).rms_error; });
+  }
   json["plan_s"] = m.plan_seconds;
   json["interpolate_s"] = m.interpolate_seconds;
-  json["steps_s"] = m.steps_seconds;
+  if (options.makes_steps()) json["steps_s"] = m.steps_seconds;
   json["limits"] = {{"velocity", options.limits.velocity},
                     {"acceleration", options.limits.acceleration},
                     {"jerk", options.limits.jerk},
@@ -89,17 +93,23 @@ std::string table_summary(const Program& program, const Plan& plan, const Machin
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
   row("junctions below their feed", fmt::format("{}", m.junctions_limited));
   row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
-  row("plan, interpolate, step",
-      fmt::format("{:.4f} s, {:.4f} s, {:.4f} s", m.plan_seconds, m.interpolate_seconds, m.steps_seconds));
-  text += fmt::format("\n{:<6}{:>12}{:>14}{:>12}{:>12}{:>14}{:>14}\n", "axis", "peak /s", "peak /s^2",
-                      "edges", "net", "error steps", "rmse");
+  const bool stepped = !m.steps.empty();
+  row(stepped ? "plan, interpolate, step" : "plan, interpolate",
+      fmt::format("{:.4f} s, {:.4f} s{}", m.plan_seconds, m.interpolate_seconds,
+                  stepped ? fmt::format(", {:.4f} s", m.steps_seconds) : ""));
+  text += fmt::format("\n{:<6}{:>12}{:>14}", "axis", "peak /s", "peak /s^2");
+  if (stepped) text += fmt::format("{:>12}{:>12}{:>14}{:>14}", "edges", "net", "error steps", "rmse");
+  text += '\n';
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const auto& steps = m.steps[i];
     const auto axis = static_cast<int>(i);
-    text += fmt::format("{:<6}{:>12.4f}{:>14.3f}{:>12}{:>12}{:>14.4f}{:>14.3g}  {}\n", machine.axes[i].letter,
-                        m.axis_velocity[axis], m.axis_acceleration[axis], steps.total_steps, steps.net_steps,
-                        steps.max_error * machine.axes[i].drive.steps_per_unit, steps.rms_error,
-                        machine.axes[i].rotary ? "deg" : "mm");
+    text += fmt::format("{:<6}{:>12.4f}{:>14.3f}", machine.axes[i].letter, m.axis_velocity[axis],
+                        m.axis_acceleration[axis]);
+    if (stepped) {
+      const auto& steps = m.steps[i];
+      text += fmt::format("{:>12}{:>12}{:>14.4f}{:>14.3g}", steps.total_steps, steps.net_steps,
+                          steps.max_error * machine.axes[i].drive.steps_per_unit, steps.rms_error);
+    }
+    text += machine.axes[i].rotary ? "  deg\n" : "  mm\n";
   }
   return text;
 }

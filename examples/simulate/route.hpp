@@ -21,6 +21,12 @@ struct Piece {
   P path;
   std::size_t block;  ///< of the program
 };
+/// A mill's are the program's own, which outlives the route.
+template <>
+struct Piece<MillPath> {
+  const MillPath& path;
+  std::size_t block;
+};
 
 /// At least one piece.
 template <class P>

@@ -37,11 +37,12 @@ struct Measures {
   cncplan::State peak;
   PerAxis axis_velocity;
   PerAxis axis_acceleration;
+  PerAxis axis_jerk;
   double corner_velocity_step = 0.0;
   double end_error = 0.0;
   double contour_error = 0.0;
   std::size_t junctions_limited = 0;
-  support::StepReports steps;
+  support::StepReports steps;  ///< none where no steps are made
   double plan_seconds = 0.0;
   double interpolate_seconds = 0.0;
   double steps_seconds = 0.0;
@@ -51,6 +52,12 @@ struct Measures {
 template <class P>
 [[nodiscard]] Plan make_plan(const Program& program, const Route<P>& route, const Options& options,
                              const Machine& machine, Measures& measures);
+
+/// Slows pieces and junctions where an axis with backlash turns round, so that its drive has the time to make
+/// up for it.
+template <class P>
+void slow_reversals(const Route<P>& route, const Machine& machine,
+                    std::vector<cncplan::plan::BlockCaps>& caps);
 
 /// Calls `take` with every sample, in order.
 template <class P>

@@ -47,20 +47,42 @@ class TaylorFollower {
   State along_;
 };
 
-// Distance of a point from a segment: the nearest parameter by Newton's method, from a guess that is close.
-double distance(const Programmed& programmed, const Vector3& point) {
-  if (programmed.segment == nullptr) return 0.0;
-  const path::Segment<3>& segment = *programmed.segment;
-  double u = programmed.parameter;
-  for (int step = 0; step < 3; ++step) {
-    const Vector3 gap = segment.position(u) - point;
-    const Vector3 first = segment.derivative(u);
-    const double slope = first.squaredNorm() + gap.dot(segment.second_derivative(u));
-    if (!(slope > 0.0)) break;
-    u = std::clamp(u - gap.dot(first) / slope, 0.0, segment.parameter_end());
-  }
-  return (segment.position(u) - point).norm();
+using Extended = long double;
+using ExtendedSegment = path::BasicSegment<Extended>;
+
+ExtendedSegment extended(const path::Segment<3>& segment) {
+  const auto wide = [](const Vector3& v) { return BasicVector3<Extended>(v.cast<Extended>()); };
+  const path::Arc* const arc = segment.arc();
+  if (arc == nullptr) return path::BasicLine<Extended>(wide(segment.start()), wide(segment.end()));
+  return path::BasicArc<Extended>(path::ArcGeometry<Extended>{
+      wide(arc->start()), wide(arc->end()), wide(arc->center()), wide(arc->radial()), arc->start_radius(),
+      arc->end_radius(), arc->parameter_end(), arc->turn(), arc->plane(), 0.0L});
 }
+
+// Distance of points from the programmed path, which is computed in higher precision than the points were:
+// the nearest parameter by Newton's method, from a guess that is close.
+class PathDistance {
+ public:
+  double operator()(const Programmed& programmed, const Vector3& position) {
+    if (programmed.segment == nullptr) return 0.0;
+    if (programmed.segment != segment_) exact_ = extended(*programmed.segment);
+    segment_ = programmed.segment;
+    const BasicVector3<Extended> point = position.cast<Extended>();
+    Extended u = programmed.parameter;
+    for (int step = 0; step < 3; ++step) {
+      const auto at = exact_.at(u);
+      const BasicVector3<Extended> gap = at.position - point;
+      const Extended slope = at.first.squaredNorm() + gap.dot(at.second);
+      if (!(slope > 0.0L)) break;
+      u = std::clamp(u - gap.dot(at.first) / slope, 0.0L, exact_.parameter_end());
+    }
+    return static_cast<double>((exact_.position(u) - point).norm());
+  }
+
+ private:
+  const path::Segment<3>* segment_ = nullptr;
+  ExtendedSegment exact_;
+};
 
 }  // namespace
 
@@ -72,6 +94,7 @@ void make_samples(const Program& program, const Route<P>& route, const Plan& pla
   std::optional<TaylorFollower> follow;
   if constexpr (mill)
     if (options.interpolator == Interpolator::taylor) follow.emplace(route, plan);
+  PathDistance distance;
   Sample row;
   const auto sample = [&](double time, const plan::Place& place) {
     const auto& [path, block] = route[place.block];

@@ -21,11 +21,11 @@ int g_code(Plane plane) {
   return codes[static_cast<std::size_t>(plane)];
 }
 
-// Numbers with the 17 digits that a double needs, separated by commas.
+// Numbers with the 17 digits that a double needs, separated by commas; none is -0.
 template <class... Numbers>
 void put(std::ostream& out, Numbers... numbers) {
   std::ostreambuf_iterator<char> it(out);
-  ((it = fmt::format_to(it, ",{:.17g}", numbers)), ...);
+  ((it = fmt::format_to(it, ",{:.17g}", numbers + 0.0)), ...);
 }
 
 }  // namespace

@@ -35,85 +35,100 @@ template <cncplan::CurveByLength P>
   return axis_motion(path, {length, speed, 0.0, 0.0}).velocity;
 }
 
-/// In how many parts a stretch of a path is looked at, so that a maximum between two of them is found by the
-/// parabola through three: a twentieth of a radian of an arc each.
-inline double parts_of(const cncplan::path::Segment<3>& path, double travelled) {
-  constexpr double most_angle = 0.05;
-  const cncplan::path::Arc* const arc = path.arc();
-  const double angle = arc == nullptr ? 0.0 : std::abs(arc->sweep()) * std::abs(travelled) / path.length();
-  return 1.0 + std::ceil(angle / most_angle);
-}
-/// Pieces of mapped paths are short already.
-template <class C>
-double parts_of(const cncplan::plan::MappedPath<C>&, double) {
-  return 2.0;
+/// The axes' derivatives by length where `s` mm have been travelled.
+template <cncplan::CurveByLength P>
+[[nodiscard]] cncplan::plan::BasicJointRates<double, P::Vector::RowsAtCompileTime> axis_rates(const P& path,
+                                                                                              double s) {
+  if constexpr (cncplan::plan::JointPath<P>) {
+    return path.rates(path.parameter_at(s));
+  } else {
+    const auto point = path.point_at(s);
+    return {point.first, point.second, point.third};
+  }
 }
 
-/// Largest magnitudes of the axes' speeds and accelerations, from the exact path; jumps between pieces are
-/// left out.
+/// Whether a stretch of a path bends so much that a parabola through three places of it could miss the top:
+/// by more than a twentieth of a radian. Pieces of mapped paths are short already.
+inline bool bends_much(const cncplan::path::Segment<3>& path, double travelled) {
+  constexpr double most_angle = 0.05;
+  const cncplan::path::Arc* const arc = path.arc();
+  return arc != nullptr && std::abs(arc->sweep()) * travelled > most_angle * path.length();
+}
+template <class C>
+bool bends_much(const cncplan::plan::MappedPath<C>& path, double travelled) {
+  return travelled > 0.5 * path.length();
+}
+/// On a straight path nothing of an axis has a top within a phase but what the motion along it has.
+inline bool is_straight(const cncplan::path::Segment<3>& path) { return path.arc() == nullptr; }
+template <class C>
+bool is_straight(const cncplan::plan::MappedPath<C>&) {
+  return false;
+}
+
+/// Largest magnitudes of the axes' speeds, accelerations and jerks, from the exact path; jumps between pieces
+/// are left out.
 template <class P>
 class AxisPeaks {
  public:
   static constexpr int count = P::Vector::RowsAtCompileTime;
-  using Demand = cncplan::VectorN<double, 2 * count>;
+  using Demand = cncplan::VectorN<double, 3 * count>;
 
   /// Of an axis, mm or rad.
   [[nodiscard]] double velocity(std::size_t axis) const { return peak_[static_cast<int>(axis)]; }
   [[nodiscard]] double acceleration(std::size_t axis) const { return peak_[count + static_cast<int>(axis)]; }
+  [[nodiscard]] double jerk(std::size_t axis) const { return peak_[2 * count + static_cast<int>(axis)]; }
 
   /// The part of a phase that drives a path which begins at `origin`, cut where the speed is highest within
   /// it.
   void grow(const P& path, const cncplan::Phase& phase, double origin, double first, double last) {
     const double top = phase.jerk == 0.0 ? last : std::clamp(-phase.acceleration / phase.jerk, first, last);
     for (const auto& [from, to] : {std::pair{first, top}, std::pair{top, last}})
-      if (from < to) grow(Piece{path, phase, origin, from, to});
+      if (from < to) grow(Piece{path, phase, origin}, from, to);
   }
 
  private:
-  // A stretch of one phase within one path, in seconds of the phase.
+  // One phase within one path.
   struct Piece {
     const P& path;
     const cncplan::Phase& phase;
     double origin;  // phase position at which the path starts
-    double first;
-    double last;
 
     [[nodiscard]] Demand demand(double tau) const {
-      cncplan::State along = phase.at(tau);
-      along.position = std::clamp(along.position - origin, 0.0, path.length());
-      const auto axes = axis_motion(path, along);
+      const cncplan::State along = phase.at(tau);
+      const auto rates = axis_rates(path, std::clamp(along.position - origin, 0.0, path.length()));
+      const double v = along.velocity, a = along.acceleration, j = phase.jerk;
       Demand result;
-      result << axes.velocity.cwiseAbs(), axes.acceleration.cwiseAbs();
-      return result;
+      result << rates.first * v, rates.second * (v * v) + rates.first * a,
+          rates.third * (v * v * v) + rates.second * (3.0 * v * a) + rates.first * j;
+      return result.cwiseAbs();
     }
   };
 
-  // Goes to the top between three places where the parabola through them says that it is higher than all so
-  // far.
-  void grow(const Piece& piece) {
-    constexpr int bits = 26;  // half of a double's: all that a maximum's place can have
-    const double parts =
-        parts_of(piece.path, piece.phase.at(piece.last).position - piece.phase.at(piece.first).position);
-    const double step = (piece.last - piece.first) / parts;
-    Demand before = piece.demand(piece.first);
-    Demand here = before;
-    peak_ = peak_.cwiseMax(before);
-    for (double k = 1.0; k <= parts; k += 1.0) {
-      const Demand after = piece.demand(k < parts ? piece.first + k * step : piece.last);
-      peak_ = peak_.cwiseMax(after);
-      for (int i = 0; i < 2 * count && k > 1.0; ++i) {
-        const double bend = 2.0 * here[i] - before[i] - after[i];
-        const double rise = after[i] - before[i];
-        if (!(bend > 0.0 && std::abs(rise) <= bend && here[i] + rise * rise / (8.0 * bend) > peak_[i]))
-          continue;
-        const auto lower = [&](double tau) { return -piece.demand(tau)[i]; };
-        const double middle = piece.first + (k - 1.0) * step;
-        const auto [place, value] =
-            boost::math::tools::brent_find_minima(lower, middle - step, middle + step, bits);
-        peak_[i] = std::max(peak_[i], -value);
-      }
-      before = here;
-      here = after;
+  // Halves a stretch, in seconds of the phase, until it bends little; then goes to the top between its ends
+  // where the parabola through ends and middle says that it is higher than all so far.
+  void grow(const Piece& piece, double from, double to) {
+    constexpr int bits = 26;         // half of a double's: all that a maximum's place can have
+    constexpr double margin = 1e-3;  // what the parabola may be wrong by
+    const double middle = from + 0.5 * (to - from);
+    const double travelled = piece.phase.at(to).position - piece.phase.at(from).position;
+    if (middle > from && middle < to && bends_much(piece.path, travelled)) {
+      grow(piece, from, middle);
+      grow(piece, middle, to);
+      return;
+    }
+    const Demand before = piece.demand(from), after = piece.demand(to);
+    peak_ = peak_.cwiseMax(before).cwiseMax(after);
+    if (is_straight(piece.path)) return;
+    const Demand here = piece.demand(middle);
+    peak_ = peak_.cwiseMax(here);
+    for (int i = 0; i < 3 * count; ++i) {
+      const double bend = 2.0 * here[i] - before[i] - after[i];
+      const double rise = after[i] - before[i];
+      if (!(bend > 0.0 && std::abs(rise) <= 2.0 * (1.0 + margin) * bend &&
+            (here[i] + rise * rise / (8.0 * bend)) * (1.0 + margin) > peak_[i]))
+        continue;
+      const auto lower = [&](double tau) { return -piece.demand(tau)[i]; };
+      peak_[i] = std::max(peak_[i], -boost::math::tools::brent_find_minima(lower, from, to, bits).second);
     }
   }
 
@@ -124,8 +139,10 @@ class AxisPeaks {
 template <class P, class Paths>
 [[nodiscard]] AxisPeaks<P> axis_peaks(const Plan& plan, const Paths& path) {
   AxisPeaks<P> peaks;
-  plan.each_piece([&](std::size_t i, std::span<const cncplan::Phase> phases, double start, double origin) {
-    if (!(plan.lengths[i] > 0.0)) return;
+  DrivenPieces pieces(plan);
+  while (const auto driven = pieces.next()) {
+    const auto& [i, phases, start, origin] = *driven;
+    if (!(plan.lengths[i] > 0.0)) continue;
     const double begin = plan.timings[i].start - start;
     const double end = begin + plan.timings[i].duration;
     for (const cncplan::Phase& phase : phases) {
@@ -133,7 +150,7 @@ template <class P, class Paths>
       const double last = std::min(end - phase.time, phase.duration);
       if (first < last) peaks.grow(path(i), phase, origin, first, last);
     }
-  });
+  }
   return peaks;
 }
 

@@ -90,7 +90,12 @@ class Section {
 constexpr double radians(double degrees) { return degrees * gcode::radians_per_degree; }
 
 void read_drive(const Section& section, double unit, step::Drive& drive) {
-  section.positive("steps_per_unit", drive.steps_per_unit, 1.0 / unit);
+  if (const toml::node* node = section.find("steps_per_unit")) {
+    const double steps = section.number(*node, "steps_per_unit");
+    if (steps == 0.0) section.refuse(*node, "steps_per_unit must not be zero");
+    drive.steps_per_unit = std::abs(steps) / unit;
+    drive.inverted = steps < 0.0;
+  }
   section.positive("max_step_rate", drive.max_rate);
   section.positive("pulse_width", drive.high_time);
   section.not_negative("pulse_gap", drive.low_time);
@@ -271,9 +276,9 @@ Machine interpret(const std::string& file, const toml::table& root) {
 
 }  // namespace
 
-std::string beyond_travel(const MachineAxis& axis, double place) {
-  return fmt::format("axis {} would move to {:.6g}, beyond its travel of {:.6g} to {:.6g}", axis.letter,
-                     place / axis.unit(), axis.low, axis.high);
+std::string beyond_travel(const MachineAxis& axis, double place, bool at_start) {
+  return fmt::format("axis {} {} {:.6g}, beyond its travel of {:.6g} to {:.6g}", axis.letter,
+                     at_start ? "starts at" : "would move to", place / axis.unit(), axis.low, axis.high);
 }
 
 Machine read_machine(const std::string& file) {

@@ -12,7 +12,8 @@
 
 namespace support {
 
-/// Lengths in mm, angles in degrees; so `drive` counts per mm or per degree.
+/// Lengths in mm, angles in degrees; so `drive` counts per mm or per degree. An inverted one steps backwards
+/// where its axis goes forward.
 struct MachineAxis {
   char letter{};
   cncplan::step::Drive drive{.steps_per_unit = 400.0, .high_time = 2e-6};
@@ -26,8 +27,8 @@ struct MachineAxis {
   [[nodiscard]] double unit() const { return rotary ? std::numbers::pi / 180.0 : 1.0; }
 };
 
-/// Says that an axis would leave its travel; its place in mm or rad.
-[[nodiscard]] std::string beyond_travel(const MachineAxis& axis, double place);
+/// Says that an axis would leave its travel, or stands outside it before it moves; its place in mm or rad.
+[[nodiscard]] std::string beyond_travel(const MachineAxis& axis, double place, bool at_start = false);
 
 /// What moves the tool.
 enum class Kinematics {

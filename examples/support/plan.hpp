@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,26 +34,56 @@ struct Plan {
   [[nodiscard]] std::span<const cncplan::Phase> phases_of(std::size_t piece) const {
     return std::span(phases).subspan(piece_phases[piece], piece_phases[piece + 1] - piece_phases[piece]);
   }
+};
 
-  /// Calls `take(piece, phases, start, origin)` for each piece that is driven, in order. Times of the phases
-  /// count from `start`; the piece begins where their position is `origin`.
-  template <class Take>
-  void each_piece(const Take& take) const {
-    if (played()) {
-      for (std::size_t i = 0; i <= end.block; ++i) take(i, phases_of(i), 0.0, 0.0);
-      return;
-    }
-    double start = 0.0;
-    for (const cncplan::plan::Span& span : spans) {
-      const auto all = span.profile.phases();
-      double origin = 0.0;
-      for (std::size_t i = span.first; i < span.first + span.count; ++i) {
-        take(i, std::span<const cncplan::Phase>(all), start, origin);
-        origin += lengths[i];
-      }
-      start += span.profile.duration();
-    }
+/// A piece as it is driven: times of the phases count from `start`, and the piece begins where their position
+/// is `origin`.
+struct DrivenPiece {
+  std::size_t piece{};
+  std::span<const cncplan::Phase> phases;
+  double start{};   ///< s
+  double origin{};  ///< mm
+};
+
+/// The pieces that are driven, in order. The phases of one stand until the next is asked for. The plan must
+/// outlive it; it stays where it was made.
+class DrivenPieces {
+ public:
+  explicit DrivenPieces(const Plan& plan) : plan_(plan) {}
+  DrivenPieces(const DrivenPieces&) = delete;
+  DrivenPieces& operator=(const DrivenPieces&) = delete;
+
+  [[nodiscard]] std::optional<DrivenPiece> next() { return plan_.played() ? next_played() : next_planned(); }
+
+ private:
+  // A run that ends at a junction has not begun the piece behind it.
+  std::optional<DrivenPiece> next_played() {
+    while (piece_ <= plan_.end.block && plan_.phases_of(piece_).empty()) ++piece_;
+    if (piece_ > plan_.end.block) return std::nullopt;
+    const std::size_t piece = piece_++;
+    return DrivenPiece{piece, plan_.phases_of(piece), 0.0, 0.0};
   }
+  std::optional<DrivenPiece> next_planned() {
+    for (; left_ == 0; ++span_) {
+      if (span_ == plan_.spans.size()) return std::nullopt;
+      if (span_ > 0) start_ += plan_.spans[span_ - 1].profile.duration();
+      phases_ = plan_.spans[span_].profile.phases();
+      left_ = plan_.spans[span_].count;
+      piece_ = plan_.spans[span_].first;
+      origin_ = 0.0;
+    }
+    --left_;
+    const std::size_t piece = piece_++;
+    return DrivenPiece{piece, phases_, start_, std::exchange(origin_, origin_ + plan_.lengths[piece])};
+  }
+
+  const Plan& plan_;
+  std::array<cncplan::Phase, cncplan::profile::Profile::phase_count> phases_{};
+  std::size_t span_ = 0;
+  std::size_t piece_ = 0;
+  std::size_t left_ = 0;  // pieces of the span
+  double start_ = 0.0;
+  double origin_ = 0.0;
 };
 
 /// Where the motion is, at times that do not decrease.
@@ -98,7 +130,7 @@ template <class Law>
 std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps, const Law& law) {
   auto planned = cncplan::plan::whole_plan(caps, law);
   if (!planned)
-    throw Failure(Exit::other,
+    throw Failure(Exit::bad_input,
                   fmt::format("planning: {} {}", planned.error().field, message(planned.error().code)));
   return std::move(planned->spans);
 }

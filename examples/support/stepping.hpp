@@ -5,9 +5,12 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
@@ -19,15 +22,7 @@ namespace support {
 
 /// A path as steps need it: by its own closed forms, or traced.
 template <class P>
-using Steppable = std::conditional_t<cncplan::step::SteppablePath<P>, const P&, cncplan::step::TracedPath<P>>;
-
-template <class P>
-[[nodiscard]] Steppable<P> steppable(const P& path) {
-  if constexpr (cncplan::step::SteppablePath<P>)
-    return path;
-  else
-    return cncplan::step::TracedPath<P>(path, 2);
-}
+using Steppable = std::conditional_t<cncplan::step::SteppablePath<P>, P, cncplan::step::TracedPath<P>>;
 
 /// The planned positions at every period, held against the steps up to then.
 template <class P, class Paths>
@@ -59,18 +54,103 @@ class StepObserver {
 /// What each axis of the machine has done, in mm, degrees and steps.
 using StepReports = std::vector<cncplan::step::AxisReport>;
 
-/// Hands every edge to `take`, in order of time, those that make up for backlash included. `path` gives each
-/// piece's path, `where` its place in the program (FILE:LINE:COLUMN). An axis that the machine lacks stands
-/// still. Throws `Failure` for a plan that breaks a rule of a drive.
+/// The edges of one axis over a whole plan, in order of time. It stays where it was made.
+template <class P, class Paths>
+class AxisSteps {
+ public:
+  using Scalar = double;
+
+  /// `count` steps at the start, `scale` steps per mm or rad of the path.
+  AxisSteps(const Plan& plan, const Paths& path, int axis, double scale, std::int64_t count,
+            double hysteresis)
+      : plan_(plan),
+        path_(path),
+        pieces_(plan),
+        axis_(axis),
+        scale_(scale),
+        count_(count),
+        hysteresis_(hysteresis) {}
+
+  [[nodiscard]] std::optional<cncplan::step::Edge> next() {
+    while (cursor_ || enter_next()) {
+      if (auto edge = cursor_->next()) {
+        // rounding may put a first edge a bit before the last one of the piece before
+        edge->time = time_ = std::max(edge->time, time_);
+        direction_ = edge->direction;
+        return edge;
+      }
+      count_ = cursor_->count();
+      cursor_.reset();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  using Traced = Steppable<P>;
+  using Clock = cncplan::step::PhaseClock<double>;
+
+  bool enter_next() {
+    const auto driven = pieces_.next();
+    if (!driven) return false;
+    const P& path = path_(driven->piece);
+    const Traced* traced = nullptr;
+    if constexpr (cncplan::step::SteppablePath<P>)
+      traced = &path;
+    else
+      traced = &traced_.emplace(path, 2);
+    // mapped pieces are cut from curves
+    const bool goes_on = cncplan::plan::JointPath<P> && driven->piece + 1 < plan_.lengths.size();
+    cursor_.emplace(*traced, Clock(driven->phases, driven->start, driven->origin), axis_, scale_, count_,
+                    goes_on, cncplan::step::Reversal<double>{direction_, hysteresis_});
+    return true;
+  }
+
+  const Plan& plan_;
+  const Paths& path_;
+  DrivenPieces pieces_;
+  int axis_;
+  double scale_;
+  std::int64_t count_;
+  double hysteresis_;
+  int direction_ = 0;
+  double time_ = 0.0;
+  std::optional<Traced> traced_;
+  std::optional<cncplan::step::StepCursor<Traced, Clock>> cursor_;
+};
+
+/// A source of edges that stays where it is: copies draw from the same.
+template <cncplan::step::EdgeSource E>
+class EdgeRef {
+ public:
+  using Scalar = typename E::Scalar;
+
+  explicit EdgeRef(E& source) : source_(&source) {}
+  [[nodiscard]] std::optional<cncplan::step::BasicEdge<Scalar>> next() { return source_->next(); }
+
+ private:
+  E* source_;
+};
+
+/// Which rule of a drive is broken, and what helps.
+[[nodiscard]] inline std::string drive_message(const cncplan::step::Violation& broken, char letter) {
+  const std::string_view unit = broken.error.field == "step rate" ? "steps/s" : "s";
+  return fmt::format(
+      "error: axis {} at {:.9f} s: {} of {:.6g} {} {} of {:.6g} {}; slower corners or a lower speed give the "
+      "drive more time",
+      letter, broken.time, broken.error.field, broken.error.value, unit, message(broken.error.code),
+      broken.error.bound, unit);
+}
+
+/// Hands every edge to `take`, in order of time, those that make up for backlash included, and those of an
+/// inverted drive turned round. `path` gives each piece's path, `where` its place in the program
+/// (FILE:LINE:COLUMN). An axis that the machine lacks stands still. Throws `Failure` for a plan that breaks a
+/// rule of a drive.
 template <class P, class Paths, class Where, class Take>
 StepReports make_steps(const Plan& plan, const Machine& machine, double period, const Paths& path,
                        const Where& where, const Take& take) {
   namespace step = cncplan::step;
   constexpr int count = P::Vector::RowsAtCompileTime;
   constexpr auto axes = static_cast<std::size_t>(count);
-  using Traced = std::remove_cvref_t<Steppable<P>>;
-  using AxisEdges = step::BacklashCompensation<step::StepCursor<Traced, step::PhaseClock<double>>>;
-  using Merged = step::Merge<AxisEdges, axes>;
 
   std::array<step::Drive, axes> drives{};
   std::array<std::int64_t, axes> counts{}, backlash{};
@@ -86,43 +166,30 @@ StepReports make_steps(const Plan& plan, const Machine& machine, double period, 
   step::SimulatedBackend<double, count> backend(scale, counts, backlash);
   step::DriveCheck check(drives);
   StepObserver<P, Paths> observer(plan, path, period, backend);
-  std::array<step::BacklashState<double>, axes> slack{};
-  double last = 0.0;
-  plan.each_piece([&](std::size_t i, std::span<const cncplan::Phase> phases, double start, double origin) {
-    const Traced& traced = steppable(path(i));
-    const step::PhaseClock<double> clock(phases, start, origin);
-    // mapped pieces are cut from curves
-    const bool goes_on = cncplan::plan::JointPath<P> && i + 1 < plan.lengths.size();
-    const auto axis_edges = [&](std::size_t axis) {
-      return AxisEdges(
-          {traced, clock, static_cast<int>(axis), scale[static_cast<int>(axis)], counts[axis], goes_on},
-          backlash[axis], plan.timings[i].start, slack[axis]);
-    };
-    Merged edges = [&]<std::size_t... Axis>(std::index_sequence<Axis...>) {
-      return Merged({axis_edges(Axis)...}, last);
-    }
-    (std::make_index_sequence<axes>());
+  [&]<std::size_t... Axis>(std::index_sequence<Axis...>) {
+    using Steps = AxisSteps<P, Paths>;
+    std::array<Steps, axes> steps{Steps(plan, path, static_cast<int>(Axis), scale[static_cast<int>(Axis)],
+                                        counts[Axis], step::hysteresis(drives[Axis]))...};
+    using Compensated = step::BacklashCompensation<EdgeRef<Steps>>;
+    constexpr double any_time = -std::numeric_limits<double>::infinity();
+    step::Merge<Compensated, axes> edges(
+        {Compensated(EdgeRef<Steps>(steps[Axis]), backlash[Axis], any_time)...});
     while (const auto edge = edges.next()) {
       if (!plan.completed && !(edge->time < plan.duration)) break;  // it does not come so far
-      last = edge->time;
-      observer.until(last);
-      if (const auto kept = check.accept(*edge); !kept) {
-        const step::Violation& broken = kept.error();
+      observer.until(edge->time);
+      if (const auto kept = check.accept(*edge); !kept)
         throw Failure(Exit::bad_input,
-                      fmt::format("{}: error: axis {} at {:.9f} s: {} of {:.6g} {} of {:.6g}", where(i),
-                                  machine.axes[static_cast<std::size_t>(broken.axis)].letter, broken.time,
-                                  broken.error.field, broken.error.value, message(broken.error.code),
-                                  broken.error.bound));
-      }
+                      fmt::format("{}: {}", where(PlanCursor(plan).at(edge->time).block),
+                                  drive_message(kept.error(),
+                                                machine.axes[static_cast<std::size_t>(edge->axis)].letter)));
       if (const auto taken = backend.accept(*edge); !taken)
         throw Failure(Exit::other, "steps out of order: " + std::string(taken.error().field));
-      take(*edge);
+      step::Edge signal = *edge;
+      if (drives[static_cast<std::size_t>(edge->axis)].inverted) signal.direction = -signal.direction;
+      take(signal);
     }
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-      counts[axis] = edges.sources()[axis].source().count();
-      slack[axis] = edges.sources()[axis].state();
-    }
-  });
+  }
+  (std::make_index_sequence<axes>());
   observer.until(plan.duration);
   observer.observe(plan.duration);
   StepReports reports;
@@ -130,6 +197,7 @@ StepReports make_steps(const Plan& plan, const Machine& machine, double period, 
     auto& report = reports.emplace_back(backend.report(static_cast<int>(i)));
     for (double* value : {&report.position, &report.rms_error, &report.max_error})
       *value = machine.shown(i, *value);
+    if (drives[i].inverted) report.net_steps = -report.net_steps;
   }
   return reports;
 }

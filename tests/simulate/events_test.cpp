@@ -29,8 +29,8 @@ TEST_CASE("without events a played program takes the planned time") {
   const test::Folder folder;
   folder.write("none.csv", "t,event,value\n");
   for (const char* program : {"pocket", "kk22_figure7"}) {
-    const auto planned = folder.run(test::example(program) + " --json").json();
-    const auto played = folder.run(test::example(program) + " --json --events none.csv").json();
+    const auto planned = folder.run(test::example(program) + " --json --count-steps").json();
+    const auto played = folder.run(test::example(program) + " --json --count-steps --events none.csv").json();
     CHECK(played["time_s"].get<double>() == Approx(planned["time_s"].get<double>()).epsilon(1e-3));
     CHECK(played["net_steps"] == planned["net_steps"]);
     CHECK(played["steps"] == planned["steps"]);
@@ -152,7 +152,8 @@ TEST_CASE("feed follows the override up to the speed limit, rapids their own") {
 TEST_CASE("a stop ends the program where it comes to rest") {
   const test::Folder folder;
   folder.write("e.csv", "1,stop\n2,resume\n");
-  const auto run = folder.run_text("G1 X100\nY100\n", "--json --events e.csv --samples s.csv --blocks b.csv");
+  const auto run = folder.run_text("G1 X100\nY100\n",
+                                   "--json --count-steps --events e.csv --samples s.csv --blocks b.csv");
   REQUIRE(run.exit == 0);
   const auto json = run.json();
   CHECK(json["completed"] == false);
@@ -188,6 +189,16 @@ TEST_CASE("single steps and a pause at a line") {
   CHECK(x_at(3.9) == Approx(20.0).margin(1e-9));
   CHECK(x_at(7.9) == Approx(30.0).margin(1e-9));
   CHECK(samples["x"].back() == 40.0);
+}
+
+TEST_CASE("a run that rests for good at a junction has not stepped the block behind it") {
+  const test::Folder folder;
+  folder.write("e.csv", "0,step,1\n");
+  const auto run = folder.run_text("G21 G90\nG1 X10 F600\nG1 Y10\n", "--json --count-steps --events e.csv");
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  CHECK(run.json()["completed"] == false);
+  CHECK(run.json()["steps"] == nlohmann::json{{"X", 4000}, {"Y", 0}, {"Z", 0}});
 }
 
 TEST_CASE("bad events: file, line, column and what is wrong, and no output") {
@@ -237,7 +248,7 @@ TEST_CASE("a program is begun at a line, from rest at the start of its first mot
   CHECK(samples["v"][0] == 0.0);
   CHECK(samples["s"].back() == 20.0);
   CHECK(motions["feed"][0] == 20.0);  // what stands before the line was read
-  const auto json = folder.run_text(program, "--json --from-line 3").json();
+  const auto json = folder.run_text(program, "--json --count-steps --from-line 3").json();
   CHECK(json["net_steps"]["X"] == -4000);
   CHECK(json["net_steps"]["Y"] == -4000);
   const auto beyond = folder.run_text(program, "--from-line 6");

@@ -36,9 +36,9 @@ TEST_CASE("KK22 Fig. 7: lengths, junctions and the time of closed form") {
        {Blocks{{0, half, half, half, half, 0, 0}, "table"}, Blocks{{0, 0, 0, 0, 0, 0, 0}, "stop"}}) {
     INFO(expected.junction);
     const test::Folder folder;
-    const auto run =
-        folder.run(test::example("kk22_figure7") + " --json --plan block --profile five --junction " +
-                   expected.junction + " --blocks b.csv --motions m.csv");
+    const auto run = folder.run(test::example("kk22_figure7") +
+                                " --json --count-steps --plan block --profile five --junction " +
+                                expected.junction + " --blocks b.csv --motions m.csv");
     REQUIRE(run.exit == 0);
     const auto json = run.json();
     const test::Table blocks(folder / "b.csv");

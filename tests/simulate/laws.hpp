@@ -103,7 +103,7 @@ inline nlohmann::json check_run(const std::string& program, const std::string& o
   INFO(program << ' ' << options);
   const Folder folder;
   const auto run = folder.run(program + " --json --samples s.csv --motions m.csv --blocks b.csv " + options +
-                              (asked.steps ? " --steps x.vcd" : ""));
+                              (asked.steps ? " --steps x.vcd" : " --count-steps"));
   INFO(run.err);
   REQUIRE(run.exit == 0);
   const auto json = run.json();
@@ -129,7 +129,7 @@ inline nlohmann::json check_run(const std::string& program, const std::string& o
 
   for (const std::string name : {"X", "Y", "Z"}) {
     INFO(name);
-    CHECK(json["step_error_max"][name] <= 0.5 + 1e-6);
+    CHECK(json["step_error_max"][name] <= 0.5 + 1e-4 + 1e-6);  // late by the hysteresis where it turns round
     CHECK(json["rmse"][name] <= json["step_error_max"][name].get<double>() / 400.0);
   }
   if (!asked.steps) return json;

@@ -156,6 +156,22 @@ TEST_CASE("travel: end points, an arc's extremum, the offset included") {
   }
 }
 
+TEST_CASE("an axis that starts outside its travel: the message says so") {
+  const test::Folder folder;
+  folder.write("m.toml", axes("travel = [1, 50]"));
+  CHECK(folder.run_text("G1 X10\n", "--quiet --machine m.toml").err ==
+        "program.ngc:1:4: error: axis X starts at 0, beyond its travel of 1 to 50\n");
+}
+
+TEST_CASE("the two-axis card: the published axis 1 is Y, axis 2 is X") {
+  const test::Folder folder;
+  const auto run = folder.run_text(
+      "G1 X2000 Y1000 F2000\n", "--json --machine " + test::quoted(CNCPLAN_EXAMPLES "/machines/card2.toml"));
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  CHECK(run.json()["net_steps"] == nlohmann::json{{"X", 9878}, {"Y", 16974}});
+}
+
 TEST_CASE("bad machine files: file, line, column and what is wrong") {
   struct Case {
     std::string file;
@@ -175,7 +191,7 @@ TEST_CASE("bad machine files: file, line, column and what is wrong") {
            {"[[axis]]\nsteps_per_unit = 1\n", "1:1: error: an axis needs a letter"},
            {"[[axis]]\nletter = \"XY\"\n", "2:10: error: letter must be one letter"},
            {axes("steps = 400"), "3:1: error: unknown key 'steps' in axis"},
-           {axes("steps_per_unit = -1"), "3:18: error: steps_per_unit must be greater than zero"},
+           {axes("steps_per_unit = 0"), "3:18: error: steps_per_unit must not be zero"},
            {axes("kind = \"round\""), "3:8: error: kind must be \"linear\" or \"rotary\""},
            {axes("travel = [1]"), "3:10: error: travel must be a list of 2 numbers"},
            {axes("travel = [5, 1]"), "3:10: error: travel must go from the lower to the higher end"},

@@ -31,7 +31,8 @@ TEST_CASE("limits: the lower, the slower") {
 }
 
 TEST_CASE("option --period sets the number of samples and nothing of the plan") {
-  const auto fine = summary("--period 0.0005"), coarse = summary("--period 0.002");
+  const auto fine = summary("--count-steps --period 0.0005"),
+             coarse = summary("--count-steps --period 0.002");
   CHECK(fine["time_s"] == coarse["time_s"]);
   CHECK(fine["steps"] == coarse["steps"]);
   CHECK(fine["samples"] == std::ceil(fine["time_s"].get<double>() / 0.0005) + 1);
@@ -147,9 +148,9 @@ TEST_CASE("option --help and --version say what they promise and succeed") {
   const test::Folder folder;
   const auto help = folder.run("--help");
   CHECK(help.exit == 0);
-  for (const char* option :
-       {"--vmax", "--amax", "--jmax", "--period", "--junction", "--profile", "--plan", "--interpolator",
-        "--machine", "--motions", "--blocks", "--samples", "--steps", "--plot", "--json", "--quiet"}) {
+  for (const char* option : {"--vmax", "--amax", "--jmax", "--period", "--junction", "--profile", "--plan",
+                             "--interpolator", "--machine", "--count-steps", "--motions", "--blocks",
+                             "--samples", "--steps", "--plot", "--json", "--quiet"}) {
     INFO(option);
     CHECK(help.out.find(option) != std::string::npos);
   }

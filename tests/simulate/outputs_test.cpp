@@ -29,8 +29,8 @@ TEST_CASE("headers are the contract's") {
 
 TEST_CASE("the summary has all keys, each of its kind") {
   const test::Folder folder;
-  const auto run =
-      folder.run(test::example("pocket") + " --json --period 0.002 --vmax 25 --amax 900 --jmax 9000");
+  const auto run = folder.run(test::example("pocket") +
+                              " --json --count-steps --period 0.002 --vmax 25 --amax 900 --jmax 9000");
   REQUIRE(run.exit == 0);
   CHECK(run.err.empty());
   const auto json = run.json();
@@ -54,6 +54,7 @@ TEST_CASE("the summary has all keys, each of its kind") {
     INFO(axis);
     CHECK(json["axis_peak"]["velocity"][axis].is_number_float());
     CHECK(json["axis_peak"]["acceleration"][axis].is_number_float());
+    CHECK(json["axis_peak"]["jerk"][axis].is_number_float());
     CHECK(json["steps"][axis].is_number_integer());
     CHECK(json["net_steps"][axis].is_number_integer());
     CHECK(json["step_error_max"][axis].is_number_float());
@@ -65,6 +66,76 @@ TEST_CASE("the summary has all keys, each of its kind") {
   CHECK(json["lines"] == 26);
   CHECK(json["motions"] == 19);
   CHECK(json["arcs"] == 7);
+}
+
+TEST_CASE("steps are in the summary where they are asked for") {
+  const test::Folder folder;
+  folder.write("m.toml", "");
+  const auto has_steps = [&](const std::string& options) {
+    const auto json = folder.run(test::example("pocket") + " --json " + options).json();
+    const auto table = folder.run(test::example("pocket") + " " + options).out;
+    const bool has = json.contains("steps");
+    for (const char* key : {"net_steps", "step_error_max", "rmse", "steps_s"})
+      CHECK(json.contains(key) == has);
+    CHECK((table.find("edges") != std::string::npos) == has);
+    return has;
+  };
+  CHECK_FALSE(has_steps(""));
+  CHECK(has_steps("--count-steps"));
+  CHECK(has_steps("--steps x.vcd"));
+  CHECK(has_steps("--machine m.toml"));
+}
+
+TEST_CASE("no number of the samples is -0") {
+  const test::Folder folder;
+  for (const char* program : {"G4 P0.01\n", "G1 X-0.0 Y5\n"}) {
+    REQUIRE(folder.run_text(program, "--quiet --samples s.csv").exit == 0);
+    const std::string text = test::text_of(folder / "s.csv");
+    CHECK(text.find(",-0,") == std::string::npos);
+    CHECK(text.find(",-0\n") == std::string::npos);
+  }
+}
+
+TEST_CASE("the contour error is measured: what rounding leaves, and no more") {
+  const test::Folder folder;
+  const auto run = folder.run_text("G2 X20 Y3 R12\nG3 X22 Y5 Z1 R9\nG2 X22 Y5 I3 J-0.7 Z3\n",
+                                   "--json --samples s.csv --motions m.csv");
+  const test::Table samples(folder / "s.csv"), motions(folder / "m.csv");
+  double worst = 0.0;  // of the distance from the circles' cylinders
+  std::size_t motion = 0;
+  double end = motions["length"][0];
+  for (std::size_t i = 0; i < samples.rows(); ++i) {
+    while (samples["s"][i] > end && motion + 1 < motions.rows()) end += motions["length"][++motion];
+    const long double x = samples["x"][i], y = samples["y"][i];
+    const long double gap =
+        std::hypot(x - motions["cx"][motion], y - motions["cy"][motion]) - motions["radius"][motion];
+    worst = std::max(worst, static_cast<double>(std::abs(gap)));
+  }
+  const double error = run.json()["contour_error_mm"];
+  INFO(worst << ' ' << error);
+  CHECK(error > 0.0);
+  CHECK(error < 1e-12);
+  CHECK(error >= 0.1 * worst);
+}
+
+TEST_CASE("axis peaks are no less than the samples of single arcs show") {
+  const test::Folder folder;
+  for (const std::string arc : {"G3 X1 Y0.2 R2", "G2 X20 Y3 R12", "G2 X8 Y0 R6", "G2 X2 Y0 R1"}) {
+    const auto json = folder.run_text(arc + "\n", "--json --period 1e-5 --samples s.csv").json();
+    const test::Table samples(folder / "s.csv");
+    for (const auto& [name, column] : {std::pair{"X", "x"}, {"Y", "y"}}) {
+      INFO(arc << ' ' << name);
+      const auto& x = samples[column];
+      double speed = 0.0, jerk = 0.0;
+      for (std::size_t i = 1; i + 2 < x.size(); ++i)
+        speed = std::max(speed, std::abs(x[i + 1] - x[i - 1]) / 2e-5);
+      for (std::size_t i = 200; i + 300 < x.size(); i += 100)  // third differences over a millisecond each
+        jerk = std::max(jerk, std::abs(x[i + 200] - 3 * x[i + 100] + 3 * x[i] - x[i - 100]) / 1e-9);
+      CHECK(json["axis_peak"]["velocity"][name].get<double>() == Approx(speed).epsilon(1e-7));
+      CHECK(json["axis_peak"]["jerk"][name].get<double>() >= jerk * (1.0 - 1e-3));
+      CHECK(json["axis_peak"]["jerk"][name].get<double>() <= 10000.0 * (1.0 + 1e-9));
+    }
+  }
 }
 
 TEST_CASE("numbers keep all bits of a double") {
@@ -86,7 +157,7 @@ TEST_CASE("a table for people, JSON for programs, nothing when quiet") {
   const auto table = folder.run(test::example("pocket"));
   CHECK(table.exit == 0);
   CHECK(table.out.find("path length") != std::string::npos);
-  CHECK(table.out.find("error steps") != std::string::npos);
+  CHECK(table.out.find("peak /s^2") != std::string::npos);
   CHECK(table.err.empty());  // no bar where there is no terminal
   const auto quiet = folder.run(test::example("pocket") + " --quiet");
   CHECK(quiet.exit == 0);

@@ -97,7 +97,7 @@ TEST_CASE("missing arguments and files", "[tire_mold]") {
   CHECK(folder.run("--version").out.starts_with("cncplan "));
   const auto unwritable = folder.run("wall.dxf art.nc --tool-length 20 --start-radius 150 --out none/out.nc");
   CHECK(unwritable.exit == 1);
-  CHECK(unwritable.err == "error: none/out.nc: cannot be written\n");
+  CHECK(unwritable.err == "error: none/out.nc: cannot be written: No such file or directory\n");
 }
 
 TEST_CASE("drawings of every kind of entity give the same profile", "[tire_mold]") {

@@ -54,9 +54,9 @@ struct CapSpeed {
 ///
 /// Both sums grow with v, a and j, so they hold below these limits as well. A higher speed leaves less to
 /// change speed with. Without a length v is such that v^2 k <= 0.8 A and m + w <= 0.5 J, and a is the most
-/// there is. Over a known length a higher v, or a lower a with a higher j, is taken where it saves time: that
-/// of the length at v, and the delay by two ramps from rest and two to rest, as ramps of the neighbours run
-/// through it too.
+/// there is. Over a known length a higher v, or a lower a with a higher j, is taken where it saves time, that
+/// of the length from rest to rest with ramps counted once and, as the neighbours' ramps run through it too,
+/// twice.
 struct ShareLimits {
   template <std::floating_point S>
   [[nodiscard]] BasicLimits<S> operator()(const std::type_identity_t<BasicBend<S>>& bend,
@@ -67,12 +67,13 @@ struct ShareLimits {
     if (!(std::isfinite(limits.jerk) && std::isfinite(bend.length))) return best;
     constexpr int speeds = 4;
     const S rise = (fastest(bend, limits, S(1), S(1)) - least) / S(speeds);
-    S shortest = time(best, bend.length);
+    const S alone = time(best, bend.length, S(1));
+    S shortest = time(best, bend.length, S(2));
     for (int i = 0; i <= speeds; ++i)
       for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
         const BasicLimits<S> other = at(bend, limits, least + static_cast<S>(i) * rise, share);
-        const S takes = time(other, bend.length);
-        if (!(takes < shortest)) continue;
+        const S takes = time(other, bend.length, S(2));
+        if (!(takes < shortest && time(other, bend.length, S(1)) <= alone)) continue;
         shortest = takes;
         best = other;
       }
@@ -106,13 +107,20 @@ struct ShareLimits {
     return limits;
   }
 
-  // Seconds over the length, ramps counted twice; no number, or infinite, where that is too short for them.
+  // Seconds over the length from rest to rest, each ramp counted `ramps` times; its peak is lower than v
+  // where the length is too short for so many.
   template <std::floating_point S>
-  static S time(const BasicLimits<S>& limits, S length) {
+  static S time(const BasicLimits<S>& limits, S length, S ramps) {
     const auto& [v, a, j] = limits;
     if (!(a > S(0) && j > S(0))) return std::numeric_limits<S>::infinity();
-    const S ramp = v * j >= a * a ? v / a + a / j : S(2) * std::sqrt(v / j);
-    return length >= S(2) * v * ramp ? length / v + S(2) * ramp : std::numeric_limits<S>::infinity();
+    const S share = length / ramps;
+    const S by_jerk = std::cbrt(share * share * j / S(4));  // share = 2 v sqrt(v / j)
+    const S steady = a / j;
+    const bool reaches_a = by_jerk > a * steady;
+    const S peak = reaches_a ? (std::sqrt(steady * steady + S(4) * share / a) - steady) * a / S(2) : by_jerk;
+    const S top = std::min(v, peak);
+    const S ramp = top > a * steady ? top / a + steady : S(2) * std::sqrt(top / j);
+    return length / top + ramps * ramp;
   }
 };
 
