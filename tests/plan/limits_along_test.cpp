@@ -129,12 +129,13 @@ Shares shares(test::Random& random, const Bounds& b, const Mill& machine, long d
 
 TEST_CASE("no state within the limits along a path exceeds a limit of the tool or of an axis") {
   test::Random random;
-  for (int draws = 0; draws < 3000; ++draws) {
+  for (int draws = 0; draws < 5000; ++draws) {
     const Bounds bounds = draw_bounds(random);
     const Mill machine = draw_machine(random);
     const double speed = random.log_uniform(0.1, 1000);
     const double tool_speed = machine.limits.velocity * random.uniform(0.5, 2);
-    const Limits along = plan::limits_along(bounds, machine, speed, tool_speed);
+    const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e3);
+    const Limits along = plan::limits_along(bounds, machine, speed, tool_speed, length);
     Shares worst;
     for (int state = 0; state < 200; ++state) {
       const bool extreme = state % 2 == 0;
@@ -147,7 +148,8 @@ TEST_CASE("no state within the limits along a path exceeds a limit of the tool o
       worst.acceleration = std::max(worst.acceleration, now.acceleration);
       worst.jerk = std::max(worst.jerk, now.jerk);
     }
-    INFO(describe(bounds, machine) << ", speed " << speed << ", of the tool " << tool_speed);
+    INFO(describe(bounds, machine) << ", speed " << speed << ", of the tool " << tool_speed << ", length "
+                                   << length);
     INFO("limits along " << along.velocity << ' ' << along.acceleration << ' ' << along.jerk);
     REQUIRE(along.velocity > 0);
     REQUIRE(along.velocity <= speed);
@@ -168,7 +170,8 @@ TEST_CASE("the limits along a path use up a limit of some axis or of the tool") 
     const Mill machine = draw_machine(random);
     if (bounds.first.isZero() && bounds.tool.first == 0) continue;
     const double speed = random.log_uniform(0.1, 1000), tool_speed = machine.limits.velocity;
-    const Limits along = plan::limits_along(bounds, machine, speed, tool_speed);
+    const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e3);
+    const Limits along = plan::limits_along(bounds, machine, speed, tool_speed, length);
     if (!std::isfinite(along.jerk)) continue;
     ++cases;
     // The state at all limits, every derivative at its bound and with the same sign.
@@ -201,9 +204,10 @@ TEST_CASE("on a circle the limits are those of the vector sums' closed form") {
     const auto circle = path::arc_from_center(Vector3(radius, 0, 0), Vector3(0, radius, 0), Vector3(0, 0, 0),
                                               Turn::counterclockwise, Plane::xy);
     REQUIRE(circle);
+    const double length = random.coin() ? infinity : circle->length();
     const Limits along = plan::limits_along(circle->bounds(0, circle->length()), machine,
-                                            machine.limits.velocity, machine.limits.velocity);
-    const Limits closed = plan::ShareLimits{}({1 / radius, 0}, machine.limits);
+                                            machine.limits.velocity, machine.limits.velocity, length);
+    const Limits closed = plan::ShareLimits{}({1 / radius, 0, length}, machine.limits);
     for (const auto limit : {&Limits::velocity, &Limits::acceleration, &Limits::jerk})
       worst = std::max(worst, std::abs(along.*limit / closed.*limit - 1));
   }
@@ -252,4 +256,25 @@ TEST_CASE("what has no limit stays without one") {
   const Mill machine;
   const path::Line<3> line({0, 0, 0}, {3, 4, 0});
   CHECK(plan::limits_along(line.bounds(0, 5), machine, 12.0, infinity) == Limits{12, infinity, infinity});
+}
+
+// At the highest speed of all, the bend alone takes the whole limit: rounding must not lose it.
+TEST_CASE("the limits hold on bends that take all there is at the highest speed tried") {
+  test::Random random;
+  long double worst = 0;
+  for (int draws = 0; draws < 20000; ++draws) {
+    Mill machine;
+    machine.limits = {1e6, random.log_uniform(10, 1e4), random.log_uniform(1e4, 1e9)};
+    Bounds bounds;
+    const double curvature = random.log_uniform(1e-3, 10);
+    bounds.tool = {1, 0, curvature, curvature * curvature, 0};
+    const Limits along =
+        plan::limits_along(bounds, machine, 1e6, 1e6, random.log_uniform(1 / curvature, 100 / curvature));
+    const long double v = along.velocity;
+    REQUIRE(along.acceleration > 0);
+    REQUIRE(along.jerk > 0);
+    worst = std::max(worst, std::hypot(v * v * curvature, static_cast<long double>(along.acceleration)) /
+                                machine.limits.acceleration);
+  }
+  CHECK(static_cast<double>(worst) <= 1 + 1e-12);
 }
