@@ -6,6 +6,7 @@
 #include <concepts>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
 namespace cncplan {
 
@@ -20,7 +21,11 @@ struct BasicInterval {
   S high{};
 
   constexpr BasicInterval() = default;
-  constexpr BasicInterval(S number) : low(number), high(number) {}  // NOLINT(google-explicit-constructor)
+  /// A number of any type, as formulas have them: T(3), T(0.5).
+  template <class Number>
+    requires std::is_arithmetic_v<Number>
+  constexpr BasicInterval(Number number)  // NOLINT(google-explicit-constructor)
+      : low(static_cast<S>(number)), high(static_cast<S>(number)) {}
   constexpr BasicInterval(S a, S b) : low(a), high(b) {}
 
   [[nodiscard]] static constexpr BasicInterval whole() {

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/path/line.hpp"
 #include "cncplan/path/mapped.hpp"
 
 namespace cncplan::path {
@@ -48,18 +49,18 @@ class StraightInJoints {
   [[nodiscard]] BasicPathBounds<Scalar, axis_count> bounds(Scalar from, Scalar to) const {
     constexpr int places = 16;
     auto result = joints_.bounds(from, to);
-    std::array<Scalar, 3> largest{}, change{}, before{};
+    Magnitudes largest{}, change{}, before{};
     for (int i = 0; i <= places; ++i) {
-      const auto at = tool_point_at(from + (to - from) * static_cast<Scalar>(i) / Scalar(places));
-      const std::array<Scalar, 3> here{at.first.norm(), at.second.norm(), at.third.norm()};
+      const Magnitudes here =
+          magnitudes(tool_point_at(from + (to - from) * static_cast<Scalar>(i) / Scalar(places)));
       for (std::size_t k = 0; k < here.size(); ++k) {
         largest[k] = std::max(largest[k], here[k]);
         if (i > 0) change[k] = std::max(change[k], std::abs(here[k] - before[k]));
       }
       before = here;
     }
-    result.tool = {largest[0] + change[0], largest[1] + change[1], Scalar(0), largest[2] + change[2],
-                   Scalar(0)};
+    for (std::size_t k = 0; k < largest.size(); ++k) largest[k] += change[k];
+    result.tool = {largest[0], largest[1], largest[2], largest[3], largest[4]};
     return result;
   }
 
@@ -80,6 +81,17 @@ class StraightInJoints {
   static constexpr int space = 3;
   static_assert(axis_count >= space, "a map takes X Y Z at least");
   using Values = std::array<Scalar, static_cast<std::size_t>(axis_count)>;
+
+  // In the order of `BasicToolBounds`.
+  using Magnitudes = std::array<Scalar, 5>;
+  static Magnitudes magnitudes(const PathPoint<BasicVector3<Scalar>>& tool) {
+    const Scalar first = tool.first.norm();
+    const BasicVector3<Scalar> direction =
+        first > Scalar(0) ? BasicVector3<Scalar>(tool.first / first) : BasicVector3<Scalar>::Zero();
+    const Scalar second = tool.second.dot(direction), third = tool.third.dot(direction);
+    return {first, std::abs(second), (tool.second - second * direction).norm(), std::abs(third),
+            (tool.third - third * direction).norm()};
+  }
 
   static Vector values(const Values& joints) { return Eigen::Map<const Vector>(joints.data()); }
   static Values array(const Vector& point) {

@@ -90,7 +90,7 @@ class BlockBuilder {
                                       [&](const gcode::Axis& axis) { return axis.letter == letter; });
       return found == dialect.axes.end() ? -1 : static_cast<int>(found - dialect.axes.begin());
     };
-    word_count_ = dialect.axes.size();
+    word_count_ = std::min<std::size_t>(dialect.axes.size(), gcode::max_axes);
     for (std::size_t i = 0; i < word_count_; ++i) kinds_[i] = dialect.axes[i].kind;
     for (std::size_t k = 0; k < 3; ++k) space_[k] = index_of("XYZ"[k]);
     if constexpr (MappedModel<M>)
@@ -106,7 +106,7 @@ class BlockBuilder {
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
       auto made = block(*motion);
       if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion->line, motion->column, {}});
-      end_ = made->path.end();
+      end_ = coordinates_of(machine_place(motion->end, motion->offset));
       return std::optional<Block>(*made);
     }
     const auto* word = std::get_if<gcode::Word>(&item);
@@ -117,7 +117,7 @@ class BlockBuilder {
   }
 
   /// Where the axes are before the first motion.
-  void start_at(const gcode::Position& place) { end_ = axes_at(coordinates_of(place)); }
+  void start_at(const gcode::Position& place) { end_ = coordinates_of(place); }
 
  private:
   static constexpr auto coordinates = static_cast<std::size_t>(program_coordinates<M>);
@@ -125,7 +125,7 @@ class BlockBuilder {
   using Programmed = path::BasicSegment<Scalar, program_coordinates<M>>;
 
   [[nodiscard]] std::optional<Block> stop(int line, double seconds) const {
-    return Block{.path = path::BasicLine<Scalar, M::axis_count>(end_, end_),
+    return Block{.path = path_of(Programmed(path::BasicLine<Scalar, program_coordinates<M>>(end_, end_))),
                  .pause = static_cast<Scalar>(seconds),
                  .exact_stop = true,
                  .line = line};
@@ -140,22 +140,28 @@ class BlockBuilder {
     return result;
   }
 
-  [[nodiscard]] VectorN<Scalar, M::axis_count> axes_at(const Coordinates& place) const {
-    if constexpr (MappedModel<M>) {
-      std::array<Scalar, coordinates> x;
-      Eigen::Map<Coordinates>(x.data()) = place;
-      const auto joints = machine_.map.joints(x);
-      return Eigen::Map<const VectorN<Scalar, M::axis_count>>(joints.data());
-    } else {
-      return place;
-    }
+  // Of the axes.
+  [[nodiscard]] typename Block::Path path_of(const Programmed& programmed) const {
+    if constexpr (MappedModel<M>)
+      return path::Mapped<std::remove_cvref_t<decltype(M::map)>, Programmed>(machine_.map, programmed);
+    else
+      return programmed;
   }
 
-  // A path of the machine's words that do not belong to it must stand still.
+  [[nodiscard]] gcode::Position machine_place(gcode::Position work, const gcode::Position& offset) const {
+    for (std::size_t i = 0; i < word_count_; ++i) work[i] += offset[i];
+    return work;
+  }
+
+  // What the machine lacks must stand still, and an arc moves both axes of its plane wherever it ends.
   [[nodiscard]] Expected<void> check_axes(const gcode::Motion& motion) const {
     for (std::size_t i = 0; i < word_count_; ++i) {
       const bool ours = std::find(words_.begin(), words_.end(), static_cast<int>(i)) != words_.end();
-      if (!ours && motion.end[i] != motion.start[i])
+      const bool in_plane =
+          is_arc(motion) &&
+          (space_[static_cast<std::size_t>(axes(motion.plane).first)] == static_cast<int>(i) ||
+           space_[static_cast<std::size_t>(axes(motion.plane).second)] == static_cast<int>(i));
+      if (!ours && (in_plane || motion.end[i] != motion.start[i]))
         return tl::unexpected(
             Error{ErrorCode::unreachable, "motion of an axis that the machine lacks", motion.end[i], 0.0});
     }
@@ -170,18 +176,11 @@ class BlockBuilder {
                  .rapid = motion.kind == gcode::MotionKind::rapid,
                  .line = motion.line,
                  .column = motion.column};
-    if constexpr (MappedModel<M>) {
-      using Map = std::remove_cvref_t<decltype(M::map)>;
-      const Coordinates start = programmed->start(), end = programmed->end();
+    result.path = path_of(*programmed);
+    if constexpr (MappedModel<M>)
       if (result.rapid)
-        result.path = path::StraightInJoints<Map>(machine_.map, start, end);
-      else if (programmed->length() > Scalar(0))
-        result.path = path::Mapped<Map, Programmed>(machine_.map, *programmed);
-      else
-        result.path = path::BasicLine<Scalar, M::axis_count>(axes_at(start), axes_at(start));
-    } else {
-      result.path = *programmed;
-    }
+        result.path = path::StraightInJoints<std::remove_cvref_t<decltype(M::map)>>(
+            machine_.map, programmed->start(), programmed->end());
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
     return result;
   }
@@ -218,15 +217,9 @@ class BlockBuilder {
 
   // In the program's coordinates.
   [[nodiscard]] Expected<Programmed> programmed_path(const gcode::Motion& motion) const {
-    gcode::Position from{}, to{};
-    for (std::size_t i = 0; i < word_count_; ++i) {
-      from[i] = motion.start[i] + motion.offset[i];
-      to[i] = motion.end[i] + motion.offset[i];
-    }
-    const Coordinates start = coordinates_of(from), end = coordinates_of(to);
-    const bool arc =
-        motion.kind == gcode::MotionKind::arc_radius || motion.kind == gcode::MotionKind::arc_center;
-    if (!arc) return Programmed(line(motion, start, end));
+    const Coordinates start = coordinates_of(machine_place(motion.start, motion.offset)),
+                      end = coordinates_of(machine_place(motion.end, motion.offset));
+    if (!is_arc(motion)) return Programmed(line(motion, start, end));
     if (!space_first())
       return tl::unexpected(Error{ErrorCode::not_supported, "arc on a machine whose first axes are not X Y Z",
                                   static_cast<double>(M::axis_count), 3.0});
@@ -262,6 +255,10 @@ class BlockBuilder {
     return {start, end, std::sqrt(linear_sq > Scalar(0) ? linear_sq : rotary_sq), Scalar(0)};
   }
 
+  static bool is_arc(const gcode::Motion& motion) {
+    return motion.kind == gcode::MotionKind::arc_radius || motion.kind == gcode::MotionKind::arc_center;
+  }
+
   [[nodiscard]] bool space_first() const {
     for (std::size_t k = 0; k < std::min<std::size_t>(3, coordinates); ++k)
       if (words_[k] != space_[k]) return false;
@@ -272,9 +269,9 @@ class BlockBuilder {
   path::ArcTolerance<double> arcs_;
   std::size_t word_count_ = 0;
   std::array<AxisKind, gcode::max_axes> kinds_{};
-  std::array<int, coordinates> words_{};  // which word each coordinate is; -1 for none
-  std::array<int, 3> space_{};            // which words X Y Z are
-  VectorN<Scalar, M::axis_count> end_ = VectorN<Scalar, M::axis_count>::Zero();
+  std::array<int, coordinates> words_{};   // which word each coordinate is; -1 for none
+  std::array<int, 3> space_{};             // which words X Y Z are
+  Coordinates end_ = Coordinates::Zero();  // where the last motion ended
 };
 
 }  // namespace cncplan

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,13 +20,20 @@
 
 namespace cncplan::plan {
 
+/// The rest of one block.
+template <std::floating_point S>
+struct BasicBlockPause {
+  std::size_t cells{};  ///< how many cells come before it
+  std::size_t block{};
+  S seconds{};
+};
+
 /// The blocks of a program cut into cells, over each of which one set of limits holds.
 template <std::floating_point S>
 struct BasicCells {
-  std::vector<BasicBlockCaps<S>> caps;    ///< of each cell, in order
-  std::vector<std::size_t> blocks;        ///< to which each belongs
-  std::vector<std::size_t> pause_blocks;  ///< which block is at rest behind each cell, where its pause is > 0
-  S first_pause{};                        ///< s at rest before the first cell
+  std::vector<BasicBlockCaps<S>> caps;     ///< of each cell, in order
+  std::vector<std::size_t> blocks;         ///< to which each belongs
+  std::vector<BasicBlockPause<S>> pauses;  ///< in order; the caps have those behind a cell as a sum
 };
 
 /// The limits of a part of a path.
@@ -81,9 +89,10 @@ struct BasicJoint {
 
 /// The highest speed at which the axes may change from one block's direction to the next one's, if the joint
 /// were rounded within the tolerances: over a blend of half length l the derivative of an axis changes by d,
-/// so v^2 d / (2 l) is its acceleration. The tool's deviation of a blend with jump D of its direction is l D
+/// so v^2 d / (2 l) is its acceleration; where that has no limit, a blend at the jerk J has v^3 d / l^2 = J.
+/// The tool's deviation of a blend with jump D of its direction is l D
 /// / 4, that of a rotary axis l d / 4 (rad): the shortest l that one of them allows holds. Infinite where no
-/// axis with a limit of acceleration changes its direction.
+/// axis with a limit of acceleration or jerk changes its direction.
 template <MachineModel M>
 [[nodiscard]] typename M::Scalar axis_corner_speed(const BasicJoint<typename M::Scalar, M::axis_count>& joint,
                                                    const M& machine, typename M::Scalar tolerance,
@@ -104,13 +113,17 @@ template <MachineModel M>
       if (const S jump = jump_of(i);
           jump > S(0) && machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary)
         blend = std::min(blend, S(4) * rotary_tolerance / jump);
-  S speed_sq = none;
+  S speed = none;
   for (int i = 0; i < M::axis_count; ++i) {
-    const S limit = least_acceleration(machine.axes[static_cast<std::size_t>(i)]);
-    if (const S jump = jump_of(i); jump > S(0) && std::isfinite(limit))
-      speed_sq = std::min(speed_sq, S(2) * blend * limit / jump);
+    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    const S jump = jump_of(i), limit = least_acceleration(axis);
+    if (!(jump > S(0))) continue;
+    if (std::isfinite(limit))
+      speed = std::min(speed, std::sqrt(S(2) * blend * limit / jump));
+    else if (std::isfinite(axis.jerk))
+      speed = std::min(speed, std::cbrt(blend * blend * axis.jerk / jump));
   }
-  return std::sqrt(speed_sq);
+  return speed;
 }
 
 /// One side of a joint, as junction policies see it.
@@ -155,8 +168,9 @@ namespace detail {
 
 /// The speed that a program asks of a block: mm/s, or rad/s where the tool stands still.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] typename M::Scalar wanted_speed(const B& block, const M& machine, bool in_space) {
+[[nodiscard]] typename M::Scalar wanted_speed(const B& block, const M& machine, LengthOf counted) {
   using S = typename M::Scalar;
+  const bool in_space = counted == LengthOf::tool;
   if (block.rapid) return in_space ? rapid_speed(machine) : std::numeric_limits<S>::infinity();
   return in_space ? std::min(block.feed, feed_speed(machine)) : block.feed;
 }
@@ -174,8 +188,28 @@ template <MachineModel M, Path P>
       return tl::unexpected(
           Error{code, axis_name(axis.letter), static_cast<double>(value), static_cast<double>(bound)});
     };
+    if (!std::isfinite(box.low[i]) || !std::isfinite(box.high[i]))
+      return refuse(ErrorCode::unreachable, box.low[i], axis.low);
     if (!(box.low[i] >= axis.low - rounding)) return refuse(ErrorCode::below_limit, box.low[i], axis.low);
     if (!(box.high[i] <= axis.high + rounding)) return refuse(ErrorCode::above_limit, box.high[i], axis.high);
+  }
+  return {};
+}
+
+/// Nothing, or the first axis that would have to jump from the end of a block to the start of the next one,
+/// by more than 1e-6 mm or rad.
+template <MachineModel M>
+[[nodiscard]] Expected<void> joined(const std::optional<VectorN<typename M::Scalar, M::axis_count>>& end,
+                                    const VectorN<typename M::Scalar, M::axis_count>& start,
+                                    const M& machine) {
+  using S = typename M::Scalar;
+  if (!end) return {};
+  for (int i = 0; i < M::axis_count; ++i) {
+    const S rounding = std::max(S(1e-6), S(64) * std::numeric_limits<S>::epsilon() * std::abs(start[i]));
+    if (std::abs(start[i] - (*end)[i]) > rounding)
+      return tl::unexpected(Error{ErrorCode::discontinuous,
+                                  axis_name(machine.axes[static_cast<std::size_t>(i)].letter),
+                                  static_cast<double>(start[i]), static_cast<double>((*end)[i])});
   }
   return {};
 }
@@ -190,7 +224,7 @@ template <MachineModel M, BlockModel B, class Policy>
       after.path.point_at(S(0)),
       {tool_side<M>(before, true, tool), tool_side<M>(after, false, tool), machine.limits}};
   joint.tool.limits.velocity =
-      std::min(wanted_speed(before, machine, true), wanted_speed(after, machine, true));
+      std::min(wanted_speed(before, machine, LengthOf::tool), wanted_speed(after, machine, LengthOf::tool));
   const S speed_sq = rules.policy.speed_sq(joint.tool);
   const S speed = speed_sq > S(0) ? std::sqrt(speed_sq) : S(0);
   if (rules.tolerance < S(0)) return speed;
@@ -200,45 +234,49 @@ template <MachineModel M, BlockModel B, class Policy>
 }  // namespace detail
 
 /// Cuts a program into cells. Errors: those of `validate` for the limits of a block; below_limit and
-/// above_limit where an axis would leave its travel.
+/// above_limit where an axis would leave its travel; unreachable where the machine has no position for a
+/// place; discontinuous where a block begins elsewhere than the one before it ends.
 template <MachineModel M, BlockModel B, class Policy>
 [[nodiscard]] Expected<BasicCells<typename M::Scalar>, BlockFault> make_cells(
     std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules) {
   using S = typename M::Scalar;
+  using Vector = VectorN<S, M::axis_count>;
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
   BasicCells<S> cells;
   const std::array<int, 3> tool = tool_axes(machine);
   const B* before = nullptr;  // the block that moved last, where the motion does not stop behind it
-  bool before_in_space = false;
+  LengthOf before_counted{};
+  std::optional<Vector> end;  // of the block before
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const B& block = blocks[i];
     const auto refuse = [&](const Error& error) { return tl::unexpected(BlockFault{error, i}); };
+    if (auto ok = detail::joined(end, block.path.position_at(S(0)), machine); !ok) return refuse(ok.error());
+    end = block.path.position_at(block.path.length());
     if (block.path.length() > S(0)) {
       if (auto ok = detail::within_travel(block.path, machine); !ok) return refuse(ok.error());
-      const bool in_space = block.path.bounds(S(0), S(0)).tool.first > S(0);
+      const LengthOf counted = length_of(block.path, machine);
       S entry = S(0);
-      if (before != nullptr && in_space == before_in_space)
+      if (before != nullptr && counted == before_counted)
         entry = detail::joint_speed(*before, block, machine, rules, tool);
       Expected<void> valid;
-      cut_by_limits(block, machine, detail::wanted_speed(block, machine, in_space),
+      cut_by_limits(block, machine, detail::wanted_speed(block, machine, counted),
                     block.rapid ? rapid_speed(machine) : machine.limits.velocity,
                     [&](const PartLimits<S>& part) {
                       if (const auto ok = validate(part.limits); !ok && valid)
                         valid = tl::unexpected(ok.error());
                       cells.caps.push_back({part.length, entry, part.limits, S(0)});
                       cells.blocks.push_back(i);
-                      cells.pause_blocks.push_back(i);
                       entry = std::numeric_limits<S>::infinity();
                     });
       if (!valid) return refuse(valid.error());
       before = &block;
-      before_in_space = in_space;
+      before_counted = counted;
     }
     if (!block.exact_stop && !(block.pause > S(0))) continue;
     before = nullptr;
     if (!(block.pause > S(0))) continue;
-    (cells.caps.empty() ? cells.first_pause : cells.caps.back().pause) += block.pause;
-    if (!cells.caps.empty()) cells.pause_blocks.back() = i;
+    if (!cells.caps.empty()) cells.caps.back().pause += block.pause;
+    cells.pauses.push_back({cells.caps.size(), i, block.pause});
   }
   return cells;
 }

@@ -51,10 +51,17 @@ template <std::floating_point S>
   return speed;
 }
 
-/// The acceleration along the path that a speed leaves. By the acceleration limit A,
-/// (f a + p v^2)^2 + (q v^2)^2 <= A^2. By the jerk limit J, where the path bends: a ramp at jerk j up to
-/// speed v peaks at no more than sqrt(j v), so no more acceleration than that is of use; with j = a^2 / v, (f
-/// a^2/v + 3 p v a + t v^3)^2 + (3 q v a + w v^3)^2 <= J^2, whose left side is convex and grows with a:
+/// What a vector of length `limit` has left beside so much across; 0 where that is all there is. (No number
+/// would pass unseen through a minimum.)
+template <std::floating_point S>
+[[nodiscard]] S left_beside(S across, S limit) {
+  return std::sqrt(std::max((limit - across) * (limit + across), S(0)));
+}
+
+/// The acceleration along the path that a speed leaves, 0 or below where it leaves none. By the acceleration
+/// limit A, (f a + p v^2)^2 + (q v^2)^2 <= A^2. By the jerk limit J, where the path bends: a ramp at jerk j
+/// up to speed v peaks at no more than sqrt(j v), so no more acceleration than that is of use; with j = a^2 /
+/// v, (f a^2/v + 3 p v a + t v^3)^2 + (3 q v a + w v^3)^2 <= J^2, whose left side is convex and grows with a:
 /// Newton's method from above. What it leaves above the root only lowers the jerk that is chosen from it.
 template <std::floating_point S>
 [[nodiscard]] S acceleration_of(const Limited<S>& row, S v) {
@@ -63,13 +70,12 @@ template <std::floating_point S>
   S a = std::numeric_limits<S>::infinity();
   if (b.first > S(0) && std::isfinite(limits.acceleration)) {
     const S across = b.second_across * v2;
-    a = (std::sqrt((limits.acceleration - across) * (limits.acceleration + across)) - b.second_along * v2) /
-        b.first;
+    a = (left_beside(across, limits.acceleration) - b.second_along * v2) / b.first;
   }
   if (!row.bends() || !std::isfinite(limits.jerk) || !(v > S(0))) return a;
   const S along_slope = S(3) * b.second_along * v, across_slope = S(3) * b.second_across * v;
   const S along_rest = b.third_along * v3, across_rest = b.third_across * v3;
-  const S left = std::sqrt((limits.jerk - across_rest) * (limits.jerk + across_rest)) - along_rest;
+  const S left = std::max(left_beside(across_rest, limits.jerk) - along_rest, S(0));
   if (!(b.first > S(0))) {
     const S slope = along_slope + across_slope;
     return slope > S(0) ? std::min(a, left / slope) : a;
@@ -95,7 +101,7 @@ template <std::floating_point S>
   if (!row.bends()) return limits.jerk / b.first;
   const S along = S(3) * b.second_along * v * a + b.third_along * v * v * v;
   const S across = S(3) * b.second_across * v * a + b.third_across * v * v * v;
-  return (std::sqrt((limits.jerk - across) * (limits.jerk + across)) - along) / b.first;
+  return (left_beside(across, limits.jerk) - along) / b.first;
 }
 
 /// Seconds over a length with two ramps from rest and two to rest; infinite where that is too short for them.

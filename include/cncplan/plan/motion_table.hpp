@@ -29,18 +29,21 @@ template <std::floating_point S>
   std::vector<BasicBlockPhase<S>> table;
   table.reserve(cells.caps.size() + 7 * spans.size());
   S start = S(0);
-  const auto rest = [&](S seconds, S position, std::size_t block) {
-    table.push_back({{start, seconds, position, S(0), S(0), S(0)}, block});
-    start += seconds;
-  };
-  if (cells.first_pause > S(0)) rest(cells.first_pause, S(0), 0);
   S travelled = S(0);  // of the block that goes on, in the spans before
   S finished = S(0);   // length of the block that was finished last
+  auto pause = cells.pauses.begin();
+  const auto rest = [&](std::size_t cell) {
+    for (; pause != cells.pauses.end() && pause->cells == cell; ++pause) {
+      const bool moved = cell > 0 && pause->block == cells.blocks[cell - 1];
+      table.push_back({{start, pause->seconds, moved ? finished : S(0), S(0), S(0), S(0)}, pause->block});
+      start += pause->seconds;
+    }
+  };
+  rest(0);
   for (const BasicSpan<S>& span : spans) {
     const S duration = span.profile.duration();
     if (span.count == 0) {
-      const std::size_t cell = span.first - 1, block = cells.pause_blocks[cell];
-      rest(duration, block == cells.blocks[cell] ? finished : S(0), block);
+      rest(span.first);
       continue;
     }
     const auto phases = span.profile.phases();

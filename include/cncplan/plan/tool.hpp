@@ -1,9 +1,11 @@
-// Where the tool is and goes, while the axes are at a place of their path.
+// Where the tool is and goes, while the axes are at a place of their path; what the path's length counts.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
+#include "cncplan/core/concepts.hpp"
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/plan/machine.hpp"
 
@@ -41,6 +43,23 @@ template <Path P>
     return {in_space(at.position, tool), in_space(at.first, tool), in_space(at.second, tool),
             in_space(at.third, tool)};
   }
+}
+
+/// What the length of a path counts: the way of the tool; where that stands still, that of linear axes (both
+/// mm), or that of rotary ones (rad).
+enum class LengthOf : std::uint8_t { tool, linear_axes, rotary_axes };
+
+/// Under a map the axes do not tell: what is no way of the tool is that of rotary coordinates.
+template <MachineModel M, Path P>
+[[nodiscard]] LengthOf length_of(const P& path, const M& machine) {
+  using S = typename M::Scalar;
+  const auto bounds = path.bounds(S(0), S(0));
+  if (bounds.tool.first > S(0)) return LengthOf::tool;
+  if constexpr (!MappedModel<M>)
+    for (int i = 0; i < M::axis_count; ++i)
+      if (machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::linear && bounds.first[i] > S(0))
+        return LengthOf::linear_axes;
+  return LengthOf::rotary_axes;
 }
 
 }  // namespace cncplan

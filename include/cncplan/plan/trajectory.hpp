@@ -173,15 +173,9 @@ class Trajectory {
   }
 
  private:
-  // Whether a block's length is mm: the tool or some linear axis moves.
+  // Whether a block's length is mm.
   [[nodiscard]] bool counts(const B& block) const {
-    if (!(block.path.length() > Scalar(0))) return false;
-    const auto bounds = block.path.bounds(Scalar(0), Scalar(0));
-    if (bounds.tool.first > Scalar(0)) return true;
-    for (int i = 0; i < M::axis_count; ++i)
-      if (machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::linear && bounds.first[i] > Scalar(0))
-        return true;
-    return false;
+    return block.path.length() > Scalar(0) && length_of(block.path, machine_) != LengthOf::rotary_axes;
   }
   static bool rests(const BasicPhase<Scalar>& phase) {
     return phase.velocity == Scalar(0) && phase.acceleration == Scalar(0) && phase.jerk == Scalar(0);
