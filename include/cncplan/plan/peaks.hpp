@@ -23,8 +23,9 @@ struct BasicPeaks {
 
 namespace detail {
 
-/// Looks for peaks in one phase after the other. A stretch of a phase whose proven bounds are no higher than
-/// what has been found is passed over; any other is halved.
+/// Looks for peaks in one phase after the other. A stretch of a phase whose intervals are no higher than what
+/// has been found is passed over; any other is halved. Behind a map, the tool's peaks are those of the places
+/// that the search for the axes' looks at.
 template <class T>
 class PeakSearch {
  public:
@@ -48,7 +49,7 @@ class PeakSearch {
 
   template <class P>
   void search(const P& path, const BasicPhase<Scalar>& phase) {
-    constexpr int deepest = 24;
+    constexpr int deepest = 16;
     struct Stretch {
       Scalar from, to;
       int depth;
@@ -87,34 +88,52 @@ class PeakSearch {
     peak.jerk = std::max(peak.jerk, jerk);
   }
 
+  using I = BasicInterval<Scalar>;
+  struct Motion {
+    I velocity, acceleration, jerk;
+  };
+
+  // What an axis may do while the path and the motion along it lie in these intervals.
+  static Motion enclose(const BasicJet<I>& axis, const I& v, const I& a, Scalar j) {
+    const I v2 = square(v);
+    return {axis.first * v, axis.second * v2 + axis.first * a,
+            axis.third * (v * v2) + axis.second * (I(Scalar(3)) * v * a) + axis.first * I(j)};
+  }
+
+  [[nodiscard]] static bool beyond(Scalar bound, Scalar found) {
+    constexpr Scalar tiny = Scalar(1e-9);
+    return bound > found * (Scalar(1) + tolerance) + tiny;
+  }
+
   template <class P>
   [[nodiscard]] bool may_exceed(const P& path, const BasicPhase<Scalar>& phase, Scalar from,
                                 Scalar to) const {
     const BasicState<Scalar> first = phase.at(from), last = phase.at(to);
+    I v = I::hull(first.velocity, last.velocity);
     const Scalar top = phase.jerk != Scalar(0) ? -phase.acceleration / phase.jerk : from;
-    Scalar v = std::max(std::abs(first.velocity), std::abs(last.velocity));
-    if (top > from && top < to) v = std::max(v, std::abs(phase.at(top).velocity));
-    const Scalar a = std::max(std::abs(first.acceleration), std::abs(last.acceleration));
-    const Scalar j = std::abs(phase.jerk);
+    if (top > from && top < to) v = I::hull(v.low, v.high, phase.at(top).velocity);
+    const I a = I::hull(first.acceleration, last.acceleration);
     const auto [low, high] = std::minmax(first.position, last.position);
-    const auto b =
-        path.bounds(std::clamp(low, Scalar(0), path.length()), std::clamp(high, Scalar(0), path.length()));
-    const auto beyond = [](Scalar bound, Scalar found) {
-      constexpr Scalar tiny = Scalar(1e-9);
-      return bound > found * (Scalar(1) + tolerance) + tiny;
-    };
-    for (int i = 0; i < n; ++i)
-      if (beyond(b.first[i] * v, peaks_.velocity[i]) ||
-          beyond(b.second[i] * v * v + b.first[i] * a, peaks_.acceleration[i]) ||
-          beyond(b.third[i] * v * v * v + Scalar(3) * b.second[i] * v * a + b.first[i] * j, peaks_.jerk[i]))
+    const auto axes =
+        path.enclosure(std::clamp(low, Scalar(0), path.length()), std::clamp(high, Scalar(0), path.length()));
+    if (beyond(v.largest(), peaks_.along.velocity)) return true;
+    BasicLimits<Scalar> tool_sq{Scalar(0), Scalar(0), Scalar(0)};
+    for (int i = 0; i < n; ++i) {
+      const auto [velocity, acceleration, jerk] =
+          enclose(axes[static_cast<std::size_t>(i)], v, a, phase.jerk);
+      if (beyond(velocity.largest(), peaks_.velocity[i]) ||
+          beyond(acceleration.largest(), peaks_.acceleration[i]) || beyond(jerk.largest(), peaks_.jerk[i]))
         return true;
-    const auto& t = b.tool;
-    return beyond(v, peaks_.along.velocity) || beyond(t.first * v, peaks_.tool.velocity) ||
-           beyond(std::hypot(t.first * a + t.second_along * v * v, t.second_across * v * v),
-                  peaks_.tool.acceleration) ||
-           beyond(std::hypot(t.first * j + Scalar(3) * t.second_along * v * a + t.third_along * v * v * v,
-                             Scalar(3) * t.second_across * v * a + t.third_across * v * v * v),
-                  peaks_.tool.jerk);
+      if (MappedModel<typename T::MachineType> ||
+          std::find(tool_axes_.begin(), tool_axes_.end(), i) == tool_axes_.end())
+        continue;
+      tool_sq.velocity += square(velocity).high;
+      tool_sq.acceleration += square(acceleration).high;
+      tool_sq.jerk += square(jerk).high;
+    }
+    return beyond(std::sqrt(tool_sq.velocity), peaks_.tool.velocity) ||
+           beyond(std::sqrt(tool_sq.acceleration), peaks_.tool.acceleration) ||
+           beyond(std::sqrt(tool_sq.jerk), peaks_.tool.jerk);
   }
 
   const T& trajectory_;
@@ -124,7 +143,8 @@ class PeakSearch {
 
 }  // namespace detail
 
-/// The largest magnitudes of a trajectory, right to 1e-5 of themselves: sampled ones could miss a peak.
+/// The largest magnitudes of a trajectory, right to 1e-5 of themselves where intervals are sharp (lines
+/// and arcs): sampled ones could miss a peak.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] BasicPeaks<typename M::Scalar, M::axis_count> peaks(const Trajectory<M, B>& trajectory) {
   return detail::PeakSearch<Trajectory<M, B>>(trajectory).search();
@@ -143,8 +163,8 @@ template <MachineModel M, BlockModel B>
     const auto& left = trajectory.program()[block].path;
     const auto& entered = trajectory.program()[next].path;
     if (!(left.length() > S(0) && entered.length() > S(0))) continue;
-    const auto jump =
-        left.point_at(left.length()).first * after.velocity - entered.point_at(S(0)).first * after.velocity;
+    const VectorN<S, M::axis_count> jump =
+        (left.point_at(left.length()).first - entered.point_at(S(0)).first) * after.velocity;
     largest = std::max(largest, jump.cwiseAbs().maxCoeff());
   }
   return largest;
