@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
   const cncplan::Machine<3> mill{
       .axes = {{{.letter = 'X', .velocity = 50, .acceleration = 800, .jerk = 8000, .low = -300, .high = 300},
                 {.letter = 'Y', .velocity = 40, .acceleration = 500, .jerk = 5000, .low = -200, .high = 200},
-                {.letter = 'Z', .velocity = 10, .acceleration = 300, .jerk = 3000, .low = -80, .high = 20}}},
+                {.letter = 'Z', .velocity = 10, .acceleration = 300, .jerk = 3000, .low = -80, .high = 100}}},
       .limits = {.velocity = 45, .acceleration = 900, .jerk = 9000}};
   const auto trajectory = cncplan::plan_file(argv[1], mill, {.tolerance = 0.01});
   if (!trajectory) return std::fprintf(stderr, "%s\n", to_text(trajectory.error()).c_str()), 2;
