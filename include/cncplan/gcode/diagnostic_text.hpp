@@ -58,11 +58,13 @@ inline std::string word_text(const Error& error) {
   return text;
 }
 
-/// `FILE:LINE:COLUMN: error: SENTENCE`, or with another word for its weight.
+/// `FILE:LINE:COLUMN: error: SENTENCE`, or with another word for its weight; without a file, from the line
+/// on.
 [[nodiscard]] inline std::string to_text(std::string_view file, const Diagnostic& diagnostic,
                                          std::string_view weight = "error") {
   std::string text(file);
-  text += ':' + std::to_string(diagnostic.line) + ':' + std::to_string(diagnostic.column) + ": ";
+  if (!text.empty()) text += ':';
+  text += std::to_string(diagnostic.line) + ':' + std::to_string(diagnostic.column) + ": ";
   text += weight;
   return text + ": " + to_text(diagnostic);
 }

@@ -110,26 +110,27 @@ class BlockBuilder {
       return std::optional<Block>(*made);
     }
     const auto* word = std::get_if<gcode::Word>(&item);
-    if (const auto* dwell = std::get_if<gcode::Dwell>(&item)) return stop(dwell->line, dwell->seconds);
-    if (const auto* end = std::get_if<gcode::Stop>(&item)) return stop(end->line, 0.0);
-    if (word != nullptr && word->letter == 'T') return stop(word->line, 0.0);
+    if (const auto* dwell = std::get_if<gcode::Dwell>(&item)) return rest(dwell->line, dwell->seconds);
+    if (const auto* end = std::get_if<gcode::Stop>(&item)) return rest(end->line, 0.0);
+    if (word != nullptr && word->letter == 'T') return rest(word->line, 0.0);
     return std::optional<Block>();
   }
 
   /// Where the axes are before the first motion.
   void start_at(const gcode::Position& place) { end_ = coordinates_of(place); }
 
- private:
-  static constexpr auto coordinates = static_cast<std::size_t>(program_coordinates<M>);
-  using Coordinates = VectorN<Scalar, program_coordinates<M>>;
-  using Programmed = path::BasicSegment<Scalar, program_coordinates<M>>;
-
-  [[nodiscard]] std::optional<Block> stop(int line, double seconds) const {
+  /// A stop of so many seconds where the last motion ended.
+  [[nodiscard]] Block rest(int line = 0, double seconds = 0.0) const {
     return Block{.path = path_of(Programmed(path::BasicLine<Scalar, program_coordinates<M>>(end_, end_))),
                  .pause = static_cast<Scalar>(seconds),
                  .exact_stop = true,
                  .line = line};
   }
+
+ private:
+  static constexpr auto coordinates = static_cast<std::size_t>(program_coordinates<M>);
+  using Coordinates = VectorN<Scalar, program_coordinates<M>>;
+  using Programmed = path::BasicSegment<Scalar, program_coordinates<M>>;
 
   [[nodiscard]] Coordinates coordinates_of(const gcode::Position& place) const {
     Coordinates result = Coordinates::Zero();

@@ -252,8 +252,8 @@ template <MachineModel M, BlockModel B, class Policy>
     const auto refuse = [&](const Error& error) { return tl::unexpected(BlockFault{error, i}); };
     if (auto ok = detail::joined(end, block.path.position_at(S(0)), machine); !ok) return refuse(ok.error());
     end = block.path.position_at(block.path.length());
+    if (auto ok = detail::within_travel(block.path, machine); !ok) return refuse(ok.error());
     if (block.path.length() > S(0)) {
-      if (auto ok = detail::within_travel(block.path, machine); !ok) return refuse(ok.error());
       const LengthOf counted = length_of(block.path, machine);
       S entry = S(0);
       if (before != nullptr && counted == before_counted)

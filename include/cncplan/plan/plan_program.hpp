@@ -31,7 +31,8 @@ struct ProgramBlocks {
   int lines{};
 };
 
-/// Reads all blocks of a program. Errors, at their place: the reader's, and those of `BlockBuilder`.
+/// Reads all blocks of a program, at least one. Errors, at their place: the reader's, and those of
+/// `BlockBuilder`.
 template <MachineModel M, gcode::LineSource Lines>
 [[nodiscard]] Expected<ProgramBlocks<M>, ProgramError> read_blocks(Lines&& lines, const M& machine,
                                                                    const PlanOptions& options,
@@ -58,6 +59,7 @@ template <MachineModel M, gcode::LineSource Lines>
   });
   if (fault) return tl::unexpected(ProgramError{*fault, file});
   if (!read) return tl::unexpected(ProgramError{read.error(), file});
+  if (program.blocks.empty()) program.blocks.push_back(builder.rest());  // where it starts
   program.lines = reader.line();
   return program;
 }
