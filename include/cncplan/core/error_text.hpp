@@ -1,0 +1,47 @@
+// An error as a sentence (set-up).
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <string>
+#include <string_view>
+
+#include "cncplan/core/error.hpp"
+
+namespace cncplan {
+
+/// A number as short as it can be read back exactly.
+[[nodiscard]] inline std::string number_text(double number) {
+  std::array<char, 32> digits;
+  const double size = number < 0.0 ? -number : number;
+  const auto format =
+      size == 0.0 || (size > 1e-4 && size < 1e9) ? std::chars_format::fixed : std::chars_format::general;
+  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number, format).ptr;
+  return std::string(digits.data(), end);
+}
+
+/// "end speed: 30 cannot be reached within the length (12.5)": field, value, what is wrong, and the bound
+/// where there is one.
+[[nodiscard]] inline std::string to_text(const Error& error) {
+  const std::string_view sentence = message(error.code);
+  const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
+                        sentence.starts_with("has ") || sentence.starts_with("does ") ||
+                        sentence.starts_with("cannot ");
+  std::string text(error.field);
+  if (!text.empty()) text += ": ";
+  if (has_verb) text += number_text(error.value) + ' ';
+  text += sentence;
+  switch (error.code) {
+    case ErrorCode::above_limit:
+    case ErrorCode::below_limit:
+      return text + ' ' + number_text(error.bound);
+    case ErrorCode::end_speed_unreachable:
+    case ErrorCode::radius_mismatch:
+    case ErrorCode::chord_exceeds_diameter:
+      return text + " (" + number_text(error.bound) + ')';
+    default:
+      return text;
+  }
+}
+
+}  // namespace cncplan
