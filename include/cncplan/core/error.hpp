@@ -43,6 +43,8 @@ enum class ErrorCode : std::uint8_t {
   unreachable,
   unreadable,
   not_to_pass,
+  unfinished,
+  no_contact,
   count_,  // number of codes
 };
 
@@ -79,6 +81,8 @@ enum class ErrorCode : std::uint8_t {
       "cannot be reached by the machine",
       "cannot be read",
       "says where or how the axes move, so it cannot be passed through",
+      "is not finished",
+      "goes to its end: no contact is known",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

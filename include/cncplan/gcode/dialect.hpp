@@ -55,8 +55,9 @@ struct Dialect {
   std::array<Position, work_systems> work_offsets{};  ///< machine coordinates of each system's origin
   Position home_g28{};                                ///< machine coordinates
   Position home_g30{};                                ///< machine coordinates
-  Plane g18 = Plane::zx;     ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
-  bool block_delete = true;  ///< lines that begin with / are left out
+  Plane g18 = Plane::zx;          ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
+  double peck_clearance = 0.254;  ///< mm that G73 goes back, and that G83 stays above the bottom
+  bool block_delete = true;       ///< lines that begin with / are left out
 
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };

@@ -211,11 +211,12 @@ class Writer {
     if (std::exchange(modal_.plane, motion.plane) != motion.plane)
       put(pen, "G", motion.plane == Plane::xy ? 17 : motion.plane == Plane::yz ? 19 : 18);
     if (motion.kind != MotionKind::rapid) feed(motion, pen);
-    const Code wanted = motion.kind == MotionKind::rapid  ? code(0)
-                        : motion.kind == MotionKind::line ? code(1)
-                        : motion.turn == Turn::clockwise  ? code(2)
-                                                          : code(3);
-    if (std::exchange(modal_.motion, wanted) != wanted) put(pen, "G", wanted / 10);
+    const Code wanted = motion.probe                       ? code(38.3)
+                        : motion.kind == MotionKind::rapid ? code(0)
+                        : motion.kind == MotionKind::line  ? code(1)
+                        : motion.turn == Turn::clockwise   ? code(2)
+                                                           : code(3);
+    if (std::exchange(modal_.motion, wanted) != wanted) put(pen, "G", wanted / 10.0);
     const auto [first, second, third] = axes(motion.plane);
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const bool named =
