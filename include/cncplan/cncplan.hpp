@@ -35,6 +35,7 @@
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
+#include "cncplan/gcode/subprograms.hpp"
 #include "cncplan/gcode/word.hpp"
 #include "cncplan/gcode/writer.hpp"
 #include "cncplan/interpolate/evaluate.hpp"

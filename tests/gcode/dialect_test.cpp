@@ -18,7 +18,7 @@ TEST_CASE("a dialect is checked") {
   };
   CHECK(with_axes({{'R', AxisKind::linear}, {'Z', AxisKind::linear}, {'A', AxisKind::rotary}}).empty());
   CHECK(with_axes({}) == "number of axes");
-  CHECK(with_axes(std::vector<gcode::Axis>(7, {'X', AxisKind::linear})) == "number of axes");
+  CHECK(with_axes(std::vector<gcode::Axis>(10, {'X', AxisKind::linear})) == "number of axes");
   CHECK(with_axes({{'X', AxisKind::linear}, {'X', AxisKind::linear}}) == "X");
   CHECK(with_axes({{'F', AxisKind::linear}}) == "F");
   CHECK(with_axes({{'x', AxisKind::linear}}) == "axis letter");
@@ -91,7 +91,7 @@ TEST_CASE("a letter passes through with any number") {
 }
 
 TEST_CASE("a reader or writer of an invalid dialect takes nothing") {
-  for (const auto& [letters, error] : {std::pair{"XYZABCU", "1:1: number of axes is above the limit 6"},
+  for (const auto& [letters, error] : {std::pair{"XYZABCUVWR", "1:1: number of axes is above the limit 9"},
                                        std::pair{"x", "1:1: axis letter: unknown character"}}) {
     Dialect dialect;
     dialect.axes.clear();

@@ -19,7 +19,7 @@ using test::read;
 
 namespace {
 
-Position xyz(double x, double y, double z) { return {x, y, z, 0, 0, 0}; }
+Position xyz(double x, double y, double z) { return {x, y, z}; }
 
 /// The only motion of a program.
 Motion motion(std::string_view text, const Dialect& dialect = {}) {
@@ -242,7 +242,8 @@ TEST_CASE("the shell of a program") {
   dialect.block_delete = false;
   CHECK(ends("/G0 X1\n / X2\nX3", dialect).size() == 3);
   CHECK(read("O100 sub").error == "1:1: O-word is not supported");
-  CHECK(read("G0 X1\nO100").error == "2:1: O-word is not supported");
+  CHECK(read("G0 X1\nO100\nX2").motions().size() == 2);  // names what follows, and does no more
+  CHECK(read("G0 X1\nG1 O100").error == "2:4: O-word is not supported");
   CHECK(read("00001").error == "1:1: 0: unknown character");  // no tape's beginning: no program's number
   CHECK(read("% G0 X1").error == "1:1: % is used by nothing on this line");
 }

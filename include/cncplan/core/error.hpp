@@ -45,6 +45,7 @@ enum class ErrorCode : std::uint8_t {
   not_to_pass,
   unfinished,
   no_contact,
+  no_subprogram,
   count_,  // number of codes
 };
 
@@ -83,6 +84,7 @@ enum class ErrorCode : std::uint8_t {
       "says where or how the axes move, so it cannot be passed through",
       "is not finished",
       "goes to its end: no contact is known",
+      "finds no subprogram here",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -52,6 +52,7 @@ class CannedCycle {
     int count = 1;
   };
   struct Heights {
+    double level{};   ///< where it was before the first cycle of a series: below r, the tool is lifted first
     double here{};    ///< where the tool is
     double r{};       ///< feed begins
     double bottom{};  ///< not above r
@@ -80,7 +81,7 @@ class CannedCycle {
     switch (phase_) {
       case Phase::lift:
         phase_ = Phase::approach;
-        if (heights_.here >= heights_.r) return std::nullopt;
+        if (heights_.level >= heights_.r) return std::nullopt;
         heights_.here = heights_.r;
         return to(Kind::lift, heights_.r);
       case Phase::approach:

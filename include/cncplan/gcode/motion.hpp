@@ -14,7 +14,7 @@
 namespace cncplan::gcode {
 
 /// Most axes of a machine.
-inline constexpr int max_axes = 6;
+inline constexpr int max_axes = 9;
 
 /// A place in the order of the dialect's axes; mm for linear axes, rad for rotary ones, 0 beyond the last
 /// axis.

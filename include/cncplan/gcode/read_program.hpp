@@ -36,6 +36,7 @@ void read_program(Lines&& lines, Reader& reader, Sink&& sink, Tell&& tell) {
   while (!reader.finished()) {
     const auto line = lines.next();
     if (!line) return;
+    if constexpr (requires { lines.line(); }) reader.set_line(lines.line());
     const auto end = reader.read_line(*line, items.data());
     if (!end) {
       if (!tell(end.error())) return;

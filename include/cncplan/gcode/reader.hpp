@@ -105,6 +105,8 @@ class Reader {
   [[nodiscard]] bool finished() const { return finished_; }
   /// Lines read.
   [[nodiscard]] int line() const { return line_; }
+  /// Number of the line that is read next: of a source that goes through its lines in another order.
+  void set_line(int number) { line_ = number - 1; }
   /// Where the program stands, in work coordinates.
   [[nodiscard]] const Position& position() const { return current_; }
   /// What takes work to machine coordinates.
@@ -127,12 +129,11 @@ class Reader {
       if (dialect_.block_delete) return out;
       ++from;
     }
-    if (!words_seen_)
-      if (const auto number = program_number(text, from)) {
-        words_seen_ = true;
-        *out = Item(*number);
-        return ++out;
-      }
+    if (const auto number = program_number(text, from)) {
+      words_seen_ = true;
+      *out = Item(*number);
+      return ++out;
+    }
     if (auto ok = block_.parse(text, from, dialect_.pass_through); !ok) return tl::unexpected(ok.error());
     if (block_.empty()) return out;
     const Modal modal = after(block_, modal_, dialect_.g18);
@@ -164,11 +165,10 @@ class Reader {
     return out;
   }
 
-  /// The program's number, alone on its line before all other words: O1234, or 01234 after % as some tapes
-  /// have it.
+  /// A program's number, alone on its line: O1234, or 01234 before all words but % as some tapes have it.
   [[nodiscard]] std::optional<Word> program_number(std::string_view text, std::size_t from) const {
     const char first = from < text.size() ? text[from] : '\0';
-    const bool bare = percent_seen_ && first >= '0' && first <= '9';
+    const bool bare = percent_seen_ && !words_seen_ && first >= '0' && first <= '9';
     if (!bare && first != 'O' && first != 'o') return std::nullopt;
     Scanner scanner(text, bare ? from : from + 1);
     const int column = static_cast<int>(from) + 1;
@@ -406,7 +406,7 @@ class Reader {
     place(second, holes.second, holes.second_step);
     if (block_.has('L')) holes.count = static_cast<int>(block_.number('L'));
     const double clear = modal_.retract_to_r ? r : std::max(r, *level_);
-    cycle_ = CannedCycle(motion, holes, {current_[at(third)], r, bottom, clear}, cycle_words_.peck,
+    cycle_ = CannedCycle(motion, holes, {*level_, current_[at(third)], r, bottom, clear}, cycle_words_.peck,
                          dialect_.peck_clearance, cycle_words_.dwell);
   }
 
