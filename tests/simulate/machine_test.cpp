@@ -124,7 +124,7 @@ TEST_CASE("homes and words to pass through are the machine's") {
   const test::Table motions(folder / "m.csv");
   CHECK(motions["x1"] == std::vector<double>{1, 4});
   CHECK(motions["z1"] == std::vector<double>{3, 6});
-  CHECK(folder.run_text("M62 P3\n", "--quiet").exit == 2);
+  CHECK(folder.run_text("M162 P3\n", "--quiet").exit == 2);
 }
 
 TEST_CASE("travel: end points, an arc's extremum, the offset included") {
