@@ -24,6 +24,7 @@
 #include "cncplan/core/vector.hpp"
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/canned_cycle.hpp"
+#include "cncplan/gcode/controls.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/gcode/dialect.hpp"

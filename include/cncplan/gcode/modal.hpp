@@ -214,7 +214,7 @@ struct Modal {
   bool incremental_center = true;     ///< G91.1
   double millimetres_per_unit = 1.0;  ///< 25.4 under G20
   bool diameter = false;              ///< G7: X words are diameters
-  bool retract_to_r = true;           ///< G99, which LinuxCNC begins with; false: G98
+  bool retract_to_r = true;           ///< G99; false: G98
   FeedMode feed_mode = FeedMode::per_minute;
   std::optional<double> feed{};  ///< mm/s; under inverse time this line's, 1/s; per revolution, mm
   bool needs_feed = false;       ///< no feed move without an F on the way: a feed does not outlive its mode

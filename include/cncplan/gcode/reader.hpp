@@ -47,6 +47,7 @@ class Reader {
         dialect_(readable_ ? dialect : Dialect{}),
         alphabet_(dialect_),
         machine_(start) {
+    modal_.retract_to_r = dialect_.retract_to_r;
     dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
     offset_ = dialect_.work_offsets[0];
     for (std::size_t i = 0; i < axis_count(); ++i) {
@@ -202,7 +203,7 @@ class Reader {
     if (block_.has(Group::spindle_mode)) select_spindle_mode();
     for (const Group group : {Group::polar, Group::scaling, Group::rotation}) name_once(group, emit);
     const Code non_modal = block_.code(Group::non_modal);
-    if (non_modal == code(4)) emit(Dwell{block_.number('P'), line_});
+    if (non_modal == code(4)) emit(Dwell{block_.number('P') * dialect_.dwell_unit, line_});
     if (block_.has(Group::tool_length)) set_tool_length();
     if (block_.has(Group::coordinates)) select_work_system();
     if (block_.code(Group::path_control) == code(64) && (block_.has('P') || block_.has('Q')) &&
@@ -376,7 +377,7 @@ class Reader {
     const double depth_unit = modal.diameter && depth == 'X' ? unit / 2.0 : unit;
     if (block_.has('R')) words.r = block_.number('R') * unit;
     if (block_.has(depth)) words.depth = block_.number(depth) * depth_unit;
-    if (block_.has('P')) words.dwell = block_.number('P');
+    if (block_.has('P')) words.dwell = block_.number('P') * dialect_.dwell_unit;
     if (block_.has('Q')) words.peck = block_.number('Q') * unit;
     return words;
   }

@@ -85,7 +85,8 @@ class Writer {
       pass(*word, pen);
     } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
       begin(pen);
-      put(pen, "G4 P", dwell->seconds);
+      const auto read = [unit = dialect_.dwell_unit](double number) { return number * unit; };
+      put(pen, "G4 P", find_decimal(dwell->seconds, dwell->seconds / dialect_.dwell_unit, read).number);
     } else if (const auto* stop = std::get_if<Stop>(&item)) {
       begin(pen);
       put(pen, "M", stop->code);
