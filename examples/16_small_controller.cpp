@@ -60,12 +60,15 @@ void run(plan::Block block) {
 int main() {
   std::array<gcode::Item, gcode::max_items_per_line> items;
   for (const std::string_view line : lines) {
-    const auto end = reader.read_line(line, items.begin());
-    if (!end) return 1;
-    for (auto item = items.begin(); item != *end; ++item) {
-      const auto block = maker.take(*item);
-      if (!block) return 1;
-      if (*block) run(**block);
+    const auto read = reader.read_line(line, items.begin());
+    if (!read) return 1;
+    for (auto end = *read;; end = reader.go_on(items.begin())) {
+      for (auto item = items.begin(); item != end; ++item) {
+        const auto block = maker.take(*item);
+        if (!block) return 1;
+        if (*block) run(**block);
+      }
+      if (!reader.busy()) break;  // a canned cycle has more steps
     }
   }
   if (const auto last = maker.finish()) run(*last);

@@ -6,10 +6,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <variant>
 
 #include "cncplan/gcode/stream_lines.hpp"
+#include "cncplan/gcode/subprograms.hpp"
 #include "route.hpp"
 #include "support/failure.hpp"
 
@@ -51,8 +55,8 @@ class Builder {
   }
   void operator()(const gcode::Stop& stop) { last_block(stop.line).stop_at_end = true; }
   void operator()(const gcode::Word& word) {
-    if (word.letter == 'T') last_block(word.line).stop_at_end = true;
-  }  // spindle and coolant are for others to act on, without a stop
+    if (gcode::timing(word) == gcode::Timing::at_rest) last_block(word.line).stop_at_end = true;
+  }  // the others, spindle and coolant say, are for others to act on, without a stop
   void operator()(const gcode::Warning& warning) {
     ++program_.warnings;
     fmt::print(stderr, "{}\n", gcode::to_text(program_.file, warning.about, "warning"));
@@ -160,6 +164,17 @@ void begin_at(Program& program, int line) {
   if (!program.rows.empty()) program.rows.erase(program.rows.begin(), program.rows.begin() + count);
 }
 
+// Whether M98 is in the text: only such a program is held in memory. Leaves the stream at its beginning.
+bool calls_subprograms(std::ifstream& stream) {
+  bool found = false;
+  gcode::StreamLines lines(stream);
+  for (auto line = lines.next(); line && !found; line = lines.next())
+    found = line->find("M98") != std::string_view::npos || line->find("m98") != std::string_view::npos;
+  stream.clear();
+  stream.seekg(0);
+  return found;
+}
+
 }  // namespace
 
 std::string Program::place(std::size_t block) const {
@@ -175,16 +190,24 @@ Program read_program(const Options& options, const Machine& machine, Problems& p
   program.file = file;
   gcode::Reader reader(machine.dialect);
   Builder build(options, machine, program, problems);
-  gcode::read_program(
-      gcode::StreamLines(stream), reader,
-      [&](const gcode::Item& item) {
-        std::visit(build, item);
-        return problems.has_room();
-      },
-      [&](const gcode::Diagnostic& problem) {
-        problems.add(problem);
-        return problems.has_room();
-      });
+  const auto read = [&](auto&& lines) {
+    gcode::read_program(
+        lines, reader,
+        [&](const gcode::Item& item) {
+          std::visit(build, item);
+          return problems.has_room();
+        },
+        [&](const gcode::Diagnostic& problem) {
+          problems.add(problem);
+          return problems.has_room();
+        });
+  };
+  if (calls_subprograms(stream)) {
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    read(gcode::SubprogramLines(text));
+  } else {
+    read(gcode::StreamLines(stream));
+  }
   program.lines = static_cast<std::size_t>(reader.line());
   if (!problems.found().empty()) return program;
   (void)build.last_block(1);

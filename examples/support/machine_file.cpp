@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "cncplan/gcode/controls.hpp"
 #include "support/failure.hpp"
 
 namespace support {
@@ -233,10 +234,15 @@ void settle_kinematics(const Section& top, Machine& machine) {
 
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
-  top.allow({"name", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home", "pass_through",
-             "smallest_radius", "table_center"});
+  top.allow({"name", "dialect", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home",
+             "pass_through", "smallest_radius", "table_center"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
+  if (const toml::node* dialect = top.find("dialect")) {
+    const auto control = gcode::find_control(top.text(*dialect, "dialect"));
+    if (!control) top.refuse(*dialect, "dialect must be \"linuxcnc\", \"grbl\", \"fanuc\" or \"marlin\"");
+    machine.dialect = gcode::with(machine.dialect, *control);
+  }
   if (const toml::node* unit = top.find("unit")) {
     const std::string value = top.text(*unit, "unit");
     if (value != "mm" && value != "inch") top.refuse(*unit, "unit must be \"mm\" or \"inch\"");

@@ -29,7 +29,9 @@ std::vector<gcode::Word> words_of(const std::string& text) {
 }
 
 void check_codes(const std::string& file, int number, const Line& line) {
-  constexpr std::array<double, 13> elsewhere{28, 30, 43.1, 53, 55, 56, 57, 58, 59, 59.1, 59.2, 59.3, 93};
+  constexpr std::array elsewhere{7.0,  10.0, 28.0, 30.0, 38.2, 38.3, 38.4, 38.5, 43.1, 53.0,
+                                 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3, 73.0, 81.0,
+                                 82.0, 83.0, 85.0, 86.0, 89.0, 93.0, 95.0, 96.0};
   for (const gcode::Word& word : line.words) {
     if (word.letter != 'G') continue;
     const bool shift = word.number >= 92 && word.number < 93;

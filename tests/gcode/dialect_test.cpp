@@ -1,5 +1,6 @@
 #include "cncplan/gcode/dialect.hpp"
 
+#include "cncplan/gcode/controls.hpp"
 #include "cncplan/gcode/writer.hpp"
 #include "gcode/support.hpp"
 #include "support/catch.hpp"
@@ -18,7 +19,7 @@ TEST_CASE("a dialect is checked") {
   };
   CHECK(with_axes({{'R', AxisKind::linear}, {'Z', AxisKind::linear}, {'A', AxisKind::rotary}}).empty());
   CHECK(with_axes({}) == "number of axes");
-  CHECK(with_axes(std::vector<gcode::Axis>(7, {'X', AxisKind::linear})) == "number of axes");
+  CHECK(with_axes(std::vector<gcode::Axis>(10, {'X', AxisKind::linear})) == "number of axes");
   CHECK(with_axes({{'X', AxisKind::linear}, {'X', AxisKind::linear}}) == "X");
   CHECK(with_axes({{'F', AxisKind::linear}}) == "F");
   CHECK(with_axes({{'x', AxisKind::linear}}) == "axis letter");
@@ -91,7 +92,7 @@ TEST_CASE("a letter passes through with any number") {
 }
 
 TEST_CASE("a reader or writer of an invalid dialect takes nothing") {
-  for (const auto& [letters, error] : {std::pair{"XYZABCU", "1:1: number of axes is above the limit 6"},
+  for (const auto& [letters, error] : {std::pair{"XYZABCUVWR", "1:1: number of axes is above the limit 9"},
                                        std::pair{"x", "1:1: axis letter: unknown character"}}) {
     Dialect dialect;
     dialect.axes.clear();
@@ -131,4 +132,25 @@ TEST_CASE("what moves the axes does not pass through") {
   CHECK(test::read("G0 X1\nG181 X10 Y10\n", dialect).error ==
         "2:1: G181 says where or how the axes move, so it cannot be passed through");
   CHECK(test::read("G181 P1\nG181 G1 X10\n", dialect).error.empty());
+}
+
+TEST_CASE("controls differ in what a dwell counts and where a cycle goes back to") {
+  const auto fanuc = gcode::find_control("fanuc");
+  REQUIRE(fanuc);
+  const Dialect dialect = gcode::with({}, *fanuc);
+  const auto reading = test::read("G0 Z9\nG82 X1 Z-1 R2 P500 F1\nG4 P1500\n", dialect);
+  REQUIRE(reading.error.empty());
+  const auto dwells = reading.all<gcode::Dwell>();
+  REQUIRE(dwells.size() == 2);
+  CHECK(dwells[0].seconds == 0.5);
+  CHECK(dwells[1].seconds == 1.5);
+  CHECK(reading.motions().back().end[2] == 9);
+  CHECK(test::read("G0 Z9\nG82 X1 Z-1 R2 P.5 F1\n").motions().back().end[2] == 2);
+  CHECK_FALSE(gcode::find_control("Fanuc"));
+  for (const gcode::Control& control : gcode::controls) CHECK(gcode::validate(gcode::with({}, control)));
+  std::string text;
+  gcode::Writer writer(dialect);
+  REQUIRE(writer.write(gcode::Dwell{0.123, 1}, std::back_inserter(text)));
+  writer.finish(std::back_inserter(text));
+  CHECK(test::read(text, dialect).all<gcode::Dwell>()[0].seconds == 0.123);
 }

@@ -124,7 +124,7 @@ TEST_CASE("homes and words to pass through are the machine's") {
   const test::Table motions(folder / "m.csv");
   CHECK(motions["x1"] == std::vector<double>{1, 4});
   CHECK(motions["z1"] == std::vector<double>{3, 6});
-  CHECK(folder.run_text("M62 P3\n", "--quiet").exit == 2);
+  CHECK(folder.run_text("M162 P3\n", "--quiet").exit == 2);
 }
 
 TEST_CASE("travel: end points, an arc's extremum, the offset included") {
@@ -214,4 +214,25 @@ TEST_CASE("bad machine files: file, line, column and what is wrong") {
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
     CHECK_FALSE(std::filesystem::exists(folder / "s.csv"));
   }
+}
+
+TEST_CASE("a machine file names the control whose dialect its programs speak") {
+  const test::Folder folder;
+  folder.write("m.toml", "dialect = \"fanuc\"\n");
+  const std::string program = "G21 G90 F600\nG1 X10\nG4 P500\n";
+  const double in_ms = folder.run_text(program, "--json --machine m.toml").json()["time_s"];
+  const double in_s = folder.run_text(program, "--json").json()["time_s"];
+  CHECK(in_s - in_ms == Approx(499.5));
+  folder.write("m.toml", "dialect = \"siemens\"\n");
+  CHECK(folder.run_text(program, "--machine m.toml").err.starts_with("m.toml:1:11: error: dialect must be"));
+}
+
+TEST_CASE("subprograms and canned cycles are planned") {
+  const test::Folder folder;
+  const std::string program =
+      "G21 G90 F600 G0 Z5\nG98 G81 X10 Y0 Z-2 R1\nX20\nG80\nG91\nM98 P7 L2\nM30\nO7\nG1 X1\nG0 Z1\nM99\n";
+  REQUIRE(folder.run_text(program, "--quiet --motions m.csv").exit == 0);
+  const test::Table motions(folder / "m.csv");
+  CHECK(motions["line"] == std::vector<double>{1, 2, 2, 2, 2, 3, 3, 3, 3, 9, 10, 9, 10});
+  CHECK(motions["z1"] == std::vector<double>{5, 5, 1, -2, 5, 5, 1, -2, 5, 5, 6, 6, 7});
 }

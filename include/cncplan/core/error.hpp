@@ -44,6 +44,9 @@ enum class ErrorCode : std::uint8_t {
   unreachable,
   unreadable,
   not_to_pass,
+  unfinished,
+  no_contact,
+  no_subprogram,
   count_,  // number of codes
 };
 
@@ -80,6 +83,9 @@ enum class ErrorCode : std::uint8_t {
       "cannot be reached by the machine",
       "cannot be read",
       "says where or how the axes move, so it cannot be passed through",
+      "is not finished",
+      "goes to its end: no contact is known",
+      "finds no subprogram here",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -45,7 +45,8 @@ inline std::string word_text(const Error& error) {
   const std::string_view sentence = message(error.code);
   const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
                         sentence.starts_with("has ") || sentence.starts_with("does ") ||
-                        sentence.starts_with("says ");
+                        sentence.starts_with("says ") || sentence.starts_with("goes ") ||
+                        sentence.starts_with("finds ");
   std::string text = detail::word_text(error);
   text += has_verb ? " " : ": ";
   text += sentence;

@@ -55,8 +55,11 @@ struct Dialect {
   std::array<Position, work_systems> work_offsets{};  ///< machine coordinates of each system's origin
   Position home_g28{};                                ///< machine coordinates
   Position home_g30{};                                ///< machine coordinates
-  Plane g18 = Plane::zx;     ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
-  bool block_delete = true;  ///< lines that begin with / are left out
+  Plane g18 = Plane::zx;          ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
+  double peck_clearance = 0.254;  ///< mm that G73 goes back, and that G83 stays above the bottom
+  double dwell_unit = 1.0;        ///< s that one of the P of G4 and of the cycles is
+  bool retract_to_r = true;       ///< G99 holds at the start; false: G98
+  bool block_delete = true;       ///< lines that begin with / are left out
 
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };
@@ -85,7 +88,7 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
 
 /// The dialect itself if it can be read with, else what is wrong with it: no axis or more than `max_axes`, a
 /// letter twice or reserved, a table entry that is not finite, tool lengths without a Z axis, a word to pass
-/// through that moves the axes.
+/// through that moves the axes, a clearance below 0, a unit of dwells that is not above 0.
 [[nodiscard]] inline Expected<Dialect> validate(const Dialect& dialect) {
   const auto fail = [](ErrorCode code, std::string_view field, double value = 0.0, double bound = 0.0) {
     return tl::unexpected(Error{code, field, value, bound});
@@ -115,6 +118,10 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
   const auto finite = [](const Position& position) {
     return std::all_of(position.begin(), position.end(), [](double x) { return std::isfinite(x); });
   };
+  if (!std::isfinite(dialect.peck_clearance) || dialect.peck_clearance < 0.0)
+    return fail(ErrorCode::negative, "peck clearance", dialect.peck_clearance);
+  if (!std::isfinite(dialect.dwell_unit) || dialect.dwell_unit <= 0.0)
+    return fail(ErrorCode::not_positive, "unit of dwells", dialect.dwell_unit);
   if (!finite(dialect.home_g28)) return fail(ErrorCode::not_finite, "home position of G28");
   if (!finite(dialect.home_g30)) return fail(ErrorCode::not_finite, "home position of G30");
   for (const Position& offset : dialect.work_offsets)

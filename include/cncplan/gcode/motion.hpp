@@ -14,7 +14,7 @@
 namespace cncplan::gcode {
 
 /// Most axes of a machine.
-inline constexpr int max_axes = 6;
+inline constexpr int max_axes = 9;
 
 /// A place in the order of the dialect's axes; mm for linear axes, rad for rotary ones, 0 beyond the last
 /// axis.
@@ -24,8 +24,8 @@ using Position = std::array<double, max_axes>;
 /// geometry, and not for the reader to answer.
 enum class MotionKind : std::uint8_t { rapid, line, arc_radius, arc_center };
 
-/// G94 or G93.
-enum class FeedMode : std::uint8_t { per_minute, inverse_time };
+/// G94, G93 or G95. A motion under G95 comes out with the feed that its spindle speed makes, per minute.
+enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
 
 /// How closely the path is kept: G64 within the tolerance, G61 exactly and without a stop where it is smooth,
 /// G61.1 with a stop at the end of every motion.
@@ -44,6 +44,7 @@ struct Motion {
   Position offset{};                 ///< G54..G59.3, G92 and tool length together
   double radius{};                   ///< arc_radius: R in mm; negative asks for the longer arc
   Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
+  bool probe{};                      ///< G38.2 to G38.5: the end is where it goes without contact
   int extra_turns{};                 ///< whole turns more than the arc itself: P - 1
   std::optional<double> feed{};  ///< mm/s, or 1/s under inverse time; none for rapids and before the first F
   std::optional<double> tolerance{};  ///< mm from the path under G64 P; none where the program gives none
@@ -62,7 +63,7 @@ struct Dwell {
   friend bool operator==(const Dwell&, const Dwell&) = default;
 };
 
-/// M0, M1, M2, M30 and M6: the machine comes to rest. `code` is the number after M.
+/// M0, M1, M2, M30, M60 and M6: the machine comes to rest. `code` is the number after M.
 struct Stop {
   int code{};
   int line{};
@@ -77,8 +78,23 @@ struct Warning {
   friend bool operator==(const Warning&, const Warning&) = default;
 };
 
-/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 S T, the program's number (O), or one
-/// that the dialect passes through.
+/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 M48 to M53 M61 to M68 G96 G97 S T, the
+/// program's number (O), or one that the dialect passes through. The words that an M or G word takes follow
+/// it (the E and Q of M67).
 using Item = std::variant<Motion, Dwell, Stop, Word, Warning>;
+
+/// When a word takes effect: as soon as it is read, with the start of the next motion, or with the machine at
+/// rest at the end of the last one (LinuxCNC: what breaks the blending of motions).
+enum class Timing : std::uint8_t { immediate, next_motion, at_rest };
+
+/// Of the words that come out: M62, M63 and M67 wait for the next motion; M61, M64, M65, M66, M68 and T have
+/// the machine come to rest.
+[[nodiscard]] constexpr Timing timing(const Word& word) {
+  if (word.letter == 'T') return Timing::at_rest;
+  if (word.letter != 'M') return Timing::immediate;
+  if (word.number == 62 || word.number == 63 || word.number == 67) return Timing::next_motion;
+  const bool rests = word.number == 61 || (word.number >= 64 && word.number <= 68);
+  return rests ? Timing::at_rest : Timing::immediate;
+}
 
 }  // namespace cncplan::gcode

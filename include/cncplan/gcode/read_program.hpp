@@ -36,18 +36,23 @@ void read_program(Lines&& lines, Reader& reader, Sink&& sink, Tell&& tell) {
   while (!reader.finished()) {
     const auto line = lines.next();
     if (!line) return;
+    if constexpr (requires { lines.line(); }) reader.set_line(lines.line());
     const auto end = reader.read_line(*line, items.data());
     if (!end) {
       if (!tell(end.error())) return;
       reader.recover(*line);
       continue;
     }
-    for (const Item* item = items.data(); item != *end; ++item) {
-      if constexpr (std::is_void_v<std::invoke_result_t<Sink&, const Item&>>) {
-        std::invoke(sink, *item);
-      } else {
-        if (!std::invoke(sink, *item)) return;
+    for (Item* last = *end;;) {
+      for (const Item* item = items.data(); item != last; ++item) {
+        if constexpr (std::is_void_v<std::invoke_result_t<Sink&, const Item&>>) {
+          std::invoke(sink, *item);
+        } else {
+          if (!std::invoke(sink, *item)) return;
+        }
       }
+      if (!reader.busy()) break;
+      last = reader.go_on(items.data());
     }
   }
 }

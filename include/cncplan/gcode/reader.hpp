@@ -13,6 +13,7 @@
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/canned_cycle.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/modal.hpp"
@@ -23,7 +24,10 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 10;
+inline constexpr std::size_t max_items_per_line = max_passed + 19;
+
+/// Most tools that a program may add to the dialect's table (G10 L1).
+inline constexpr std::size_t max_set_tools = 64;
 
 /// Radians per degree, the unit of rotary axes in the text.
 inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
@@ -43,6 +47,8 @@ class Reader {
         dialect_(readable_ ? dialect : Dialect{}),
         alphabet_(dialect_),
         machine_(start) {
+    modal_.retract_to_r = dialect_.retract_to_r;
+    dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
     offset_ = dialect_.work_offsets[0];
     for (std::size_t i = 0; i < axis_count(); ++i) {
       current_[i] = machine_[i] - offset_[i];
@@ -57,12 +63,25 @@ class Reader {
   /// lines are only counted.
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
+    if (cycle_.busy())
+      return tl::unexpected(Diagnostic{{ErrorCode::unfinished, "canned cycle", 0.0, 0.0}, line_ + 1, 1});
     ++line_;
     if (!readable_) return tl::unexpected(Diagnostic{readable_.error(), line_, 1});
     if (finished_) return out;
     auto end = read(text, std::move(out));
     if (!end) end.error().line = line_;
     return end;
+  }
+
+  /// Whether items of the last line are to come.
+  [[nodiscard]] bool busy() const { return cycle_.busy(); }
+
+  /// The next of them, at most `max_items_per_line`.
+  template <std::output_iterator<Item> Out>
+  Out go_on(Out out) {
+    const auto emit = emitter(out);
+    if (const auto step = cycle_.next()) drill(*step, emit);
+    return out;
   }
 
   /// Takes over what can be understood of a line that was in error, so that the lines behind it are read in
@@ -87,6 +106,8 @@ class Reader {
   [[nodiscard]] bool finished() const { return finished_; }
   /// Lines read.
   [[nodiscard]] int line() const { return line_; }
+  /// Number of the line that is read next: of a source that goes through its lines in another order.
+  void set_line(int number) { line_ = number - 1; }
   /// Where the program stands, in work coordinates.
   [[nodiscard]] const Position& position() const { return current_; }
   /// What takes work to machine coordinates.
@@ -109,17 +130,17 @@ class Reader {
       if (dialect_.block_delete) return out;
       ++from;
     }
-    if (!words_seen_)
-      if (const auto number = program_number(text, from)) {
-        words_seen_ = true;
-        *out = Item(*number);
-        return ++out;
-      }
+    if (const auto number = program_number(text, from)) {
+      words_seen_ = true;
+      *out = Item(*number);
+      return ++out;
+    }
     if (auto ok = block_.parse(text, from, dialect_.pass_through); !ok) return tl::unexpected(ok.error());
     if (block_.empty()) return out;
     const Modal modal = after(block_, modal_, dialect_.g18);
-    const auto motion = resolve(block_, modal, alphabet_);
+    const auto motion = resolve(block_, modal, alphabet_, modal_.motion);
     if (!motion) return tl::unexpected(motion.error());
+    if (auto ok = check_state(modal, *motion); !ok) return tl::unexpected(ok.error());
     modal_ = modal;
     words_seen_ = true;
     out = execute(*motion, std::move(out));
@@ -145,11 +166,10 @@ class Reader {
     return out;
   }
 
-  /// The program's number, alone on its line before all other words: O1234, or 01234 after % as some tapes
-  /// have it.
+  /// A program's number, alone on its line: O1234, or 01234 before all words but % as some tapes have it.
   [[nodiscard]] std::optional<Word> program_number(std::string_view text, std::size_t from) const {
     const char first = from < text.size() ? text[from] : '\0';
-    const bool bare = percent_seen_ && first >= '0' && first <= '9';
+    const bool bare = percent_seen_ && !words_seen_ && first >= '0' && first <= '9';
     if (!bare && first != 'O' && first != 'o') return std::nullopt;
     Scanner scanner(text, bare ? from : from + 1);
     const int column = static_cast<int>(from) + 1;
@@ -160,23 +180,30 @@ class Reader {
   }
 
   template <class Out>
-  Out execute(Code motion, Out out) {
-    const auto emit = [&out](auto&& item) {
+  [[nodiscard]] static auto emitter(Out& out) {
+    return [&out](auto&& item) {
       *out = Item(std::forward<decltype(item)>(item));
       ++out;
     };
+  }
+
+  template <class Out>
+  Out execute(Code motion, Out out) {
+    const auto emit = emitter(out);
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
     for (const char letter : {'S', 'T'})
       if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    if (block_.has('S')) spindle_speed_ = block_.number('S');
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
-    if (block_.has(Group::tool_change)) {
-      loaded_tool_ = selected_tool_;
-      emit(Stop{6, line_});
-    }
-    for (const Group group : {Group::spindle, Group::coolant})
-      if (block_.has(group)) emit(Word{'M', block_.code(group) / 10.0, line_, block_.column(group)});
+    hand_out(Group::spindle_mode, emit);
+    hand_out(Group::input_output, emit);
+    change_tool(emit);
+    for (const Group group : {Group::spindle, Group::coolant, Group::override_control}) hand_out(group, emit);
+    if (block_.has(Group::spindle)) spindle_ = block_.code(Group::spindle) / 10;
+    if (block_.has(Group::spindle_mode)) select_spindle_mode();
+    for (const Group group : {Group::polar, Group::scaling, Group::rotation}) name_once(group, emit);
     const Code non_modal = block_.code(Group::non_modal);
-    if (non_modal == code(4)) emit(Dwell{block_.number('P'), line_});
+    if (non_modal == code(4)) emit(Dwell{block_.number('P') * dialect_.dwell_unit, line_});
     if (block_.has(Group::tool_length)) set_tool_length();
     if (block_.has(Group::coordinates)) select_work_system();
     if (block_.code(Group::path_control) == code(64) && (block_.has('P') || block_.has('Q')) &&
@@ -185,11 +212,15 @@ class Reader {
       emit(Warning{
           {{ErrorCode::ignored, "tolerance of G64", 0.0, 0.0}, line_, block_.first_column(bits("PQ"))}});
     }
+    if (non_modal == code(10)) set_table();
     if (non_modal == code(28)) home(dialect_.home_g28, emit);
     if (non_modal == code(30)) home(dialect_.home_g30, emit);
     if (non_modal >= code(92) && non_modal <= code(92.3)) shift(non_modal);
+    if (!is_cycle(motion) && motion != no_code) level_.reset();
     if (is_arc(motion)) {
       turn(motion, emit);
+    } else if (is_cycle(motion)) {
+      begin_cycle(motion);
     } else if (motion != no_code) {
       straight(motion, non_modal == code(53) ? machine_target() : target(), emit);
     }
@@ -199,6 +230,38 @@ class Reader {
       emit(Stop{stop, line_});
     }
     return out;
+  }
+
+  /// A code comes out as a word, and behind it the words that it takes.
+  template <class Emit>
+  void hand_out(Group group, Emit& emit) const {
+    if (!block_.has(group)) return;
+    emit(Word{letter(group), block_.code(group) / 10.0, line_, block_.column(group)});
+    for (const char letter : {'P', 'E', 'L', 'Q', 'D'})
+      if ((facts(group, block_.code(group)).may & bit(letter)) != 0 && block_.has(letter))
+        emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+  }
+
+  /// M6 loads the tool that T has selected; M61 Q says which one is loaded.
+  template <class Emit>
+  void change_tool(Emit& emit) {
+    const Code change = block_.code(Group::tool_change);
+    if (change == code(61)) {
+      loaded_tool_ = static_cast<int>(block_.number('Q'));
+      hand_out(Group::tool_change, emit);
+    } else if (change == code(6)) {
+      loaded_tool_ = selected_tool_;
+      emit(Stop{6, line_});
+    }
+  }
+
+  /// G15, G50 and G69 end what was never begun here: heads of programs have them.
+  template <class Emit>
+  void name_once(Group group, Emit& emit) {
+    const unsigned told = 1U << static_cast<unsigned>(group);
+    if (!block_.has(group) || (named_ & told) != 0) return;
+    named_ |= told;
+    emit(Warning{{{ErrorCode::ignored, "G", block_.code(group) / 10.0, 0.0}, line_, block_.column(group)}});
   }
 
   [[nodiscard]] Word at_line(Word word) const {
@@ -212,8 +275,8 @@ class Reader {
   [[nodiscard]] std::optional<double> coordinate(std::size_t axis) const {
     const auto [letter, kind] = dialect_.axes[axis];
     if (!block_.has(letter)) return std::nullopt;
-    return block_.number(letter) *
-           (kind == AxisKind::linear ? modal_.millimetres_per_unit : radians_per_degree);
+    const double unit = kind == AxisKind::linear ? modal_.millimetres_per_unit : radians_per_degree;
+    return block_.number(letter) * (modal_.diameter && letter == 'X' ? unit / 2.0 : unit);
   }
 
   /// A coordinate that some word names: the radians of a rotary axis are those of a number of degrees, sums
@@ -251,7 +314,7 @@ class Reader {
   [[nodiscard]] Motion motion_to(const Position& end) const {
     Motion motion;
     motion.plane = modal_.plane;
-    motion.feed_mode = modal_.feed_mode;
+    motion.feed_mode = modal_.feed_mode == FeedMode::per_revolution ? FeedMode::per_minute : modal_.feed_mode;
     motion.path_mode = modal_.path_mode;
     motion.exact_stop = modal_.path_mode != PathMode::continuous;
     motion.tolerance = modal_.tolerance;
@@ -261,6 +324,114 @@ class Reader {
     motion.offset = offset_;
     motion.line = line_;
     return motion;
+  }
+
+  /// mm/s, or 1/s under inverse time. Under G95 that of the spindle's speed; under G96 too, where it is
+  /// lowest, at the end that is farther from the axis.
+  [[nodiscard]] std::optional<double> feed(const Motion& motion) const {
+    if (modal_.feed_mode != FeedMode::per_revolution || !modal_.feed) return modal_.feed;
+    double per_minute = spindle_speed_.value_or(0.0);
+    if (surface_speed_) {
+      const double radius = std::max(std::abs(motion.start[0]), std::abs(motion.end[0]));
+      per_minute = std::min(most_revolutions_, *surface_speed_ / (2.0 * std::numbers::pi * radius));
+    }
+    return *modal_.feed * per_minute / 60.0;
+  }
+
+  /// G96 D S: the surface speed S, m/min (feet per minute in inches), at D revolutions per minute at most;
+  /// G97: S is revolutions per minute.
+  void select_spindle_mode() {
+    surface_speed_.reset();
+    if (block_.code(Group::spindle_mode) == code(97)) return;
+    const bool inches = modal_.millimetres_per_unit != 1.0;
+    surface_speed_ = block_.number('S') * (inches ? 304.8 : 1000.0);
+    most_revolutions_ = block_.has('D') ? block_.number('D') : std::numeric_limits<double>::infinity();
+  }
+
+  /// What the words alone do not tell: a feed per revolution needs a spindle that turns, a cycle its depth
+  /// below R.
+  [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion) {
+    const bool feeds = motion != no_code && motion != code(0);
+    const double speed = block_.has('S') ? block_.number('S') : spindle_speed_.value_or(0.0);
+    if (feeds && modal.feed_mode == FeedMode::per_revolution && !(speed > 0.0))
+      return detail::missing("S", std::max(1, block_.first_column(block_.letters())));
+    if (block_.code(Group::non_modal) == code(10) && block_.number('L') == 1.0 &&
+        dialect_.tools.size() == dialect_.tools.capacity() &&
+        find_tool(static_cast<int>(block_.number('P'))) == nullptr)
+      return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
+    if (!is_cycle(motion)) return {};
+    const CycleWords words = cycle_words(modal);
+    const auto [r, bottom] = cycle_heights(words, modal);
+    if (bottom <= r) return {};
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::below_limit, "R", r, bottom},
+                   0,
+                   std::max(1, block_.first_column(block_.has('R') ? bit('R') : bits("XYZ")))});
+  }
+
+  /// The words of a cycle, with those of the line before where this one has none.
+  [[nodiscard]] CycleWords cycle_words(const Modal& modal) const {
+    const char depth = "XYZ"[axes(modal.plane).third];
+    CycleWords words = cycle_words_;
+    const double unit = modal.millimetres_per_unit;
+    const double depth_unit = modal.diameter && depth == 'X' ? unit / 2.0 : unit;
+    if (block_.has('R')) words.r = block_.number('R') * unit;
+    if (block_.has(depth)) words.depth = block_.number(depth) * depth_unit;
+    if (block_.has('P')) words.dwell = block_.number('P') * dialect_.dwell_unit;
+    if (block_.has('Q')) words.peck = block_.number('Q') * unit;
+    return words;
+  }
+
+  /// R and the bottom of the hole in work coordinates; in increments R is from the height at which the cycle
+  /// began, and the bottom from R.
+  [[nodiscard]] std::pair<double, double> cycle_heights(const CycleWords& words, const Modal& modal) const {
+    if (!modal.incremental) return {words.r, words.depth};
+    const auto third = static_cast<std::size_t>(axes(modal.plane).third);
+    const double r = level_.value_or(current_[third]) + words.r;
+    return {r, r + words.depth};
+  }
+
+  void begin_cycle(Code motion) {
+    cycle_words_ = cycle_words(modal_);
+    const auto [first, second, third] = axes(modal_.plane);
+    const auto at = [](int axis) { return static_cast<std::size_t>(axis); };
+    if (!level_) level_ = current_[at(third)];
+    const auto [r, bottom] = cycle_heights(cycle_words_, modal_);
+    CannedCycle::Holes holes{.first = current_[at(first)], .second = current_[at(second)]};
+    const auto place = [&](int axis, double& start, double& step) {
+      const auto value = coordinate(at(axis));
+      if (value && modal_.incremental) step = *value;
+      if (value && !modal_.incremental) start = *value;
+    };
+    place(first, holes.first, holes.first_step);
+    place(second, holes.second, holes.second_step);
+    if (block_.has('L')) holes.count = static_cast<int>(block_.number('L'));
+    const double clear = modal_.retract_to_r ? r : std::max(r, *level_);
+    cycle_ = CannedCycle(motion, holes, {*level_, current_[at(third)], r, bottom, clear}, cycle_words_.peck,
+                         dialect_.peck_clearance, cycle_words_.dwell);
+  }
+
+  template <class Emit>
+  void drill(const CycleStep& step, Emit& emit) {
+    using Kind = CycleStep::Kind;
+    if (step.kind == Kind::dwell) return emit(Dwell{step.seconds, line_});
+    if (step.kind == Kind::spindle_stop) return emit(Word{'M', 5, line_, block_.column(Group::motion)});
+    if (step.kind == Kind::spindle_start) {
+      if (spindle_ != 5) emit(Word{'M', static_cast<double>(spindle_), line_, block_.column(Group::motion)});
+      return;
+    }
+    const auto [first, second, third] = axes(modal_.plane);
+    Position end = current_;
+    const auto set = [&](int axis, double coordinate) {
+      const auto i = static_cast<std::size_t>(axis);
+      end[i] = meet(i, coordinate);
+    };
+    set(third, step.third);
+    if (step.kind != Kind::lift) {
+      set(first, step.first);
+      set(second, step.second);
+    }
+    straight(step.kind == Kind::feed ? code(1) : code(0), end, emit);
   }
 
   void arrive(const Position& end) {
@@ -273,7 +444,14 @@ class Reader {
     if (end == current_) return;
     Motion motion = motion_to(end);
     motion.kind = code_of_motion == code(0) ? MotionKind::rapid : MotionKind::line;
-    if (motion.kind == MotionKind::line) motion.feed = modal_.feed;
+    motion.probe = is_probe(code_of_motion);
+    if (motion.probe && !probe_told_) {
+      probe_told_ = true;
+      emit(Warning{{{ErrorCode::no_contact, "G", code_of_motion / 10.0, 0.0},
+                    line_,
+                    block_.first_column(alphabet_.axes)}});
+    }
+    if (motion.kind == MotionKind::line) motion.feed = feed(motion);
     motion.column = block_.first_column(alphabet_.axes);
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
     arrive(end);
@@ -284,7 +462,7 @@ class Reader {
   void turn(Code code_of_motion, Emit& emit) {
     Motion motion = motion_to(target());
     motion.turn = code_of_motion == code(2) ? Turn::clockwise : Turn::counterclockwise;
-    motion.feed = modal_.feed;
+    motion.feed = feed(motion);
     motion.extra_turns = block_.has('P') ? static_cast<int>(block_.number('P')) - 1 : 0;
     if (alphabet_.has_radius && block_.has('R')) {
       motion.kind = MotionKind::arc_radius;
@@ -314,6 +492,37 @@ class Reader {
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (all || block_.has(dialect_.axes[i].letter)) end[i] = meet(i, machine[i] - offset_[i]);
     straight(code(0), end, emit);
+  }
+
+  /// G10 L1: the length of tool P; L2, L20: the origin of work coordinate system P (0: the one in force), in
+  /// machine coordinates, or such that the axes stand at the coordinates named.
+  void set_table() {
+    const int number = static_cast<int>(block_.number('P'));
+    if (block_.number('L') == 1.0) {
+      for (std::size_t i = 0; i < axis_count(); ++i)
+        if (const auto value = coordinate(i); value && dialect_.axes[i].letter == 'Z')
+          set_length(number, *value);
+      return;
+    }
+    const std::size_t system = number == 0 ? work_system_ : static_cast<std::size_t>(number - 1);
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (const auto value = coordinate(i))
+        dialect_.work_offsets[system][i] =
+            block_.number('L') == 2.0 ? *value : machine_[i] - shift_[i] - tool_[i] - *value;
+    update_offset();
+  }
+
+  void set_length(int number, double length) {
+    if (Tool* const tool = find_tool(number))
+      tool->length = length;
+    else
+      dialect_.tools.push_back({number, length});  // room for it is reserved, and checked
+  }
+
+  [[nodiscard]] Tool* find_tool(int number) {
+    const auto found = std::find_if(dialect_.tools.begin(), dialect_.tools.end(),
+                                    [number](const Tool& tool) { return tool.number == number; });
+    return found == dialect_.tools.end() ? nullptr : &*found;
   }
 
   void set_tool_length() {
@@ -388,6 +597,15 @@ class Reader {
   Position kept_shift_{};
   Position tool_{};
   std::size_t work_system_{};
+  CannedCycle cycle_;
+  CycleWords cycle_words_;
+  std::optional<double> level_;  ///< height at which a row of cycles began
+  std::optional<double> spindle_speed_;
+  std::optional<double> surface_speed_;  ///< G96, mm per minute
+  double most_revolutions_{};            ///< per minute
+  int spindle_ = 5;                      ///< M3, M4 or M5
+  std::uint32_t named_{};                ///< groups whose codes have been named as without effect
+  bool probe_told_{};
   int selected_tool_{};
   int loaded_tool_{};
   Letters doubtful_{};  ///< axes whose place a line in error left open

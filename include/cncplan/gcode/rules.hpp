@@ -1,12 +1,14 @@
 // Which words belong together on a line, and what the line asks for.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <string_view>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/plane.hpp"
 #include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/canned_cycle.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/modal.hpp"
@@ -38,10 +40,13 @@ struct Alphabet {
   }
 
   /// Letters that some code uses.
-  [[nodiscard]] Letters known() const { return bits("FHIJKNPQST") | axes | (has_radius ? bit('R') : 0); }
+  [[nodiscard]] Letters known() const { return bits("FHIJKLNPQST") | axes | (has_radius ? bit('R') : 0); }
 };
 
 [[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }
+
+/// G38.2 to G38.5.
+[[nodiscard]] constexpr bool is_probe(Code motion) { return motion >= code(38.2) && motion <= code(38.5); }
 
 /// Letter of the centre word along an axis of space: I, J or K.
 [[nodiscard]] constexpr char center_letter(int axis) { return "IJK"[axis]; }
@@ -66,6 +71,8 @@ inline void control_path(const Block& block, Modal& modal) {
 [[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
   if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
   if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
+  if (block.has(Group::diameter)) modal.diameter = block.code(Group::diameter) == code(7);
+  if (block.has(Group::retract)) modal.retract_to_r = block.code(Group::retract) == code(99);
   if (block.has(Group::arc_distance))
     modal.incremental_center = block.code(Group::arc_distance) == code(91.1);
   if (block.has(Group::path_control)) control_path(block, modal);
@@ -76,8 +83,10 @@ inline void control_path(const Block& block, Modal& modal) {
     modal.plane = plane == code(17) ? Plane::xy : plane == code(18) ? g18 : Plane::yz;
   }
   if (block.has(Group::feed_mode)) {
-    const FeedMode mode =
-        block.code(Group::feed_mode) == code(93) ? FeedMode::inverse_time : FeedMode::per_minute;
+    const Code how = block.code(Group::feed_mode);
+    const FeedMode mode = how == code(93)   ? FeedMode::inverse_time
+                          : how == code(95) ? FeedMode::per_revolution
+                                            : FeedMode::per_minute;
     modal.needs_feed = modal.needs_feed || mode != modal.feed_mode;
     modal.feed_mode = mode;
   }
@@ -85,7 +94,8 @@ inline void control_path(const Block& block, Modal& modal) {
   modal.needs_feed = (modal.needs_feed || inverse_time) && !block.has('F');
   if (modal.needs_feed) modal.feed.reset();
   if (block.has('F'))
-    modal.feed = block.number('F') * (inverse_time ? 1.0 : modal.millimetres_per_unit) / 60.0;
+    modal.feed = block.number('F') * (inverse_time ? 1.0 : modal.millimetres_per_unit) /
+                 (modal.feed_mode == FeedMode::per_revolution ? 1.0 : 60.0);
   return modal;
 }
 
@@ -144,6 +154,57 @@ using Check = Expected<void, Diagnostic>;
   return whole(block, 'P', 1, max_turns);
 }
 
+/// Words of a canned cycle: R and the depth where it begins, Q of the pecks and P of a dwell; L, the number
+/// of holes.
+[[nodiscard]] inline Check check_cycle(const Block& block, const Modal& modal, const Alphabet& alphabet,
+                                       bool begins, int column) {
+  if (!alphabet.has_arcs || !alphabet.has_radius)
+    return tl::unexpected(Diagnostic{{ErrorCode::not_supported, "G", modal.motion / 10.0, 0.0}, 0, column});
+  if (modal.feed_mode == FeedMode::inverse_time)
+    return conflict(Diagnostic{{{}, "G", modal.motion / 10.0, 0.0}, 0, column}, "G", 93);
+  const char depth = "XYZ"[axes(modal.plane).third];
+  for (const char letter : {depth, 'R', 'P', 'Q'}) {
+    const bool takes = letter == 'P' ? dwells(modal.motion) : letter == 'Q' ? is_peck(modal.motion) : true;
+    if (begins && takes && !block.has(letter)) return missing(name(letter), column);
+  }
+  if (is_peck(modal.motion) && block.has('Q') && block.number('Q') <= 0.0)
+    return tl::unexpected(block.error(ErrorCode::not_positive, 'Q'));
+  return whole(block, 'L', 1, max_count);
+}
+
+/// The words that codes other than motions take: a word that one must have is there, and no word is taken
+/// twice. `used` gets them.
+[[nodiscard]] inline Check take_words(const Block& block, Letters taken_by_motion, Letters& used) {
+  Letters taken = taken_by_motion;
+  for (const Group group : {Group::non_modal, Group::tool_length, Group::path_control, Group::spindle_mode,
+                            Group::tool_change, Group::override_control, Group::input_output}) {
+    if (!block.has(group)) continue;
+    const auto& [own, may, must] = facts(group, block.code(group));
+    if (const Letters lacking = must & ~block.letters(); lacking != 0)
+      return missing(name(static_cast<char>('A' + std::countr_zero(lacking))), block.column(group));
+    if (const Letters twice = taken & may & block.letters(); twice != 0)
+      return conflict(
+          block.error(ErrorCode::conflicting_words, static_cast<char>('A' + std::countr_zero(twice))),
+          "two codes use it");
+    taken |= may;
+    used |= may;
+  }
+  return {};
+}
+
+/// G10: L1 of a tool's length, L2 and L20 of a work coordinate system, without rotation.
+[[nodiscard]] inline Check check_setting(const Block& block, Letters axes) {
+  const double kind = block.number('L');
+  if (kind != 1.0 && kind != 2.0 && kind != 20.0)
+    return tl::unexpected(block.error(ErrorCode::not_supported, 'L'));
+  if (block.has('R') && block.number('R') != 0.0)
+    return tl::unexpected(block.error(ErrorCode::not_supported, 'R'));
+  if (const Letters others = block.letters() & axes & ~bit('Z'); kind == 1.0 && others != 0)
+    return tl::unexpected(
+        block.error(ErrorCode::not_supported, static_cast<char>('A' + std::countr_zero(others))));
+  return kind == 1.0 ? whole(block, 'P', 0, max_count) : whole(block, 'P', 0, work_systems);
+}
+
 /// A feed where a feed move needs one.
 [[nodiscard]] inline Check check_feed(const Block& block, const Modal& modal, int column) {
   if (modal.needs_feed) return missing("F", column);
@@ -173,16 +234,16 @@ using Check = Expected<void, Diagnostic>;
 
 /// The motion code that the line runs, `no_code` for none, given the state that holds on it; or the first
 /// rule broken (RS274/NGC section 3, as LinuxCNC applies it). Words for a passed-through code move to
-/// `Block::passed`.
+/// `Block::passed`. `before` is the motion code of the line above: a cycle's words hold on under it.
 [[nodiscard]] inline Expected<Code, Diagnostic> resolve(Block& block, const Modal& modal,
-                                                        const Alphabet& alphabet) {
+                                                        const Alphabet& alphabet, Code before) {
   using namespace detail;
   const Letters axis_words = block.letters() & alphabet.axes;
   const Letters center_words = block.letters() & bits("IJK");
   const Code requested = block.code(Group::motion);
   const Code non_modal = block.code(Group::non_modal);
   const bool homes = non_modal == code(28) || non_modal == code(30);
-  const bool shifts = non_modal == code(92);
+  const bool shifts = non_modal == code(92) || non_modal == code(10);
   const bool sets_length = block.code(Group::tool_length) == code(43.1);
   const bool takes_axes = homes || shifts || sets_length;
 
@@ -198,7 +259,7 @@ using Check = Expected<void, Diagnostic>;
     if (requested != no_code && requested != code(80) && !(homes && requested == code(0)))
       return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
                       block.code(taker) / 10.0);
-    if (!homes && axis_words == 0) {  // an unknown letter was meant to be the axis
+    if (!homes && axis_words == 0 && non_modal != code(10)) {  // an unknown letter was meant to be the axis
       const Letters unknown = block.letters() & ~alphabet.known();
       if (unknown != 0 && !block.passes_code())
         if (auto ok = settle(block, unknown, alphabet); !ok) return tl::unexpected(ok.error());
@@ -224,30 +285,28 @@ using Check = Expected<void, Diagnostic>;
 
   Letters used = bits("NST");
   if (takes_axes || motion != no_code) used |= alphabet.axes;
-  int users_of_p = 0;
+  Letters taken = 0;
   if (is_arc(motion)) {
     if (auto ok = check_arc(block, modal, alphabet, column); !ok) return tl::unexpected(ok.error());
     const auto [first, second, third] = axes(modal.plane);
-    used |= bit(center_letter(first)) | bit(center_letter(second)) | bits("PR");
-    ++users_of_p;
+    taken = bit(center_letter(first)) | bit(center_letter(second)) | bits("PR");
+  } else if (is_cycle(motion)) {
+    if (auto ok = check_cycle(block, modal, alphabet, motion != before, column); !ok)
+      return tl::unexpected(ok.error());
+    used &= ~alphabet.axes | bits("XYZ");
+    taken = bits("LR") | (dwells(motion) ? bit('P') : 0) | (is_peck(motion) ? bit('Q') : 0);
   }
-  if (non_modal == code(4)) {
-    if (!block.has('P')) return missing("P", block.column(Group::non_modal));
-    used |= bit('P');
-    ++users_of_p;
-  }
-  if (block.code(Group::path_control) == code(64)) {
-    used |= bits("PQ");
-    ++users_of_p;
-  }
-  if (users_of_p > 1 && block.has('P'))
-    return conflict(block.error(ErrorCode::conflicting_words, 'P'), "two codes use it");
-  if (block.code(Group::tool_length) == code(43)) used |= bit('H');
+  used |= taken;
+  if (auto ok = take_words(block, taken, used); !ok) return tl::unexpected(ok.error());
+  if (non_modal == code(10))
+    if (auto ok = check_setting(block, alphabet.axes); !ok) return tl::unexpected(ok.error());
 
-  const bool feeds = is_arc(motion) || (motion == code(1) && axis_words != 0);
-  if (feeds || modal.feed_mode == FeedMode::per_minute) used |= bit('F');
-  for (const char letter : {'F', 'S', 'P', 'Q'})
-    if ((used & bit(letter)) != 0)
+  if (is_probe(motion) && axis_words == 0) return missing("axis", column);
+  const bool feeds =
+      is_arc(motion) || is_cycle(motion) || ((motion == code(1) || is_probe(motion)) && axis_words != 0);
+  if (feeds || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
+  for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
+    if ((used & bit(letter)) != 0 && block.code(Group::input_output) < code(67))  // M67, M68: any Q
       if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
   for (const char letter : {'N', 'T', 'H'})
     if ((used & bit(letter)) != 0)

@@ -85,7 +85,8 @@ class Writer {
       pass(*word, pen);
     } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
       begin(pen);
-      put(pen, "G4 P", dwell->seconds);
+      const auto read = [unit = dialect_.dwell_unit](double number) { return number * unit; };
+      put(pen, "G4 P", find_decimal(dwell->seconds, dwell->seconds / dialect_.dwell_unit, read).number);
     } else if (const auto* stop = std::get_if<Stop>(&item)) {
       begin(pen);
       put(pen, "M", stop->code);
@@ -211,11 +212,12 @@ class Writer {
     if (std::exchange(modal_.plane, motion.plane) != motion.plane)
       put(pen, "G", motion.plane == Plane::xy ? 17 : motion.plane == Plane::yz ? 19 : 18);
     if (motion.kind != MotionKind::rapid) feed(motion, pen);
-    const Code wanted = motion.kind == MotionKind::rapid  ? code(0)
-                        : motion.kind == MotionKind::line ? code(1)
-                        : motion.turn == Turn::clockwise  ? code(2)
-                                                          : code(3);
-    if (std::exchange(modal_.motion, wanted) != wanted) put(pen, "G", wanted / 10);
+    const Code wanted = motion.probe                       ? code(38.3)
+                        : motion.kind == MotionKind::rapid ? code(0)
+                        : motion.kind == MotionKind::line  ? code(1)
+                        : motion.turn == Turn::clockwise   ? code(2)
+                                                           : code(3);
+    if (std::exchange(modal_.motion, wanted) != wanted) put(pen, "G", wanted / 10.0);
     const auto [first, second, third] = axes(motion.plane);
     for (std::size_t i = 0; i < axis_count(); ++i) {
       const bool named =

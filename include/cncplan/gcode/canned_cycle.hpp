@@ -1,0 +1,166 @@
+// Canned cycles: a hole, or a row of holes, as the steps that it is made of.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "cncplan/gcode/modal.hpp"
+
+namespace cncplan::gcode {
+
+/// G73, G81 to G83, G85, G86, G89.
+[[nodiscard]] constexpr bool is_cycle(Code motion) {
+  return motion == code(73) || (motion >= code(81) && motion <= code(83)) || motion == code(85) ||
+         motion == code(86) || motion == code(89);
+}
+
+/// G73 and G83 go down peck by peck (Q).
+[[nodiscard]] constexpr bool is_peck(Code motion) { return motion == code(73) || motion == code(83); }
+
+/// G82, G86 and G89 dwell at the bottom (P).
+[[nodiscard]] constexpr bool dwells(Code motion) {
+  return motion == code(82) || motion == code(86) || motion == code(89);
+}
+
+/// The words of a cycle, which hold until another code of motion: mm of work coordinates, or from the start
+/// and from R in incremental distances.
+struct CycleWords {
+  double r{};      ///< the plane above the work
+  double depth{};  ///< Z of the XY plane
+  double dwell{};  ///< s
+  double peck{};   ///< mm, above 0
+};
+
+/// One step of a cycle; places in the plane's first, second and third coordinate. A lift is a rapid of the
+/// third one alone.
+struct CycleStep {
+  enum class Kind : std::uint8_t { lift, rapid, feed, dwell, spindle_stop, spindle_start };
+
+  Kind kind{};
+  double first{};
+  double second{};
+  double third{};
+  double seconds{};
+};
+
+/// A row of equal holes; the order of steps is that of LinuxCNC (interp_cycles.cc).
+class CannedCycle {
+ public:
+  struct Holes {
+    double first{}, second{};            ///< of the first hole, less one step
+    double first_step{}, second_step{};  ///< from hole to hole
+    int count = 1;
+  };
+  struct Heights {
+    double level{};   ///< where it was before the first cycle of a series: below r, the tool is lifted first
+    double here{};    ///< where the tool is
+    double r{};       ///< feed begins
+    double bottom{};  ///< not above r
+    double clear{};   ///< between holes: r (G99), or the height before the cycle if that is higher (G98)
+  };
+
+  CannedCycle() = default;
+  CannedCycle(Code code, const Holes& holes, const Heights& heights, double peck, double back_off,
+              double dwell)
+      : code_(code),
+        phase_(Phase::lift),
+        holes_(holes),
+        heights_(heights),
+        peck_(peck),
+        back_off_(back_off),
+        dwell_(dwell),
+        depth_(heights.r) {}
+
+  /// Whether there are steps to come.
+  [[nodiscard]] bool busy() const { return phase_ != Phase::done; }
+
+  /// The next step; nothing where there is none to be made in this phase. Calls are bounded by the number of
+  /// holes times pecks.
+  std::optional<CycleStep> next() {
+    using Kind = CycleStep::Kind;
+    switch (phase_) {
+      case Phase::lift:
+        phase_ = Phase::approach;
+        if (heights_.level >= heights_.r) return std::nullopt;
+        heights_.here = heights_.r;
+        return to(Kind::lift, heights_.r);
+      case Phase::approach:
+        phase_ = Phase::enter;
+        --holes_.count;
+        holes_.first += holes_.first_step;
+        holes_.second += holes_.second_step;
+        return to(Kind::rapid, heights_.here > heights_.r ? heights_.here : heights_.clear);
+      case Phase::enter:
+        phase_ = Phase::down;
+        depth_ = heights_.here = heights_.r;
+        return to(Kind::rapid, heights_.r);
+      case Phase::down:
+        if (is_peck(code_) && depth_ - peck_ > heights_.bottom) {
+          depth_ -= peck_;
+          phase_ = code_ == code(83) ? Phase::clear_chips : Phase::back;
+          return to(Kind::feed, depth_);
+        }
+        phase_ = Phase::bottom;
+        return to(Kind::feed, heights_.bottom);
+      case Phase::clear_chips:
+        phase_ = Phase::back;
+        return to(Kind::rapid, heights_.r);
+      case Phase::back:
+        phase_ = Phase::down;
+        return to(Kind::rapid, depth_ + back_off_);
+      case Phase::bottom:
+        phase_ = Phase::stop_spindle;
+        if (!dwells(code_)) return std::nullopt;
+        return CycleStep{.kind = Kind::dwell, .seconds = dwell_};
+      case Phase::stop_spindle:
+        phase_ = Phase::out;
+        if (code_ != code(86)) return std::nullopt;
+        return CycleStep{.kind = Kind::spindle_stop};
+      case Phase::out:
+        phase_ = Phase::clear;
+        if (code_ == code(85)) return to(Kind::feed, heights_.r);
+        return to(code_ == code(89) ? Kind::feed : Kind::rapid, heights_.clear);
+      case Phase::clear:
+        phase_ = Phase::start_spindle;
+        return to(Kind::rapid, heights_.clear);
+      case Phase::start_spindle:
+        phase_ = holes_.count > 0 ? Phase::approach : Phase::done;
+        if (code_ != code(86)) return std::nullopt;
+        return CycleStep{.kind = Kind::spindle_start};
+      case Phase::done:
+        break;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  enum class Phase : std::uint8_t {
+    lift,
+    approach,
+    enter,
+    down,
+    clear_chips,
+    back,
+    bottom,
+    stop_spindle,
+    out,
+    clear,
+    start_spindle,
+    done,
+  };
+
+  [[nodiscard]] CycleStep to(CycleStep::Kind kind, double third) const {
+    return {.kind = kind, .first = holes_.first, .second = holes_.second, .third = third};
+  }
+
+  Code code_ = no_code;
+  Phase phase_ = Phase::done;
+  Holes holes_;
+  Heights heights_;
+  double peck_{};
+  double back_off_{};
+  double dwell_{};
+  double depth_{};
+};
+
+}  // namespace cncplan::gcode
