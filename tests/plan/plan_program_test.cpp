@@ -300,3 +300,16 @@ TEST_CASE("the real programs take the time that they took before", "[program][sl
     if (name == std::string_view("ball.nc")) CHECK(planned->duration() == Approx(1018.445).margin(1e-3));
   }
 }
+
+TEST_CASE("a feed of rotary axes alone counts degrees a minute, in inches too") {
+  Machine<4> machine{.limits = {.velocity = 100, .acceleration = 1000, .jerk = 100000}};
+  machine.axes[3].velocity = 100;
+  machine.axes[3].acceleration = 1000;
+  machine.axes[3].jerk = 1e6;
+  for (const char* program : {"G21 G1 A90 F600\n", "G20 G1 A90 F600\n", "G20 F600\nG21 G1 A90\n"}) {
+    const auto trajectory = plan_text(program, machine);
+    REQUIRE(trajectory);
+    INFO(program);
+    CHECK(trajectory->blocks().front().peak == Approx(10.0 * gcode::radians_per_degree).epsilon(1e-12));
+  }
+}

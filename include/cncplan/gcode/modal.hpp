@@ -217,6 +217,7 @@ struct Modal {
   bool retract_to_r = true;           ///< G99; false: G98
   FeedMode feed_mode = FeedMode::per_minute;
   std::optional<double> feed{};  ///< mm/s; under inverse time this line's, 1/s; per revolution, mm
+  double rotary_feed = 0.0;      ///< degrees/s, where only rotary axes move
   bool needs_feed = false;       ///< no feed move without an F on the way: a feed does not outlive its mode
   PathMode path_mode = PathMode::continuous;
   std::optional<double> tolerance{};  ///< mm, of G64 P

@@ -46,7 +46,9 @@ struct Motion {
   Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
   bool probe{};                      ///< G38.2 to G38.5: the end is where it goes without contact
   int extra_turns{};                 ///< whole turns more than the arc itself: P - 1
-  std::optional<double> feed{};  ///< mm/s, or 1/s under inverse time; none for rapids and before the first F
+  /// mm/s, degrees/s where only rotary axes move, 1/s under inverse time; none for rapids and before the
+  /// first F
+  std::optional<double> feed{};
   std::optional<double> tolerance{};  ///< mm from the path under G64 P; none where the program gives none
   double merge_tolerance{};           ///< mm from nearly collinear lines that are made one, under G64 Q
   int line{};

@@ -329,7 +329,9 @@ class Reader {
   /// mm/s, or 1/s under inverse time. Under G95 that of the spindle's speed; under G96 too, where it is
   /// lowest, at the end that is farther from the axis.
   [[nodiscard]] std::optional<double> feed(const Motion& motion) const {
-    if (modal_.feed_mode != FeedMode::per_revolution || !modal_.feed) return modal_.feed;
+    if (!modal_.feed || modal_.feed_mode == FeedMode::inverse_time) return modal_.feed;
+    if (modal_.feed_mode == FeedMode::per_minute)
+      return turns_only(motion) ? modal_.rotary_feed : *modal_.feed;
     double per_minute = spindle_speed_.value_or(0.0);
     if (surface_speed_) {
       const double radius = std::max(std::abs(motion.start[0]), std::abs(motion.end[0]));
@@ -346,6 +348,17 @@ class Reader {
     const bool inches = modal_.millimetres_per_unit != 1.0;
     surface_speed_ = block_.number('S') * (inches ? 304.8 : 1000.0);
     most_revolutions_ = block_.has('D') ? block_.number('D') : std::numeric_limits<double>::infinity();
+  }
+
+  // Whether rotary axes alone move: F counts degrees then, whatever the unit of length.
+  [[nodiscard]] bool turns_only(const Motion& motion) const {
+    bool turns = false;
+    for (std::size_t i = 0; i < axis_count(); ++i) {
+      if (motion.end[i] == motion.start[i]) continue;
+      if (dialect_.axes[i].kind == AxisKind::linear) return false;
+      turns = true;
+    }
+    return turns;
   }
 
   /// What the words alone do not tell: a feed per revolution needs a spindle that turns, a cycle its depth

@@ -96,6 +96,7 @@ inline void control_path(const Block& block, Modal& modal) {
   if (block.has('F'))
     modal.feed = block.number('F') * (inverse_time ? 1.0 : modal.millimetres_per_unit) /
                  (modal.feed_mode == FeedMode::per_revolution ? 1.0 : 60.0);
+  if (block.has('F')) modal.rotary_feed = block.number('F') / 60.0;
   return modal;
 }
 

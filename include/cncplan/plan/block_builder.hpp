@@ -112,7 +112,7 @@ class BlockBuilder {
     const auto* word = std::get_if<gcode::Word>(&item);
     if (const auto* dwell = std::get_if<gcode::Dwell>(&item)) return rest(dwell->line, dwell->seconds);
     if (const auto* end = std::get_if<gcode::Stop>(&item)) return rest(end->line, 0.0);
-    if (word != nullptr && word->letter == 'T') return rest(word->line, 0.0);
+    if (word != nullptr && gcode::timing(*word) == gcode::Timing::at_rest) return rest(word->line, 0.0);
     return std::optional<Block>();
   }
 
