@@ -4,6 +4,7 @@
 
 #include "cncplan/path/mapped.hpp"
 #include "cncplan/path/measured.hpp"
+#include "cncplan/path/part.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/path/straight_in_joints.hpp"
 #include "random_arcs.hpp"
@@ -172,6 +173,23 @@ TEST_CASE("curves that are no paths are refused", "[path]") {
   CHECK(measured(test::Cusp{}).error().code == ErrorCode::unreachable);
   CHECK(measured(test::Standing{}).error().code == ErrorCode::not_finite);
   CHECK(measured(test::Ellipse{.end = 0}).error().code == ErrorCode::not_positive);
+}
+
+TEST_CASE("parts of paths keep the laws of paths", "[path]") {
+  test::Random random;
+  const auto table = measured(test::OnTable{});
+  REQUIRE(table);
+  const double end = table->length();
+  const Part<Measured<test::OnTable>> part(*table, 0.2 * end, 0.9 * end);
+  CHECK(part.position_at(0) == table->position_at(0.2 * end));
+  CHECK(part.tool_point_at(part.length()).position ==
+        table->tool_point_at(0.2 * end + part.length()).position);
+  test::check_path_by_length(test::path_by_length_errors(part, 3, random), "of a curve", 1e-9, 1e-6, 0.1);
+  const auto arc = test::random_arc<double>(random, test::ArcKind::spiral);
+  const Part<Arc> of_arc(arc, 0.3 * arc.length(), 0.6 * arc.length());
+  const double unit = std::min(arc.start_radius(), arc.end_radius());
+  test::check_path_by_length(test::path_by_length_errors(of_arc, unit, random), test::describe(arc), 1e-11,
+                             1e-7);
 }
 
 namespace {

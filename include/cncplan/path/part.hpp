@@ -24,6 +24,12 @@ class Part {
   [[nodiscard]] Scalar length() const { return length_; }
   [[nodiscard]] Vector position_at(Scalar s) const { return path_.position_at(from_ + s); }
   [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const { return path_.point_at(from_ + s); }
+  /// X Y Z of the tool, and their derivatives, where the whole path tells them.
+  [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const requires
+      requires(const P& path) {
+    path.tool_point_at(s);
+  }
+  { return path_.tool_point_at(from_ + s); }
   [[nodiscard]] auto enclosure(Scalar from, Scalar to) const {
     return path_.enclosure(from_ + from, from_ + to);
   }
