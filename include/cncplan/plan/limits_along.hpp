@@ -104,13 +104,19 @@ template <std::floating_point S>
   return (left_beside(across, limits.jerk) - along) / b.first;
 }
 
-/// Seconds over a length with two ramps from rest and two to rest; infinite where that is too short for them.
+/// Seconds over a length from rest to rest, each ramp counted `ramps` times; its peak is lower than the
+/// velocity where the length is too short for so many. Infinite where nothing is left to change speed with.
 template <std::floating_point S>
-[[nodiscard]] S time_with_ramps(const BasicLimits<S>& limits, S length) {
+[[nodiscard]] S time_with_ramps(const BasicLimits<S>& limits, S length, S ramps) {
   const auto& [v, a, j] = limits;
   if (!(v > S(0) && a > S(0) && j > S(0))) return std::numeric_limits<S>::infinity();
-  const S ramp = v * j >= a * a ? v / a + a / j : S(2) * std::sqrt(v / j);
-  return length >= S(2) * v * ramp ? length / v + S(2) * ramp : std::numeric_limits<S>::infinity();
+  const S share = length / ramps;
+  const S by_jerk = std::cbrt(share * share * j / S(4));  // share = 2 v sqrt(v / j)
+  const S steady = a / j;
+  const S by_acceleration = (std::sqrt(steady * steady + S(4) * share / a) - steady) * a / S(2);
+  const S top = std::min(v, by_jerk > a * steady ? by_acceleration : by_jerk);
+  const S ramp = top > a * steady ? top / a + steady : S(2) * std::sqrt(top / j);
+  return length / top + ramps * ramp;
 }
 
 }  // namespace detail
@@ -155,12 +161,13 @@ template <MachineModel M>
   if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
   constexpr int speeds = 4;
   const S rise = (fastest(S(1), S(1)) - least) / S(speeds);
-  S shortest = detail::time_with_ramps(best, length);
+  const S alone = detail::time_with_ramps(best, length, S(1));
+  S shortest = detail::time_with_ramps(best, length, S(2));
   for (int i = 0; i <= speeds; ++i)
     for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
       const BasicLimits<S> other = at(least + static_cast<S>(i) * rise, share);
-      const S takes = detail::time_with_ramps(other, length);
-      if (!(takes < shortest)) continue;
+      const S takes = detail::time_with_ramps(other, length, S(2));
+      if (!(takes < shortest && detail::time_with_ramps(other, length, S(1)) <= alone)) continue;
       shortest = takes;
       best = other;
     }
