@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -98,5 +99,11 @@ struct Error {
 /// A value, or the reason why there is none.
 template <class T, class E = Error>
 using Expected = tl::expected<T, E>;
+
+/// The reason, as any `Expected` takes it.
+template <std::floating_point S>
+[[nodiscard]] constexpr auto refusal(ErrorCode code, std::string_view field, S value, S bound = S(0)) {
+  return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
+}
 
 }  // namespace cncplan

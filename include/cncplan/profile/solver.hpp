@@ -14,15 +14,6 @@
 
 namespace cncplan::profile {
 
-namespace detail {
-
-template <std::floating_point S>
-[[nodiscard]] constexpr auto refusal(ErrorCode code, std::string_view field, S value, S bound) {
-  return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-}
-
-}  // namespace detail
-
 /// Solves many profiles under the same limits: what depends on the limits alone is worked out once.
 template <std::floating_point S>
 class BasicSolver {
@@ -106,13 +97,13 @@ class BasicSolver {
   [[nodiscard]] Expected<BasicProfile<S>> refuse(S length, const BasicBoundarySpeeds<S>& speeds) const {
     const auto within = [](S value, S bound) { return value >= S(0) && value <= bound; };
     const auto fault = [](S value, S bound, std::string_view field) {
-      if (!std::isfinite(value)) return detail::refusal(ErrorCode::not_finite, field, value, S(0));
-      if (value < S(0)) return detail::refusal(ErrorCode::negative, field, value, S(0));
-      return detail::refusal(ErrorCode::above_limit, field, value, bound);
+      if (!std::isfinite(value)) return refusal(ErrorCode::not_finite, field, value, S(0));
+      if (value < S(0)) return refusal(ErrorCode::negative, field, value, S(0));
+      return refusal(ErrorCode::above_limit, field, value, bound);
     };
     if (!(velocity_limit_ > S(0))) {
       const ErrorCode code = std::isnan(velocity_limit_) ? ErrorCode::not_finite : ErrorCode::not_positive;
-      return detail::refusal(code, "velocity limit", velocity_limit_, S(0));
+      return refusal(code, "velocity limit", velocity_limit_, S(0));
     }
     constexpr S longest = std::numeric_limits<S>::max();
     if (!within(length, longest)) return fault(length, longest, "length");
@@ -131,7 +122,7 @@ class BasicSolver {
       const S middle = within + (beyond - within) / S(2);
       (law_.distance(speeds.start, middle) <= length ? within : beyond) = middle;
     }
-    return detail::refusal(ErrorCode::end_speed_unreachable, "end speed", speeds.end, within);
+    return refusal(ErrorCode::end_speed_unreachable, "end speed", speeds.end, within);
   }
 
   BasicRampLaw<S> law_;

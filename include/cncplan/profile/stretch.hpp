@@ -33,7 +33,7 @@ template <std::floating_point S = double>
   if (!fastest) return fastest;
   constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
   if (!(duration >= fastest->duration() * (S(1) - rounding)))
-    return detail::refusal(ErrorCode::below_limit, "duration", duration, fastest->duration());
+    return refusal(ErrorCode::below_limit, "duration", duration, fastest->duration());
   if (duration <= fastest->duration() * (S(1) + rounding)) return fastest;
   const BasicRampLaw<S> law = seven_phase_law(limits);
   const S start = speeds.start;  // clang++ 14 captures no structured bindings
@@ -88,7 +88,7 @@ template <std::floating_point S = double>
     }
     if (found.duration() < duration) longest = std::max(longest, found.duration());
   }
-  return detail::refusal(ErrorCode::above_limit, "duration", duration, longest);
+  return refusal(ErrorCode::above_limit, "duration", duration, longest);
 }
 
 }  // namespace cncplan::profile
