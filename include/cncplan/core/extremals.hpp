@@ -1,0 +1,486 @@
+// The motions that get farthest in a given time: what every fastest motion is made of.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <utility>
+
+#include "cncplan/core/bracketed_root.hpp"
+#include "cncplan/core/cube_root.hpp"
+
+namespace cncplan {
+
+/// A motion that gets farthest: acceleration up to a peak, down to a trough, up to its end. Times in s
+/// sqrt(J).
+///
+///       first_peak  ____
+///                  /    \      cruise
+///       start ____/      \_______________
+///                                        \      ____ end
+///       -last_peak                        \____/
+///
+/// A negative peak means that the acceleration does not change its sign there.
+template <std::floating_point S>
+struct BasicExtremal {
+  S first_peak{};
+  S first_hold{};
+  S cruise{};
+  S last_hold{};
+  S last_peak{};
+};
+
+/// Start, end and limits of a motion in the positive direction, in units in which the jerk limit is 1: times
+/// in s sqrt(J), accelerations divided by sqrt(J), distances times sqrt(J). Without a jerk limit, in s and
+/// mm, and all accelerations are zero.
+template <std::floating_point S>
+struct BasicExtremalTask {
+  S start_velocity{};
+  S start_acceleration{};  ///< within the limits
+  S end_velocity{};
+  S end_acceleration{};  ///< within the limits
+  S top{};               ///< highest velocity; start and end can settle at or below it
+  S rise{};              ///< largest acceleration
+  S fall{};              ///< largest deceleration
+  bool jerk_limited = true;
+};
+
+/// All motions that get farthest, over their duration.
+///
+/// Start, limits and end velocity and acceleration are given. Limits are intervals and motion is linear in
+/// its jerk, so motions of one duration form a convex set, and the positions at their ends an interval. Its
+/// upper end belongs to the motion here (Pontryagin), its lower end to the mirrored task. So a duration is
+/// possible where the wanted position lies in the interval, and the fastest motion is the first one at which
+/// an end of the interval meets the position.
+///
+/// The start is moved back, and the end on, at full jerk to where the acceleration is zero. This changes
+/// neither peak nor trough. There the motion is a ramp up and a ramp down between virtual velocities, each
+/// symmetric in time: half its duration times the sum of its velocities is its distance. Let y and z be the
+/// acceleration to which the ramp at the lower and the higher of these velocities leads, l + y^2 = h + z^2
+/// the velocity between them, D = h - l. The motions are one curve over z, with y = sqrt(D + z^2); time
+/// grows along it. Where y or z reaches its limit, the acceleration is held. Distances:
+///
+///     neither held   w^3/4 + (l + h) w - D^2/(4 w),  w = y + z    turns at 3 u^2 + 4 (l + h) u + D^2, u =
+///     w^2 one held       a quartic in the root of the other one       turns at 2 z^2 + A z + 2 h = 0 both
+///     held      quadratic in the velocity between            turns at -A B/2
+///
+/// so that each piece falls into parts on which the distance grows or falls, and has one root at most.
+template <std::floating_point S>
+class BasicExtremals {
+ public:
+  using Scalar = S;
+  using Task = BasicExtremalTask<S>;
+  using Extremal = BasicExtremal<S>;
+
+  explicit BasicExtremals(const Task& task) : task_(task) {
+    const S v0 = task.start_velocity, a0 = task.start_acceleration;
+    const S v1 = task.end_velocity, a1 = task.end_acceleration;
+    const S first = v0 - a0 * a0 / S(2);
+    const S last = v1 - a1 * a1 / S(2);
+    const Side start = side(first, a0, task.rise);
+    const Side end = side(last, -a1, task.fall);
+    const S rounding =
+        S(8) * std::numeric_limits<S>::epsilon() * (std::abs(v0) + std::abs(v1) + a0 * a0 + a1 * a1);
+    const bool level = std::abs(last - first) <= rounding;  // then the one with more freedom counts as higher
+    rising_ = level ? end.least <= start.least : first < last;
+    low_ = rising_ ? start : end;
+    high_ = rising_ ? end : start;
+    if (level) low_.velocity = high_.velocity;
+    gap_ = high_.velocity - low_.velocity;
+    shift_ = v0 * a0 - v1 * a1 + (a1 * a1 * a1 - a0 * a0 * a0) / S(3);
+  }
+
+  /// Whether durations from the shortest one on are all possible for some position: not where start and end
+  /// accelerate to one side, so that a little longer is too long without a detour.
+  [[nodiscard]] bool connected() const {
+    const S square = low_.least > S(0) ? low_.least * low_.least - gap_ : S(-1);
+    return !(square > S(0)) ||
+           (square < high_.most * high_.most && (high_.least > S(0) || high_.least * high_.least < square));
+  }
+
+  /// By how much the motion of the shortest duration misses a distance; positive where it goes farther.
+  [[nodiscard]] S start_miss(S distance) const { return distance_at(start_root()) - (distance + shift_); }
+
+  /// The motion of the shortest duration, for a connected task.
+  [[nodiscard]] Extremal start_motion() const { return motion_at(start_root()); }
+
+  /// The first motion over a distance, for a connected task whose motion of shortest duration goes no
+  /// farther; false where it has to be searched for. If the curve has no local maximum there is one crossing
+  /// only, in the piece at whose end the distance is exceeded.
+  [[nodiscard]] bool only_over(S distance, Extremal& found) const {
+    const Aim aim{distance + shift_, S(0)};
+    S s = start_root();
+    const S sum = low_.velocity + high_.velocity;
+    const S break_low = low_.most * low_.most - gap_;
+    const bool holds = break_low <= S(0);
+    if (s > high_.most) return false;
+    const bool held_first = s < S(0) && (holds || s * s > break_low);
+    if (held_first) {
+      const S a = low_.acceleration;
+      const S discriminant = a * a - S(16) * high_.velocity;
+      if (discriminant > S(0) && S(4) * s < -a - std::sqrt(discriminant)) return false;
+    }
+    const S left = aim.distance - at_top();
+    if (left >= S(0)) {
+      if (!(task_.top > S(0))) return false;
+      found = to_top(left / task_.top);
+      return true;
+    }
+    const S gain = to_gain();
+    const S z_end_sq = std::min(high_.most * high_.most, gain);
+    const auto free = [&](const Side& side, S change, S root) {
+      return (S(2) * side.velocity + change) * root;
+    };
+    const auto between = [](const auto& f, S from, S to, S at_to) {
+      const S at_from = f(from)[0];
+      const S guess = at_from < at_to ? from - at_from * ((to - from) / (at_to - at_from)) : to;
+      return bracketed_root(f, from, to, guess);
+    };
+    if (held_first && !holds) {
+      const S end = -std::sqrt(break_low);
+      const S excess = distance_at(end) - aim.distance;
+      if (excess >= S(0)) {
+        const S x = between(one_held_excess(low_, high_, gap_, aim.distance), s, end, excess);
+        found = motion(low_.most, x, x * x);
+        return true;
+      }
+      s = end;
+    }
+    S from = s;
+    if (!holds && (s < S(0) || s * s < break_low)) {
+      const S end_sq = std::min(break_low, z_end_sq);
+      const S z = std::sqrt(end_sq), y = std::sqrt(gap_ + end_sq);
+      const S w_start = sum_at(s);
+      const S discriminant = S(4) * sum * sum - S(3) * gap_ * gap_;
+      S least = w_start;
+      if (sum < S(0) && discriminant > S(0)) {
+        const S u = (S(-2) * sum + std::sqrt(discriminant)) / S(3);  // where the distance is least
+        if (w_start * w_start * S(3) * u < gap_ * gap_) return false;
+        if (u > w_start * w_start && u < (y + z) * (y + z)) least = std::sqrt(u);
+      }
+      if (free(low_, gap_ + end_sq, y) + free(high_, end_sq, z) >= aim.distance) {
+        const S guess = std::clamp(rough_root(sum, aim.distance), least, y + z);
+        found = none_held_motion(bracketed_root(none_held_excess(aim.distance), least, y + z, guess));
+        return true;
+      }
+      if (end_sq < break_low && end_sq < gain) {
+        const S most = std::min(low_.most, std::sqrt(gap_ + gain));
+        const S excess =
+            held_distance(high_, most * most - gap_) + free(low_, most * most, most) - aim.distance;
+        if (excess >= S(0)) {
+          const S x = between(one_held_excess(high_, low_, -gap_, aim.distance), std::max(y, low_.least),
+                              most, excess);
+          found = motion(x, high_.most, x * x - gap_);
+          return true;
+        }
+      }
+      from = std::max(from, std::sqrt(break_low));
+    }
+    if (break_low < z_end_sq || (holds && s < S(0))) {
+      const S z = std::sqrt(z_end_sq);
+      const S excess = held_distance(low_, gap_ + z_end_sq) + free(high_, z_end_sq, z) - aim.distance;
+      if (excess >= S(0)) {
+        const S x = between(one_held_excess(low_, high_, gap_, aim.distance), from, z, excess);
+        found = motion(low_.most, x, x * x);
+        return true;
+      }
+    }
+    if (gain <
+        std::max(break_low, high_.most * high_.most)) {  // by rounding: the last piece ended at the top
+      found = to_top(S(0));
+      return true;
+    }
+    // both held: a quadratic in the velocity gained
+    const S inverse = S(1) / low_.acceleration + S(1) / high_.acceleration;
+    const S slope = high_.velocity * inverse + (low_.rise + high_.rise) / S(2);
+    const S left_over = aim.distance - held_distance(low_, gap_) - held_distance(high_, S(0));
+    const S root = std::sqrt(std::max(slope * slope + S(2) * inverse * left_over, S(0)));
+    const S gained = slope > S(0) ? S(2) * left_over / (slope + root) : (root - slope) / inverse;
+    found = motion(low_.most, high_.most, std::clamp(gained, S(0), gain));
+    return true;
+  }
+
+  /// Calls `visit(extremal)` for each motion that ends at a distance, in the order of their durations, until
+  /// it returns true. A motion without detour is taken if it misses the distance by no more than `slack`.
+  template <class Visit>
+  void each_over(S distance, S slack, Visit&& visit) const {
+    const S c = distance + shift_;
+    const Aim aim{c, slack};
+    const S z_top = std::sqrt(to_gain());
+    const S break_low = low_.most * low_.most - gap_;
+    const bool holds = break_low <= S(0);
+    const S r = holds ? S(0) : std::sqrt(break_low);
+    const S s = high_.least;
+    const S e = std::max(std::min(high_.most, z_top), s);
+    const S forbidden = low_.least > S(0) ? low_.least * low_.least - gap_ : S(-1);
+    const auto stretch = [&](S from, S to) {
+      const S miss = distance_at(from) - c;
+      if (std::abs(miss) <= slack && visit(motion_at(from))) return true;
+      if (from < -r && low_held(from, std::min(to, -r), aim, visit)) return true;
+      if (!holds && to > -r && from < r && none_held(std::max(from, -r), std::min(to, r), aim, visit))
+        return true;
+      return to > r && low_held(std::max(from, r), to, aim, visit);
+    };
+    if (forbidden > S(0)) {
+      const S q = std::sqrt(forbidden);
+      if (s <= -q && stretch(s, -q)) return;
+      if (q <= high_.most && stretch(std::max(s, q), std::max(e, q))) return;
+    } else if (stretch(s, e)) {
+      return;
+    }
+    if (z_top > high_.most) {
+      const S y = std::max(std::sqrt(gap_ + high_.most * high_.most), low_.least);
+      if (y < low_.most && high_held(y, std::min(low_.most, std::sqrt(gap_ + to_gain())), aim, visit)) return;
+      const S from = std::max(low_.most * low_.most - gap_, high_.most * high_.most);
+      if (from < to_gain() && both_held(from, aim, visit)) return;
+    }
+    const S left = c - at_top();
+    if (left >= -slack && task_.top > S(0)) visit(to_top(std::max(left, S(0)) / task_.top));
+  }
+
+  /// The motion of a duration; `valid` is false where end velocity and acceleration cannot be had in it.
+  [[nodiscard]] std::pair<Extremal, bool> lasting(S duration) const {
+    const S time = duration + task_.start_acceleration - task_.end_acceleration;
+    const S most = to_gain();
+    const S cruise = time - S(2) * (half(low_, gap_ + most) + half(high_, most));
+    if (cruise >= S(0)) return {to_top(cruise), true};
+    const S slack = S(16) * std::numeric_limits<S>::epsilon() *
+                    (std::abs(task_.start_acceleration) + std::abs(task_.end_acceleration) + duration);
+    const S w = time / S(2);
+    S z = w > S(0) ? (w - gap_ / w) / S(2) : high_.least;
+    S y = w > S(0) ? (w + gap_ / w) / S(2) : -z;
+    S gained = z * z;
+    const bool low_first = low_.most * low_.most - gap_ < high_.most * high_.most;
+    if (y > low_.most && (z <= high_.most || low_first)) {
+      y = low_.most;
+      z = std::sqrt(std::max(low_.most * time - gap_, S(0))) - low_.most;
+      gained = z * z;
+    } else if (z > high_.most) {
+      z = high_.most;
+      y = std::sqrt(high_.most * time + gap_) - high_.most;
+      gained = y * y - gap_;
+    }
+    if (y > low_.most || z > high_.most || !task_.jerk_limited) {
+      const S a = S(1) / low_.acceleration, b = S(1) / high_.acceleration;
+      const S both = (time - low_.rise - high_.rise - gap_ * a) / (a + b);
+      return {motion(low_.most, high_.most, both), both >= -slack};
+    }
+    const bool valid = z >= high_.least - slack && y >= low_.least - slack;
+    return {motion(y, z, gained), valid};
+  }
+
+  [[nodiscard]] S duration(const Extremal& e) const {
+    return e.first_peak * S(2) + e.first_hold + e.cruise + e.last_hold + e.last_peak * S(2) -
+           task_.start_acceleration + task_.end_acceleration;
+  }
+
+  /// Where a motion ends, from its start.
+  [[nodiscard]] S distance(const Extremal& e) const {
+    const auto ramp = [&](const Side& s, S peak, S hold) {
+      const S change = hold > S(0) ? (hold + s.rise) * s.acceleration : peak * peak;
+      return (S(2) * s.velocity + change) * (peak + hold / S(2));
+    };
+    const Side& first = rising_ ? low_ : high_;
+    const Side& last = rising_ ? high_ : low_;
+    return ramp(first, e.first_peak, e.first_hold) + ramp(last, e.last_peak, e.last_hold) +
+           e.cruise * task_.top - shift_;
+  }
+
+  [[nodiscard]] const Task& task() const { return task_; }
+
+ private:
+  // One ramp, seen from its virtual velocity.
+  struct Side {
+    S velocity;
+    S least;         // acceleration that its peak has at least
+    S most;          // peak at which it is held; 0 without a jerk limit
+    S acceleration;  // while it is held
+    S rise;          // time to there
+  };
+
+  // A distance between virtual ends, and what rounding may miss of it.
+  struct Aim {
+    S distance;
+    S slack;
+  };
+
+  [[nodiscard]] Side side(S velocity, S least, S acceleration) const {
+    const S rise = task_.jerk_limited ? acceleration : S(0);
+    return {velocity, least, rise, acceleration, rise};
+  }
+
+  // A ramp that gains a change of velocity: the acceleration to which it leads (to rounding no less than the
+  // least), how long it is held, half its duration, and its distance.
+  [[nodiscard]] static S peak(const Side& s, S change) {
+    return change > s.most * s.most ? s.most : std::max(std::sqrt(std::max(change, S(0))), s.least);
+  }
+  [[nodiscard]] static S hold(const Side& s, S peak, S change) {
+    return peak >= s.most ? std::max(change / s.acceleration - s.rise, S(0)) : S(0);
+  }
+  [[nodiscard]] static S half(const Side& s, S change) {
+    const S top = peak(s, change);
+    return top + hold(s, top, change) / S(2);
+  }
+  [[nodiscard]] static S held_distance(const Side& s, S change) {
+    return (S(2) * s.velocity + change) * (change / (S(2) * s.acceleration) + s.rise / S(2));
+  }
+
+  // With the accelerations y and z to velocities that the higher side gains.
+  [[nodiscard]] Extremal motion(S y, S z, S gained, S cruise = S(0)) const {
+    y = std::max(y, low_.least), z = std::max(z, high_.least);  // to rounding they are
+    const S low_hold = hold(low_, y, gap_ + gained);
+    const S high_hold = hold(high_, z, gained);
+    return rising_ ? Extremal{y, low_hold, cruise, high_hold, z}
+                   : Extremal{z, high_hold, cruise, low_hold, y};
+  }
+  [[nodiscard]] S to_gain() const { return std::max(task_.top - high_.velocity, S(0)); }
+  [[nodiscard]] Extremal to_top(S cruise) const {
+    const S gained = to_gain();
+    return motion(peak(low_, gap_ + gained), peak(high_, gained), gained, cruise);
+  }
+  [[nodiscard]] S at_top() const {
+    const S gained = to_gain();
+    return (S(2) * low_.velocity + gap_ + gained) * half(low_, gap_ + gained) +
+           (S(2) * high_.velocity + gained) * half(high_, gained);
+  }
+
+  // By the acceleration z of the higher side, as long as that is not held.
+  [[nodiscard]] S low_root(S z) const { return std::min(std::sqrt(gap_ + z * z), low_.most); }
+  [[nodiscard]] Extremal motion_at(S z) const { return motion(low_root(z), z, z * z); }
+  [[nodiscard]] S distance_at(S z) const {
+    const S change = gap_ + z * z;
+    const S y = std::sqrt(change);
+    const S below = y > low_.most ? held_distance(low_, change) : (S(2) * low_.velocity + change) * y;
+    return below + (S(2) * high_.velocity + z * z) * z;
+  }
+
+  // The roots of a piece that turns at given places.
+  template <class F, class Visit>
+  [[nodiscard]] static bool roots(const F& f, S from, S to, std::array<S, 2> turns, S slack,
+                                  const Visit& visit) {
+    S x{};
+    for (const S turn : turns)
+      if (turn > from && turn < to) {
+        if (root_between(f, from, turn, slack, x) && visit(x)) return true;
+        from = turn;
+      }
+    return root_between(f, from, to, slack, x) && visit(x);
+  }
+
+  // The root of the higher side with which the curve begins.
+  [[nodiscard]] S start_root() const {
+    const S forbidden = low_.least > S(0) ? low_.least * low_.least - gap_ : S(-1);
+    return forbidden > S(0) ? std::max(high_.least, std::sqrt(forbidden)) : high_.least;
+  }
+  [[nodiscard]] S sum_at(S z) const {
+    const S y = std::sqrt(gap_ + z * z);
+    return z < S(0) && gap_ > S(0) ? gap_ / (y - z) : y + z;
+  }
+
+  // Neither side held, by w = y + z: w times what the distance exceeds, without a division.
+  [[nodiscard]] auto none_held_excess(S distance) const {
+    const S sum = low_.velocity + high_.velocity;
+    const S square = gap_ * gap_ / S(4);
+    return [=](S w) {
+      const S w2 = w * w;
+      return std::array<S, 3>{w * (w * (sum + w2 / S(4)) - distance) - square,
+                              w * (S(2) * sum + w2) - distance, S(2) * sum + S(3) * w2};
+    };
+  }
+  [[nodiscard]] Extremal none_held_motion(S w) const {
+    const S difference = w > S(0) ? gap_ / w : S(0);
+    const S z = (w - difference) / S(2);
+    return motion((w + difference) / S(2), z, z * z);
+  }
+  // A root of w^3 + 4 sum w = 4 distance, roughly.
+  [[nodiscard]] static S rough_root(S sum, S distance) {
+    const S t = S(4) * std::max(distance, std::numeric_limits<S>::min());
+    const S k = S(4) * sum;
+    const S g = rough_cube_root(t);
+    const S g2 = g * g;
+    if (k <= S(0)) return std::sqrt(g2 - k);
+    const S w = t / (k + g2);
+    return (w + t / (k + w * w)) / S(2);
+  }
+  template <class Visit>
+  [[nodiscard]] bool none_held(S from, S to, const Aim& aim, Visit& visit) const {
+    const S sum = low_.velocity + high_.velocity;
+    const S square = gap_ * gap_;
+    const auto f = [&](S w) {
+      const S inverse = w > S(0) ? S(1) / w : S(0);
+      const S ratio = square * inverse / S(4);
+      return std::array<S, 3>{w * (sum + w * w / S(4)) - ratio - aim.distance,
+                              sum + S(0.75) * w * w + ratio * inverse,
+                              S(1.5) * w - S(2) * ratio * inverse * inverse};
+    };
+    std::array<S, 2> turns{};
+    const S discriminant = S(4) * sum * sum - S(3) * square;
+    if (sum < S(0) && discriminant > S(0)) {
+      const S u = (S(-2) * sum + std::sqrt(discriminant)) / S(3);
+      turns = {std::sqrt(square / (S(3) * u)), std::sqrt(u)};
+    }
+    return roots(f, sum_at(from), sum_at(to), turns, aim.slack,
+                 [&](S w) { return visit(w > S(0) ? none_held_motion(w) : motion_at(from)); });
+  }
+
+  // One side held: by the acceleration x of the other one, whose velocity is `above` that of the held one.
+  [[nodiscard]] static auto one_held_excess(const Side& held, const Side& other, S above, S distance) {
+    const S c4 = S(1) / (S(2) * held.acceleration);
+    const S c2 = (held.velocity + above) * S(2) * c4 + held.rise / S(2);
+    const S c1 = S(2) * other.velocity;
+    const S c0 = held_distance(held, above) - distance;
+    return [=](S x) {
+      return std::array<S, 3>{c0 + x * (c1 + x * (c2 + x * (S(1) + x * c4))),
+                              c1 + x * (S(2) * c2 + x * (S(3) + x * S(4) * c4)),
+                              S(2) * c2 + x * (S(6) + x * S(12) * c4)};
+    };
+  }
+  template <class Visit>
+  [[nodiscard]] static bool one_held(const Side& held, const Side& other, S above, S from, S to,
+                                     const Aim& aim, const Visit& visit) {
+    const S a = held.acceleration;
+    std::array<S, 2> turns{};
+    const S discriminant = a * a - S(16) * other.velocity;
+    if (discriminant > S(0)) {
+      const S q = -(a + std::sqrt(discriminant)) / S(4);
+      turns = {q, other.velocity / q};
+    }
+    return roots(one_held_excess(held, other, above, aim.distance), from, to, turns, aim.slack, visit);
+  }
+  template <class Visit>
+  [[nodiscard]] bool low_held(S from, S to, const Aim& aim, Visit& visit) const {
+    return one_held(low_, high_, gap_, from, to, aim,
+                    [&](S z) { return visit(motion(low_.most, z, z * z)); });
+  }
+  template <class Visit>
+  [[nodiscard]] bool high_held(S from, S to, const Aim& aim, Visit& visit) const {
+    return one_held(high_, low_, -gap_, from, to, aim,
+                    [&](S y) { return visit(motion(y, high_.most, y * y - gap_)); });
+  }
+
+  template <class Visit>
+  [[nodiscard]] bool both_held(S from, const Aim& aim, Visit& visit) const {
+    const S a = S(1) / low_.acceleration, b = S(1) / high_.acceleration;
+    const S rise = (low_.rise + high_.rise) / S(2);
+    const auto f = [&](S gained) {
+      return std::array<S, 3>{
+          held_distance(low_, gap_ + gained) + held_distance(high_, gained) - aim.distance,
+          (high_.velocity + gained) * (a + b) + rise, a + b};
+    };
+    const S turn = -rise / (a + b) - high_.velocity;
+    return roots(f, from, to_gain(), {turn, turn}, aim.slack,
+                 [&](S gained) { return visit(motion(low_.most, high_.most, gained)); });
+  }
+
+  Task task_;
+  Side low_{}, high_{};
+  S gap_{};    // D
+  S shift_{};  // distance between the ends moved and the ends given
+  bool rising_{};
+};
+
+using Extremals = BasicExtremals<double>;
+
+}  // namespace cncplan
