@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/profile/stretch.hpp"
 #include "profile/state_case.hpp"
+#include "state/switching_oracle.hpp"
 #include "support/catch.hpp"
 #include "support/profile_oracle.hpp"
 
@@ -181,6 +183,85 @@ TEST_CASE("a start whose acceleration cannot end in time passes the speed limit,
   const auto p = profile::from_state(20.0, {29.0, 300.0}, 0.0, limits);
   REQUIRE(p);
   CHECK(p->peak().velocity == Approx(29.0 + 300.0 * 300.0 / 20000.0).epsilon(1e-14));
+}
+
+TEST_CASE("what was once planned with a hole, too slow, or refused") {
+  const auto covers = [](const StateCase& c, double at_most) {
+    const auto p = profile::from_state(c.length, c.start, c.end, c.limits);
+    INFO(c.literal());
+    REQUIRE(p);
+    const Travelled t = integrate(c.start, *p);
+    CHECK(static_cast<double>(std::abs(t.position - c.length)) < 1e-13 * c.length);
+    CHECK(static_cast<double>(std::abs(t.velocity - c.end)) < 1e-12);
+    CHECK(p->duration() <= at_most);
+  };
+  const double any = std::numeric_limits<double>::infinity();
+  covers(
+      {3.0650236081596911, {37.277411254633826, -0.97428280148323054}, 24.675722858302137, {30, 300, 10000}},
+      any);
+  covers(
+      {2.8048650123957648, {31.369841900898258, 102.10181401175032}, 0.095310610499423076, {30, 300, 10000}},
+      0.1566);
+  // the way there dips below its end speed
+  covers({1.0573160135663617, {21.869718360860936, 0}, 2.2832549965231017, {30, 1000, 10000}}, any);
+}
+
+TEST_CASE("starts beyond the limits cover the length, and return as fast as they can") {
+  test::Random random;
+  int solved = 0;
+  for (int n = 0; n < 200000; ++n) {
+    StateCase c = draw_state(random);
+    const double v = c.limits.velocity, a = c.limits.acceleration;
+    c.start.velocity = v * random.uniform(0.0, 3.0);
+    const double down = std::sqrt(2 * c.limits.jerk * c.start.velocity);
+    c.start.acceleration =
+        random.uniform(-std::min(down, 3 * a), std::min(3 * a, 3 * std::sqrt(c.limits.jerk * v)));
+    c.length *= 3;
+    const auto p = profile::from_state(c.length, c.start, c.end, c.limits);
+    if (!p) continue;
+    ++solved;
+    const Travelled t = integrate(c.start, *p);
+    const test::Real settled = profile::settled_speed(c.start, c.limits);
+    const test::Real highest = std::max<test::Real>({v, c.start.velocity, settled});
+    const test::Real steepest = std::max<test::Real>(a, std::abs(c.start.acceleration));
+    const test::Real rounding = 1e-12L * highest + 64e-16L * steepest * t.duration;
+    const bool kept = std::abs(t.position - c.length) <= 1e-12L * (c.length + highest * t.duration) &&
+                      std::abs(t.velocity - c.end) <= rounding && t.highest <= highest + rounding &&
+                      t.lowest >= -rounding && t.steepest <= steepest * (1 + 1e-12L);
+    if (kept) continue;
+    INFO(c.literal());
+    CHECK(static_cast<double>(t.position) == c.length);
+    CHECK(static_cast<double>(t.velocity) == c.end);
+    CHECK(static_cast<double>(t.highest) <= static_cast<double>(highest));
+    CHECK(static_cast<double>(t.lowest) >= 0.0);
+    CHECK(static_cast<double>(t.steepest) <= static_cast<double>(steepest));
+  }
+  CHECK(solved > 50000);
+}
+
+TEST_CASE("no forward motion of any switching pattern is faster, and none exists where it refuses") {
+  test::Random random;
+  int refused = 0, near = 0, solved = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const StateCase c = draw_state(random);
+    const test::AxisCase axis{
+        {0, c.start.velocity, c.start.acceleration},
+        {c.length, c.end, 0},
+        {c.limits.velocity, 0, c.limits.acceleration, c.limits.acceleration, c.limits.jerk}};
+    const test::Real found = test::SwitchingOracle(axis).fastest();
+    const auto p = profile::from_state(c.length, c.start, c.end, c.limits);
+    INFO(c.literal());
+    if (!p) {
+      ++refused;
+      CHECK_FALSE(std::isfinite(found));
+      continue;
+    }
+    ++solved;
+    if (!(p->duration() <= found * (1 + 1e-9L))) CHECK(p->duration() == static_cast<double>(found));
+    if (found <= p->duration() * (1 + 1e-9L)) ++near;
+  }
+  CHECK(refused > 200);
+  CHECK(near > solved * 0.99);
 }
 
 TEST_CASE("slower end speeds than the bound of a refusal may be had") {

@@ -2,15 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <optional>
 #include <type_traits>
 
+#include "cncplan/core/bracketed_root.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/state.hpp"
+#include "cncplan/core/transfer.hpp"
 #include "cncplan/profile/profile.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 
@@ -20,7 +23,7 @@ namespace cncplan::profile {
 template <std::floating_point S>
 struct BasicStartState {
   S velocity{};      ///< mm/s, >= 0
-  S acceleration{};  ///< mm/s^2, within the limit
+  S acceleration{};  ///< mm/s^2
 
   friend bool operator==(const BasicStartState&, const BasicStartState&) = default;
 };
@@ -36,7 +39,8 @@ template <std::floating_point S>
 
 /// The fastest ramp from a state to a speed with zero acceleration. With s the sign of the change still to be
 /// made behind the settled speed, and all quantities times s, the speed gained up to a peak acceleration p
-/// and down to zero is (2 p^2 - a0^2) / (2 J); p is cut at the acceleration limit, which is then held.
+/// and down to zero is (2 p^2 - a0^2) / (2 J); p is cut at the acceleration limit, which is then held. From
+/// above that limit the acceleration comes down to it, which gains a0^2 / (2 J) with the way down to zero.
 template <std::floating_point S>
 [[nodiscard]] BasicRamp<S> ramp_from(const BasicStartState<S>& start, S target,
                                      const BasicLimits<S>& limits) {
@@ -50,10 +54,13 @@ template <std::floating_point S>
   S hold = S(0);
   if (peak > limits.acceleration) {
     peak = limits.acceleration;
-    hold = std::max((change - (S(2) * peak * peak - from * from) / (S(2) * jerk)) / peak, S(0));
+    const S gained = from > peak ? from * from : S(2) * peak * peak - from * from;
+    hold = std::max((change - gained / (S(2) * jerk)) / peak, S(0));
+  } else {
+    peak = std::max(peak, from);
   }
-  peak = std::max(peak, from);
-  return {(peak - from) / jerk, hold, peak / jerk, sign * peak, sign * jerk};
+  return {std::abs(peak - from) / jerk, hold, peak / jerk, sign * peak,
+          peak < from ? -sign * jerk : sign * jerk};
 }
 
 /// Distance of a ramp that begins in a state.
@@ -63,7 +70,8 @@ template <std::floating_point S>
   const BasicState<S> rising = first.at(ramp.first);
   const BasicPhase<S> hold{S(0), ramp.hold, rising.position, rising.velocity, ramp.acceleration, S(0)};
   const BasicState<S> held = hold.at(ramp.hold);
-  const BasicPhase<S> last{S(0), ramp.last, held.position, held.velocity, ramp.acceleration, -ramp.jerk};
+  const BasicPhase<S> last{S(0),          ramp.last,         held.position,
+                           held.velocity, ramp.acceleration, ramp.last_jerk()};
   return last.at(ramp.last).position;
 }
 
@@ -93,25 +101,24 @@ template <std::floating_point S>
   return share_rounding<S> * (length + way_to_rest);
 }
 
-// The state itself, or what is wrong with it: not finite, running backwards, accelerating beyond the limit,
+// The state itself, or what is wrong with it: not finite, running backwards, accelerating beyond `most`,
 // or bound to run backwards because it brakes too hard (bound: the speed at which its acceleration is gone).
 // One that is so by no more than a profile's rounding is moved to the limit.
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicStartState<S>> check(const BasicStartState<S>& start,
-                                                 const BasicLimits<S>& limits) {
+                                                 const BasicLimits<S>& limits, S most) {
   if (auto valid = validate(limits); !valid) return tl::unexpected(valid.error());
   const auto [v, a] = start;
   if (!std::isfinite(v)) return refusal(ErrorCode::not_finite, "start speed", v, S(0));
   if (!std::isfinite(a)) return refusal(ErrorCode::not_finite, "start acceleration", a, S(0));
   const S settled = settled_speed(start, limits);
   constexpr S own_rounding = S(16) * std::numeric_limits<S>::epsilon();
-  if (v >= S(0) && std::abs(a) <= limits.acceleration * (S(1) + own_rounding) && settled >= -own_rounding * v)
-    return start;
+  if (v >= S(0) && std::abs(a) <= most * (S(1) + own_rounding) && settled >= -own_rounding * v) return start;
   const S rounding = speed_rounding(start, limits);
   if (v < -rounding) return refusal(ErrorCode::negative, "start speed", v, S(0));
-  if (std::abs(a) > limits.acceleration * (S(1) + share_rounding<S>))
-    return refusal(ErrorCode::above_limit, "start acceleration", a, limits.acceleration);
-  const S held = std::clamp(a, -limits.acceleration, limits.acceleration);
+  if (std::abs(a) > most * (S(1) + share_rounding<S>))
+    return refusal(ErrorCode::above_limit, "start acceleration", a, most);
+  const S held = std::clamp(a, -most, most);
   const S lost = -settled_speed({S(0), held}, limits);
   if (v - lost < -rounding) return refusal(ErrorCode::below_limit, "start acceleration", a, settled);
   return BasicStartState<S>{std::max({v, lost, S(0)}), held};
@@ -121,10 +128,10 @@ template <std::floating_point S>
 
 /// To rest as soon as the limits allow, wherever that is: what a feed hold does. The profile's length is the
 /// distance that it takes. Any state of a profile is accepted, to rounding: see `from_state`. Errors: a state
-/// that is not finite, goes backwards, or must come to do so.
+/// that is not finite, goes backwards, or must come to do so, or whose acceleration is beyond its limit.
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicProfile<S>> stop(const BasicStartState<S>& start, const BasicLimits<S>& limits) {
-  const auto state = detail::check(start, limits);
+  const auto state = detail::check(start, limits, limits.acceleration);
   if (!state) return tl::unexpected(state.error());
   const BasicRamp<S> ramp = ramp_from(*state, S(0), limits);
   return BasicProfile<S>({.length = distance(*state, ramp),
@@ -137,9 +144,10 @@ template <std::floating_point S>
                           .down = {}});
 }
 
-/// The fastest motion from a state to an end speed (zero acceleration) over exactly `length` mm. A start
-/// above the speed limit is brought down to it as fast as the other limits allow; one below it whose
-/// acceleration cannot end in time (`settled_speed` above the limit) passes it first: `peak()` tells.
+/// The fastest motion from a state to an end speed (zero acceleration) over exactly `length` mm, going
+/// forward all the time. A start beyond the limits returns to them as fast as the other limits allow:
+/// acceleration first, then a speed that is above V, or that passes V before its acceleration can end
+/// (`settled_speed` above V): `peak()` tells. Only what no forward motion can do is refused.
 ///
 /// Any state of a profile (`s = p.at(t)`) of any solver within the same limits is accepted, with the length
 /// left (`p.length() - s.position`) and the profile's end speed. Where it would be refused for rounding
@@ -155,13 +163,10 @@ template <std::floating_point S>
 /// hardly any acceleration left may step likewise by up to 4 v sqrt(eps v / J): what it takes to make up for
 /// the rounding of v.
 ///
-/// Three families, by growing length: braking all the way, with the brake released for a while at first; from
-/// the settled speed (or the end speed, if that is higher) up to a top speed and down again; and the same
-/// with a cruise at the speed limit. Within each the distance grows with one parameter, which is found by
-/// halving an interval eight times more often than there are digits, at most. Errors: as `stop`, as the other
-/// solvers; `end_speed_unreachable`, where the length is too short, with the bound that they give. A slower
-/// end speed than the bound, rest among them, may be reachable again: the shortest way does not always grow
-/// as its end speed falls.
+/// Closed forms: see `BasicExtremals`. Errors: as `stop`, but for an acceleration beyond its limit; as the
+/// other solvers; `end_speed_unreachable`, where the length is too short, with the bound that they give. A
+/// slower end speed than the bound, rest among them, may be reachable again: the shortest way does not always
+/// grow as its end speed falls.
 template <std::floating_point S = double>
 [[nodiscard]] Expected<BasicProfile<S>> from_state(std::type_identity_t<S> length,
                                                    const BasicStartState<S>& start,
@@ -175,7 +180,7 @@ template <std::floating_point S>
 class FromState {
  public:
   FromState(S length, const BasicStartState<S>& start, S end_velocity, const BasicLimits<S>& limits)
-      : length_(length), start_(start), end_(end_velocity), limits_(limits), law_(seven_phase_law(limits)) {}
+      : length_(length), start_(start), end_(end_velocity), limits_(limits) {}
 
   [[nodiscard]] Expected<BasicProfile<S>> solve() const {
     if (const auto exact = fitting()) return *exact;
@@ -186,24 +191,41 @@ class FromState {
   }
 
  private:
-  // The three families.
+  // The fastest forward motion: a profile as long as told, if there is one.
   [[nodiscard]] std::optional<BasicProfile<S>> fitting() const {
-    const S settled = std::max(settled_speed(start_, limits_), S(0));
-    const S least_top = std::max(settled, end_);
-    if (covered(least_top) <= length_ || least_top > limits_.velocity) {
-      const S top = least_top > limits_.velocity ? std::max(limits_.velocity, end_)
-                                                 : highest([&](S speed) { return covered(speed) <= length_; },
-                                                           least_top, limits_.velocity);
-      if (covered(top) <= length_) return through(top);
-    }
-    if (end_ < settled && start_.acceleration < S(0)) {
-      const auto released = [&](S acceleration) { return release(acceleration).length() <= length_; };
-      if (released(start_.acceleration)) {
-        const S least = highest(released, start_.acceleration, S(0));
-        return release(least, length_);
-      }
-    }
-    return {};
+    const BasicAxisLimits<S> forward{.velocity_up = limits_.velocity,
+                                     .velocity_down = S(0),
+                                     .acceleration_up = limits_.acceleration,
+                                     .acceleration_down = limits_.acceleration,
+                                     .jerk = limits_.jerk};
+    const BasicTransfer<S> transfer({S(0), start_.velocity, start_.acceleration}, {length_, end_, S(0)},
+                                    forward);
+    const auto first = transfer.first_from(S(0));
+    if (!std::isfinite(first.duration)) return {};
+    return profile_of(transfer.phases(first.extremal, first.sign));
+  }
+
+  // Nine phases as two ramps and a cruise. Where the return to the limits brakes for a while, or its jerk is
+  // opposite to what follows, that is let go behind it; else both are one phase.
+  [[nodiscard]] BasicProfile<S> profile_of(const typename BasicTransfer<S>::Phases& p) const {
+    const auto& [forced, braked, rise, held, let_go, cruise, fall, held_last, let_go_last] = p;
+    const bool opposite = forced.duration > S(0) && forced.jerk * rise.jerk < S(0);
+    BasicRamp<S> up{forced.duration, braked.duration, rise.duration, rise.acceleration, forced.jerk};
+    if (!(rise.duration > S(0) && (braked.duration > S(0) || opposite)))
+      up = {forced.duration + rise.duration, braked.duration + held.duration, let_go.duration,
+            held.acceleration, forced.duration > S(0) ? forced.jerk : rise.jerk};
+    BasicAxisState<S> top{S(0), start_.velocity, start_.acceleration};
+    for (const auto* phase : {&forced, &braked, &rise, &held, &let_go})
+      top = phase->after(top, phase->duration);
+    return BasicProfile<S>({.length = length_,
+                            .start_velocity = start_.velocity,
+                            .start_acceleration = start_.acceleration,
+                            .top_velocity = cruise.duration > S(0) ? limits_.velocity : top.velocity,
+                            .end_velocity = end_,
+                            .cruise = cruise.duration,
+                            .up = up,
+                            .down = {fall.duration, held_last.duration, let_go_last.duration,
+                                     held_last.acceleration, fall.jerk}});
   }
 
   // The settled speed is at the end speed, to rounding. There a ramp for what lacks would have to begin anew,
@@ -242,73 +264,24 @@ class FromState {
                             .down = {}});
   }
 
-  // The largest parameter in [low, high] for which a condition holds that holds at `low`.
-  template <class Condition>
-  [[nodiscard]] static S highest(const Condition& holds, S low, S high) {
-    if (holds(high)) return high;
-    for (int halving = 0; halving < std::numeric_limits<S>::digits + 8; ++halving) {
-      const S middle = low + (high - low) / S(2);
-      if (!(middle > low && middle < high)) break;
-      (holds(middle) ? low : high) = middle;
-    }
-    return low;
-  }
-
-  [[nodiscard]] S covered(S top) const {
-    return distance(start_, ramp_from(start_, top, limits_)) + law_.distance(top, end_);
-  }
-
-  // By way of a top speed; what is left of the length is a cruise.
-  [[nodiscard]] BasicProfile<S> through(S top) const {
-    const S left = length_ - covered(top);
-    return BasicProfile<S>({.length = length_,
-                            .start_velocity = start_.velocity,
-                            .start_acceleration = start_.acceleration,
-                            .top_velocity = top,
-                            .end_velocity = end_,
-                            .cruise = left > S(0) && top > S(0) ? left / top : S(0),
-                            .up = ramp_from(start_, top, limits_),
-                            .down = law_.ramp(std::sqrt(top - end_), end_ - top)});
-  }
-
-  // The brake released to a (negative) acceleration, then a ramp to the end speed. As long as it is, or as
-  // told.
-  [[nodiscard]] BasicProfile<S> release(S acceleration, S length = S(-1)) const {
-    const BasicPhase<S> releasing{S(0),
-                                  (acceleration - start_.acceleration) / limits_.jerk,
-                                  S(0),
-                                  start_.velocity,
-                                  start_.acceleration,
-                                  limits_.jerk};
-    const BasicState<S> then = releasing.at(releasing.duration);
-    const BasicStartState<S> state{then.velocity, acceleration};
-    const BasicRamp<S> down = ramp_from(state, end_, limits_);
-    const S whole = then.position + distance(state, down);
-    return BasicProfile<S>({.length = length < S(0) ? whole : length,
-                            .start_velocity = start_.velocity,
-                            .start_acceleration = start_.acceleration,
-                            .top_velocity = then.velocity,
-                            .end_velocity = end_,
-                            .cruise = S(0),
-                            .up = {releasing.duration, S(0), S(0), acceleration, limits_.jerk},
-                            .down = down});
-  }
-
-  // The end speed nearest to the wanted one, on the way to it, that the length allows.
+  // The end speed nearest to the wanted one, on the way to it, that the length allows: the root of a direct
+  // ramp's distance. That changes by p/(2 J) + e/p with the speed e to which it leads, p being its peak.
   [[nodiscard]] S reachable() const {
     const S settled = std::max(settled_speed(start_, limits_), S(0));
-    const auto fits = [&](S share) {
-      const S speed = settled + (end_ - settled) * share;
-      return distance(start_, ramp_from(start_, speed, limits_)) <= length_;
+    const auto excess = [&](S speed) {
+      const BasicRamp<S> ramp = ramp_from(start_, speed, limits_);
+      const S p = ramp.acceleration;
+      return std::array<S, 3>{distance(start_, ramp) - length_, p / (S(2) * limits_.jerk) + speed / p,
+                              S(1) / p};
     };
-    return settled + (end_ - settled) * (fits(S(0)) ? highest(fits, S(0), S(1)) : S(0));
+    S speed = settled;
+    return excess(settled)[0] <= S(0) && root_between(excess, settled, end_, S(0), speed) ? speed : settled;
   }
 
   S length_;
   BasicStartState<S> start_;
   S end_;
   BasicLimits<S> limits_;
-  BasicRampLaw<S> law_;
 };
 
 }  // namespace detail
@@ -316,12 +289,12 @@ class FromState {
 template <std::floating_point S>
 Expected<BasicProfile<S>> from_state(std::type_identity_t<S> length, const BasicStartState<S>& start,
                                      std::type_identity_t<S> end_velocity, const BasicLimits<S>& limits) {
-  const auto state = detail::check(start, limits);
+  const auto state = detail::check(start, limits, std::numeric_limits<S>::infinity());
   if (!state) return tl::unexpected(state.error());
   const auto check = [](S value, S bound, std::string_view field) -> Expected<void> {
-    if (!std::isfinite(value)) return detail::refusal(ErrorCode::not_finite, field, value, S(0));
-    if (value < S(0)) return detail::refusal(ErrorCode::negative, field, value, S(0));
-    if (value > bound) return detail::refusal(ErrorCode::above_limit, field, value, bound);
+    if (!std::isfinite(value)) return refusal(ErrorCode::not_finite, field, value, S(0));
+    if (value < S(0)) return refusal(ErrorCode::negative, field, value, S(0));
+    if (value > bound) return refusal(ErrorCode::above_limit, field, value, bound);
     return {};
   };
   const bool behind = length < S(0) && length >= -detail::length_rounding(S(0), *state, limits);

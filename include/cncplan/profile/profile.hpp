@@ -12,8 +12,9 @@
 
 namespace cncplan::profile {
 
-/// A change of speed: jerk for `first`, constant acceleration for `hold`, the opposite jerk for `last`.
-/// Acceleration and jerk are signed: both negative when it brakes.
+/// A change of speed: jerk for `first`, constant acceleration for `hold`, jerk against that acceleration for
+/// `last`. Acceleration and jerk are signed: both negative when it brakes. Only where a ramp begins with more
+/// acceleration than it holds have they different signs.
 ///
 ///      acceleration     ________
 ///                      /        \           .
@@ -25,8 +26,12 @@ struct BasicRamp {
   S hold{};          ///< s
   S last{};          ///< s
   S acceleration{};  ///< mm/s^2, during `hold`
-  S jerk{};          ///< mm/s^3, during `first`; its opposite during `last`
+  S jerk{};          ///< mm/s^3, during `first`
 
+  /// mm/s^3, during `last`.
+  [[nodiscard]] constexpr S last_jerk() const {
+    return jerk != S(0) && (jerk > S(0)) == (acceleration < S(0)) ? jerk : -jerk;
+  }
   [[nodiscard]] constexpr S duration() const { return first + hold + last; }
 
   friend bool operator==(const BasicRamp&, const BasicRamp&) = default;
@@ -81,7 +86,7 @@ class BasicProfile {
     std::array<Phase, phase_count> table{};
     table[0] = {S(0), up.first, S(0), start_velocity, start_acceleration, up.jerk};
     table[1] = after(table[0], up.hold, up.acceleration, S(0));
-    table[2] = after(table[1], up.last, up.acceleration, -up.jerk);
+    table[2] = after(table[1], up.last, up.acceleration, up.last_jerk());
     table[3] = after(table[2], cruise, S(0), S(0));
     table[3].velocity = top_velocity;
     const S total = duration();
