@@ -1,0 +1,145 @@
+// The fastest motion of one axis: exact, within its limits, and no slower than any other.
+#include <cmath>
+#include <string>
+
+#include "cncplan/state/axis_motions.hpp"
+#include "state/axis_case.hpp"
+#include "state/switching_oracle.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using test::AxisCase;
+
+namespace {
+
+state::BasicMotion<double> fastest(const AxisCase& c) {
+  const auto motions = state::axis_motions(c.from, c.to, c.limits);
+  REQUIRE(motions);
+  return motions->fastest();
+}
+
+}  // namespace
+
+TEST_CASE("random motions end at their targets and keep their limits") {
+  test::Random random;
+  for (int n = 0; n < 300000; ++n) {
+    const AxisCase c = test::draw_axis_case(random, random.integer(0, 4) == 0);
+    const auto motions = state::axis_motions(c.from, c.to, c.limits);
+    if (!motions) FAIL("refused: " << c.literal());
+    const auto errors = test::examine(c, motions->fastest());
+    if (errors.target() < 1e-11 && errors.limits() < 1e-12) continue;
+    INFO(c.literal());
+    CHECK(errors.target() < 1e-11);
+    CHECK(errors.limits() < 1e-12);
+  }
+}
+
+TEST_CASE("no motion of any switching pattern is faster") {
+  test::Random random;
+  int near = 0;
+  constexpr int cases = 4000;
+  for (int n = 0; n < cases; ++n) {
+    const AxisCase c = test::draw_axis_case(random);
+    const test::Real duration = fastest(c).duration();
+    const test::Real found = test::SwitchingOracle(c).fastest();
+    if (!(duration <= found * (1 + 1e-9L) + 1e-12L)) {
+      INFO(c.literal());
+      CHECK(static_cast<double>(duration) == static_cast<double>(found));
+    }
+    if (found <= duration * (1 + 1e-9L) + 1e-12L) ++near;
+  }
+  CHECK(near > cases * 0.99);  // or the search proves nothing
+}
+
+TEST_CASE("a move to where an axis stands takes no time") {
+  const AxisLimits limits{30, 30, 300, 300, 10000};
+  CHECK(fastest({{5, 0, 0}, {5, 0, 0}, limits}).duration() == 0);
+  CHECK(fastest({{5, 10, 100}, {5, 10, 100}, limits}).duration() < 1e-15);
+}
+
+TEST_CASE("from rest to rest it is the known profile") {
+  // J t^3 = 4 L / 8 for a quarter of the time
+  const auto m = fastest({{0, 0, 0}, {1, 0, 0}, {1000, 1000, 1e6, 1e6, 10000}});
+  CHECK(m.duration() == Approx(4 * std::cbrt(1.0 / 2 / 10000)).epsilon(1e-14));
+}
+
+TEST_CASE("motion goes back where that is the only way") {
+  // 2 mm ahead at 10 mm/s cannot be stopped for in 0.01 mm
+  const auto m = fastest({{0, 10, 0}, {0.01, 0, 0}, {30, 30, 300, 300, 10000}});
+  CHECK(m.extrema().highest > 0.1);
+  CHECK(m.at(m.duration()) == AxisState{0.01, 0, 0});
+}
+
+TEST_CASE("limits that differ between the directions bind in theirs") {
+  const AxisCase c{{0, 0, 0}, {100, 0, 0}, {20, 5, 1000, 100, 1e6}};
+  const auto there = fastest(c);
+  const auto back = fastest({c.to, c.from, c.limits});
+  CHECK(there.duration() == Approx(100.0 / 20 + 20.0 / 2 * (1.0 / 1000 + 1.0 / 100)).epsilon(1e-3));
+  CHECK(back.duration() == Approx(100.0 / 5 + 5.0 / 2 * (1.0 / 1000 + 1.0 / 100)).epsilon(1e-3));
+}
+
+TEST_CASE("without a limit of acceleration, or of jerk") {
+  constexpr double none = AxisLimits::infinity;
+  const auto free = fastest({{0, 0, 0}, {100, 0, 0}, {30, 30, none, none, 10000}});
+  CHECK(free.duration() == Approx(100.0 / 30 + 2 * std::sqrt(30.0 / 10000)).epsilon(1e-14));
+  const auto sharp = fastest({{0, 0, 0}, {100, 0, 0}, {30, 30, 300, 300, none}});
+  CHECK(sharp.duration() == Approx(100.0 / 30 + 30.0 / 300).epsilon(1e-14));
+  const auto back = fastest({{0, 20, 0}, {-1, -3, 0}, {30, 30, 300, 300, none}});
+  CHECK(back.at(back.duration()) == AxisState{-1, -3, 0});
+  test::Random random;
+  for (int n = 0; n < 20000; ++n) {
+    AxisCase c = test::draw_axis_case(random);
+    c.limits.jerk = none;
+    c.from.acceleration = c.to.acceleration = 0;
+    const auto errors = test::examine(c, fastest(c));
+    if (errors.target() < 1e-11 && errors.limits() < 1e-12) continue;
+    INFO(c.literal());
+    CHECK(errors.target() < 1e-11);
+    CHECK(errors.limits() < 1e-12);
+  }
+}
+
+TEST_CASE("what cannot be planned is refused by name") {
+  const AxisLimits limits{30, 20, 300, 200, 10000};
+  const auto error = [](const AxisState& from, const AxisState& to, const AxisLimits& l) {
+    const auto motions = state::axis_motions(from, to, l);
+    REQUIRE_FALSE(motions);
+    return motions.error();
+  };
+  CHECK(error({}, {1, 31, 0}, limits) == Error{ErrorCode::above_limit, "target velocity", 31, 30});
+  CHECK(error({}, {1, -21, 0}, limits) == Error{ErrorCode::below_limit, "target velocity", -21, -20});
+  CHECK(error({}, {1, 0, -201}, limits) == Error{ErrorCode::below_limit, "target acceleration", -201, -200});
+  // to be at 29.9 with -200 it would have to come from 31.9
+  CHECK(error({}, {1, 29.9, -200}, limits) ==
+        Error{ErrorCode::above_limit, "target acceleration", 29.9 + 2, 30});
+  CHECK(error({NAN, 0, 0}, {}, limits).field == "start");
+  CHECK(error({}, {INFINITY, 0, 0}, limits).field == "target");
+  CHECK(error({}, {}, {30, 30, 0, 300, 10000}).code == ErrorCode::not_positive);
+  CHECK(error({}, {}, {AxisLimits::infinity, 30, 300, 300, 10000}).code == ErrorCode::not_finite);
+  CHECK(error({}, {}, {30, 30}).field == "acceleration limit");
+}
+
+TEST_CASE("in float") {
+  test::Random random;
+  for (int n = 0; n < 100000; ++n) {
+    AxisCase c = test::draw_axis_case(random);
+    const auto to_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+    for (double* x : {&c.from.velocity, &c.from.acceleration, &c.to.position, &c.to.velocity,
+                      &c.to.acceleration, &c.limits.velocity_up, &c.limits.velocity_down,
+                      &c.limits.acceleration_up, &c.limits.acceleration_down, &c.limits.jerk})
+      *x = to_float(*x);
+    const auto f = [](double x) { return static_cast<float>(x); };
+    const auto& l = c.limits;
+    const auto motions = state::axis_motions<float>(
+        {0, f(c.from.velocity), f(c.from.acceleration)},
+        {f(c.to.position), f(c.to.velocity), f(c.to.acceleration)},
+        {f(l.velocity_up), f(l.velocity_down), f(l.acceleration_up), f(l.acceleration_down), f(l.jerk)});
+    INFO(c.literal());
+    if (!motions) FAIL("refused");
+    const auto errors = test::examine(c, motions->fastest());
+    if (errors.target() < 2e-4 && errors.limits() < 1e-4) continue;
+    CHECK(errors.target() < 2e-4);
+    CHECK(errors.limits() < 1e-4);
+  }
+}
