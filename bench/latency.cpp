@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "axis_move.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/from_state.hpp"
 #include "cncplan/profile/seven_phase.hpp"
@@ -16,15 +17,21 @@ using namespace cncplan;
 using bench::keep;
 
 // Calls `work` with one random case after another, and prints how long the calls took.
-template <class Work>
-void measure(const char* name, std::size_t count, const Work& work) {
+template <class Draw, class Work>
+void measure(const char* name, std::size_t count, const Draw& draw, const Work& work) {
   constexpr std::size_t cases = 4096;
   test::Random random;
-  std::vector<test::ProfileCase> drawn;
-  while (drawn.size() < cases) drawn.push_back(test::draw(random));
+  std::vector<decltype(draw(random))> drawn;
+  while (drawn.size() < cases) drawn.push_back(draw(random));
   bench::Latencies latencies(count);
   for (std::size_t i = 0; i < count; ++i) latencies.time([&] { work(drawn[(i * 2654435761U) % cases]); });
   latencies.print(name);
+}
+
+template <class Work>
+void measure(const char* name, std::size_t count, const Work& work) {
+  measure(
+      name, count, [](test::Random& random) { return test::draw(random); }, work);
 }
 
 }  // namespace
@@ -42,4 +49,7 @@ int main(int argc, char** argv) {
   measure("stop", count, [&](const test::ProfileCase& c) {
     keep(profile::stop(profile::StartState{c.speeds.start, 0.0}, c.limits));
   });
+  measure(
+      "move_to, one axis", count, [](test::Random& random) { return bench::draw_axis_move(random, false); },
+      [&](const bench::AxisMove& m) { keep(move_to(m.from, m.to, m.axis)); });
 }

@@ -170,6 +170,7 @@
 #include "cncplan/state/move.hpp"
 #include "cncplan/state/move_options.hpp"
 #include "cncplan/state/reach_velocity.hpp"
+#include "cncplan/state/rest_to_rest.hpp"
 #include "cncplan/state/synchronized.hpp"
 #include "cncplan/state/travel.hpp"
 #include "cncplan/state/velocity_change.hpp"

@@ -1,8 +1,10 @@
 // The fastest motion of one axis: exact, within its limits, and no slower than any other.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "cncplan/state/axis_motions.hpp"
+#include "cncplan/state/rest_to_rest.hpp"
 #include "state/axis_case.hpp"
 #include "state/switching_oracle.hpp"
 #include "support/catch.hpp"
@@ -62,6 +64,23 @@ TEST_CASE("from rest to rest it is the known profile") {
   // J t^3 = 4 L / 8 for a quarter of the time
   const auto m = fastest({{0, 0, 0}, {1, 0, 0}, {1000, 1000, 1e6, 1e6, 10000}});
   CHECK(m.duration() == Approx(4 * std::cbrt(1.0 / 2 / 10000)).epsilon(1e-14));
+}
+
+TEST_CASE("rest to rest without a search is the motion that the search finds") {
+  test::Random random;
+  double slowest = 0, worst = 0;
+  for (int n = 0; n < 100000; ++n) {
+    AxisCase c = test::draw_axis_case(random);
+    c.from = {}, c.to.velocity = c.to.acceleration = 0;
+    c.limits.acceleration_down = c.limits.acceleration_up;
+    if (!state::at_rest(c.from, c.to, c.limits)) continue;
+    const auto direct = state::rest_to_rest(c.from, c.to, c.limits);
+    const auto errors = test::examine(c, direct);
+    slowest = std::max(slowest, std::abs(direct.duration() / fastest(c).duration() - 1));
+    worst = std::max({worst, errors.target(), errors.limits()});
+  }
+  CHECK(slowest < 1e-13);
+  CHECK(worst < 1e-13);
 }
 
 TEST_CASE("motion goes back where that is the only way") {

@@ -42,7 +42,9 @@ class BasicMotion {
   [[nodiscard]] constexpr S duration() const { return duration_; }
   [[nodiscard]] constexpr const State& start() const { return start_; }
   [[nodiscard]] constexpr const State& end() const { return end_; }
-  [[nodiscard]] constexpr std::span<const Phase> phases() const { return {phases_.data(), count_}; }
+  /// They lie in the motion.
+  [[nodiscard]] constexpr std::span<const Phase> phases() const& { return {phases_.data(), count_}; }
+  void phases() const&& = delete;
 
   /// State at t; before the start the state there, behind the end on from there at its acceleration.
   [[nodiscard]] constexpr State at(S t) const {

@@ -9,6 +9,7 @@
 #include "cncplan/state/axis_motions.hpp"
 #include "cncplan/state/motion.hpp"
 #include "cncplan/state/move_options.hpp"
+#include "cncplan/state/rest_to_rest.hpp"
 #include "cncplan/state/travel.hpp"
 
 namespace cncplan::state {
@@ -21,10 +22,18 @@ template <std::floating_point S>
                                             const BasicMoveOptions<S>& options = {}) {
   if (const auto ok = validate(options); !ok) return tl::unexpected(ok.error());
   if (const auto ok = validate(from, to, limits); !ok) return tl::unexpected(ok.error());
-  const BasicAxisMotions<S> motions(from, to, limits);
-  BasicMotion<S> motion = motions.fastest();
-  if (motion.duration() < options.minimum_duration)
-    motion = motions.lasting(motions.duration_from(options.minimum_duration));
+  const auto longer = [&](const BasicAxisMotions<S>& motions) {
+    return motions.lasting(motions.duration_from(options.minimum_duration));
+  };
+  BasicMotion<S> motion;
+  if (at_rest(from, to, limits)) {
+    motion = rest_to_rest(from, to, limits);
+    if (motion.duration() < options.minimum_duration) motion = longer({from, to, limits});
+  } else {
+    const BasicAxisMotions<S> motions(from, to, limits);
+    motion = motions.fastest();
+    if (motion.duration() < options.minimum_duration) motion = longer(motions);
+  }
   if (const auto ok = within_travel(motion, limits); !ok) return tl::unexpected(ok.error());
   return motion;
 }

@@ -70,7 +70,8 @@ class BasicVelocityChange {
       return m;
     };
     BasicAxisState<S> end = from_;
-    for (const auto& phase : drive({}).phases()) end = phase.after(end, phase.duration);
+    const Motion open = drive({});
+    for (const auto& phase : open.phases()) end = phase.after(end, phase.duration);
     return drive({end.position, velocity_, S(0)});
   }
 
