@@ -58,12 +58,33 @@ inline bool finite(const gcode::Motion& motion) {
          std::isfinite(motion.feed.value_or(0.0));
 }
 
+/// Reads on behind lines in error, as a check of a whole program does: what comes out is finite, and no line
+/// with an error behind which was read yields another one on the same line.
+inline void check_recovery(std::string_view text, const gcode::Dialect& dialect) {
+  gcode::Reader reader(dialect);
+  gcode::TextLines lines(text);
+  int steps = 0, last_error = 0;
+  gcode::read_program(
+      lines, reader,
+      [&](const gcode::Item& item) {
+        if (const auto* motion = std::get_if<gcode::Motion>(&item))
+          require(finite(*motion), "numbers are finite behind an error");
+        return ++steps < 10000;
+      },
+      [&](const gcode::Diagnostic& problem) {
+        require(problem.line > last_error, "a line has one error");
+        last_error = problem.line;
+        return true;
+      });
+}
+
 /// Reads the bytes line by line: no more items on a line than promised, every number finite, motions joined
 /// end to start, every error within its line and with a sentence. What was read can be written and read
 /// again, to the same motions bit for bit as long as the offset does not change.
 inline void check_gcode(std::string_view bytes) {
   if (bytes.empty()) return;
   const gcode::Dialect& dialect = dialects()[static_cast<unsigned char>(bytes[0]) % dialects().size()];
+  check_recovery(bytes.substr(1), dialect);
   gcode::Reader reader(dialect);
   gcode::TextLines lines(bytes.substr(1));
   std::array<gcode::Item, gcode::max_items_per_line> items;

@@ -31,6 +31,9 @@ struct CycleWords {
   double peck{};   ///< mm, above 0
 };
 
+/// Most pecks of a hole.
+inline constexpr double max_pecks = 1e6;
+
 /// One step of a cycle; places in the plane's first, second and third coordinate. A lift is a rapid of the
 /// third one alone.
 struct CycleStep {

@@ -337,7 +337,8 @@ class Reader {
       const double radius = std::max(std::abs(motion.start[0]), std::abs(motion.end[0]));
       per_minute = std::min(most_revolutions_, *surface_speed_ / (2.0 * std::numbers::pi * radius));
     }
-    return *modal_.feed * per_minute / 60.0;
+    const double feed = *modal_.feed * per_minute / 60.0;
+    return std::isfinite(feed) ? std::optional<double>(feed) : std::nullopt;  // at the axis, without D
   }
 
   /// G96 D S: the surface speed S, m/min (feet per minute in inches), at D revolutions per minute at most;
@@ -375,11 +376,16 @@ class Reader {
     if (!is_cycle(motion)) return {};
     const CycleWords words = cycle_words(modal);
     const auto [r, bottom] = cycle_heights(words, modal);
-    if (bottom <= r) return {};
-    return tl::unexpected(
-        Diagnostic{{ErrorCode::below_limit, "R", r, bottom},
-                   0,
-                   std::max(1, block_.first_column(block_.has('R') ? bit('R') : bits("XYZ")))});
+    const auto at = [this](char letter) {
+      return std::max(1, block_.first_column(block_.has(letter) ? bit(letter) : bits("RXYZ")));
+    };
+    if (r < bottom) return tl::unexpected(Diagnostic{{ErrorCode::below_limit, "R", r, bottom}, 0, at('R')});
+    const double rounding =
+        4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(r), std::abs(bottom));
+    const double shortest = std::max((r - bottom) / max_pecks, rounding);
+    if (is_peck(motion) && words.peck < shortest)
+      return tl::unexpected(Diagnostic{{ErrorCode::below_limit, "Q", words.peck, shortest}, 0, at('Q')});
+    return {};
   }
 
   /// The words of a cycle, with those of the line before where this one has none.
