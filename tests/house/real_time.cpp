@@ -20,6 +20,7 @@
 #include "cncplan/path/segment.hpp"
 #include "cncplan/plan/block_maker.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/move_to.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
@@ -91,6 +92,16 @@ void plan_profiles() {
       sum += seven ? seven->time_at(length / 3.0) : seven.error().bound;
     }
   sink = sum;
+}
+
+void move_axes() {
+  const Axis slide{.velocity = 30.0, .acceleration = 300.0, .jerk = 10000.0, .low = 0.0, .high = 100.0};
+  const Machine<3> machine{.axes = {slide, slide, slide}};
+  const AxisStates<3> now{.position = {10, 20, 30}, .velocity = {1, -2, 3}, .acceleration = {50, 0, -50}};
+  const auto move = move_to(now, {40, 50, 5}, machine);
+  const auto jog = reach_velocity(now.axis(0), 20.0, slide);
+  const auto beyond = move_to(now.axis(0), 101.0, slide);
+  sink = move->at(0.1).position[0] + jog->extrema().highest + *jog->time_at(50.0) + beyond.error().bound;
 }
 
 void sample_a_block() {
@@ -208,6 +219,7 @@ constexpr std::array jobs{
     Job{"path: a segment evaluated by length", evaluate_a_segment},
     Job{"junction: a corner, by the lowest of all policies", judge_a_junction},
     Job{"profile: five and seven phases, possible or not", plan_profiles},
+    Job{"state: axes from state to state, a jog, a target beyond the travel", move_axes},
     Job{"interpolate: the samples of a helix", sample_a_block},
     Job{"plan: G-code through look-ahead over a window", stream_a_program},
     Job{"plan: G-code played, tick by tick", play_a_program},
