@@ -149,7 +149,8 @@ TEST_CASE("without synchronisation each axis arrives as soon as it can") {
   REQUIRE(move);
   for (std::size_t i = 0; i < 3; ++i) {
     const double target = std::array{100.0, 50.0, -10.0}[i];
-    CHECK(move->axis(i).duration() == move_to(AxisState{}, target, mill.axes[i])->duration());
+    CHECK(move->axis(i).duration() ==
+          Approx(move_to(AxisState{}, target, mill.axes[i])->duration()).epsilon(1e-14));
   }
   const auto slow = move_to(AxisStates<3>{}, {100, 50, -10}, mill,
                             {.synchronization = Synchronization::none, .minimum_duration = 1.0});
