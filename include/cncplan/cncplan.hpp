@@ -43,6 +43,7 @@
 #include "cncplan/gcode/reader.hpp"
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
+#include "cncplan/gcode/spindle.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
 #include "cncplan/gcode/subprograms.hpp"
 #include "cncplan/gcode/word.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -81,6 +82,16 @@ inline constexpr std::array takes_axis_words{0.0,  1.0,  2.0,  3.0,  5.2,  6.2, 
   if (passed.letter != 'G') return false;
   const auto& codes = detail::takes_axis_words;
   return !passed.number || std::find(codes.begin(), codes.end(), *passed.number) != codes.end();
+}
+
+/// Most tools that a program may add to the dialect's table (G10 L1).
+inline constexpr std::size_t max_set_tools = 64;
+
+/// mm; 0 of a tool that the table lacks.
+[[nodiscard]] inline double tool_length(const Dialect& dialect, int number) {
+  for (const Tool& tool : dialect.tools)
+    if (tool.number == number) return tool.length;
+  return 0.0;
 }
 
 /// Letters that mean something of their own, and cannot name an axis.

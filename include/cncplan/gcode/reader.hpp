@@ -20,14 +20,12 @@
 #include "cncplan/gcode/motion.hpp"
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
+#include "cncplan/gcode/spindle.hpp"
 
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
 inline constexpr std::size_t max_items_per_line = max_passed + 19;
-
-/// Most tools that a program may add to the dialect's table (G10 L1).
-inline constexpr std::size_t max_set_tools = 64;
 
 /// Radians per degree, the unit of rotary axes in the text.
 inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
@@ -193,14 +191,14 @@ class Reader {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
     for (const char letter : {'S', 'T'})
       if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
-    if (block_.has('S')) spindle_speed_ = block_.number('S');
+    if (block_.has('S')) spindle_.speed = block_.number('S');
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);
     change_tool(emit);
     for (const Group group : {Group::spindle, Group::coolant, Group::override_control}) hand_out(group, emit);
-    if (block_.has(Group::spindle)) spindle_ = block_.code(Group::spindle) / 10;
-    if (block_.has(Group::spindle_mode)) select_spindle_mode();
+    if (block_.has(Group::spindle)) spindle_.direction = block_.code(Group::spindle) / 10;
+    if (block_.has(Group::spindle_mode)) spindle_.select_mode(block_, modal_.millimetres_per_unit);
     for (const Group group : {Group::polar, Group::scaling, Group::rotation}) name_once(group, emit);
     const Code non_modal = block_.code(Group::non_modal);
     if (non_modal == code(4)) emit(Dwell{block_.number('P') * dialect_.dwell_unit, line_});
@@ -326,47 +324,17 @@ class Reader {
     return motion;
   }
 
-  /// mm/s, or 1/s under inverse time. Under G95 that of the spindle's speed; under G96 too, where it is
-  /// lowest, at the end that is farther from the axis.
+  /// mm/s, or 1/s under inverse time.
   [[nodiscard]] std::optional<double> feed(const Motion& motion) const {
-    if (!modal_.feed || modal_.feed_mode == FeedMode::inverse_time) return modal_.feed;
-    if (modal_.feed_mode == FeedMode::per_minute)
-      return turns_only(motion) ? modal_.rotary_feed : *modal_.feed;
-    double per_minute = spindle_speed_.value_or(0.0);
-    if (surface_speed_) {
-      const double radius = std::max(std::abs(motion.start[0]), std::abs(motion.end[0]));
-      per_minute = std::min(most_revolutions_, *surface_speed_ / (2.0 * std::numbers::pi * radius));
-    }
-    const double feed = *modal_.feed * per_minute / 60.0;
-    return std::isfinite(feed) ? std::optional<double>(feed) : std::nullopt;  // at the axis, without D
-  }
-
-  /// G96 D S: the surface speed S, m/min (feet per minute in inches), at D revolutions per minute at most;
-  /// G97: S is revolutions per minute.
-  void select_spindle_mode() {
-    surface_speed_.reset();
-    if (block_.code(Group::spindle_mode) == code(97)) return;
-    const bool inches = modal_.millimetres_per_unit != 1.0;
-    surface_speed_ = block_.number('S') * (inches ? 304.8 : 1000.0);
-    most_revolutions_ = block_.has('D') ? block_.number('D') : std::numeric_limits<double>::infinity();
-  }
-
-  // Whether rotary axes alone move: F counts degrees then, whatever the unit of length.
-  [[nodiscard]] bool turns_only(const Motion& motion) const {
-    bool turns = false;
-    for (std::size_t i = 0; i < axis_count(); ++i) {
-      if (motion.end[i] == motion.start[i]) continue;
-      if (dialect_.axes[i].kind == AxisKind::linear) return false;
-      turns = true;
-    }
-    return turns;
+    if (modal_.feed_mode != FeedMode::per_revolution || !modal_.feed) return modal_.feed;
+    return spindle_.feed(*modal_.feed, std::max(std::abs(motion.start[0]), std::abs(motion.end[0])));
   }
 
   /// What the words alone do not tell: a feed per revolution needs a spindle that turns, a cycle its depth
   /// below R.
   [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion) {
     const bool feeds = motion != no_code && motion != code(0);
-    const double speed = block_.has('S') ? block_.number('S') : spindle_speed_.value_or(0.0);
+    const double speed = block_.has('S') ? block_.number('S') : spindle_.speed.value_or(0.0);
     if (feeds && modal.feed_mode == FeedMode::per_revolution && !(speed > 0.0))
       return detail::missing("S", std::max(1, block_.first_column(block_.letters())));
     if (block_.code(Group::non_modal) == code(10) && block_.number('L') == 1.0 &&
@@ -436,7 +404,8 @@ class Reader {
     if (step.kind == Kind::dwell) return emit(Dwell{step.seconds, line_});
     if (step.kind == Kind::spindle_stop) return emit(Word{'M', 5, line_, block_.column(Group::motion)});
     if (step.kind == Kind::spindle_start) {
-      if (spindle_ != 5) emit(Word{'M', static_cast<double>(spindle_), line_, block_.column(Group::motion)});
+      if (spindle_.direction != 5)
+        emit(Word{'M', static_cast<double>(spindle_.direction), line_, block_.column(Group::motion)});
       return;
     }
     const auto [first, second, third] = axes(modal_.plane);
@@ -553,15 +522,9 @@ class Reader {
       const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
       tool_ = {};
       for (std::size_t i = 0; i < axis_count(); ++i)
-        if (how == code(43) && dialect_.axes[i].letter == 'Z') tool_[i] = tool_length(number);
+        if (how == code(43) && dialect_.axes[i].letter == 'Z') tool_[i] = tool_length(dialect_, number);
     }
     update_offset();
-  }
-
-  [[nodiscard]] double tool_length(int number) const {
-    for (const Tool& tool : dialect_.tools)
-      if (tool.number == number) return tool.length;
-    return 0.0;
   }
 
   /// G54 to G59 are 540, 550 ... 590; G59.1 to G59.3 are 591 to 593.
@@ -619,11 +582,8 @@ class Reader {
   CannedCycle cycle_;
   CycleWords cycle_words_;
   std::optional<double> level_;  ///< height at which a row of cycles began
-  std::optional<double> spindle_speed_;
-  std::optional<double> surface_speed_;  ///< G96, mm per minute
-  double most_revolutions_{};            ///< per minute
-  int spindle_ = 5;                      ///< M3, M4 or M5
-  std::uint32_t named_{};                ///< groups whose codes have been named as without effect
+  Spindle spindle_;
+  std::uint32_t named_{};  ///< groups whose codes have been named as without effect
   bool probe_told_{};
   int selected_tool_{};
   int loaded_tool_{};
