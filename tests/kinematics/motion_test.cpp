@@ -3,6 +3,7 @@
 #include <iterator>
 #include <vector>
 
+#include "cncplan/interpolate/exact.hpp"
 #include "cncplan/kinematics/tire_mold.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/cursor.hpp"
@@ -11,6 +12,7 @@
 #include "cncplan/plan/joint/polar_guide.hpp"
 #include "cncplan/plan/joint/sidewall_guide.hpp"
 #include "cncplan/plan/whole_plan.hpp"
+#include "cncplan/profile/seven_phase.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
@@ -270,4 +272,31 @@ TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[
   for (const auto& block : caps) slowest = std::min(slowest, block.limits.velocity);
   CHECK(slowest < pi / 2);
   CHECK(slowest > 0.3);
+}
+
+// Faults of joint-space planning that go with it: `Trajectory` over `path::Mapped` and `Machine` has neither
+// (tests/path/path_concept_test.cpp, tests/plan/trajectory_test.cpp, tests/plan/plan_program_test.cpp).
+TEST_CASE("samples of a mapped path have the speed that differences give", "[!shouldfail]") {
+  kinematics::PolarChart chart;
+  chart.azimuth = {30.0, 0.0, 0.0};
+  const plan::MappedPath<kinematics::PolarChart> path(line({20, -10, 0}, {20, 10, 0}), chart, 0.0, 20.0);
+  const auto profile =
+      profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0}, Limits{30.0, 1000.0, 10000.0});
+  REQUIRE(profile);
+  const auto samples = interpolate::samples(path, *profile, 1e-4);
+  const auto middle = samples.size() / 2;
+  const VectorN<double, 3> difference =
+      (samples[middle + 1].position - samples[middle - 1].position) / (2 * 1e-4);
+  CHECK((samples[middle].velocity - difference).norm() < 1e-3);
+}
+
+TEST_CASE("a plan within the limits of joints keeps their travel", "[!shouldfail]") {
+  plan::JointCourse course{plan::PolarGuide(1.0)};
+  REQUIRE(course.append(line({20, 0, 0}, {60, 0, 0}), 30.0));
+  BasicJointLimits<double, 3> limits;
+  limits.velocity.setConstant(100.0);
+  limits.acceleration.setConstant(1000.0);
+  limits.jerk.setConstant(10000.0);
+  limits.high[0] = 50.0;
+  CHECK_FALSE(plan::whole_plan(course.blocks(), limits, 0.001).has_value());
 }
