@@ -22,7 +22,7 @@ inline AxisMove draw_axis_move(test::Random& random, bool rest) {
   axis.jerk = axis.acceleration * random.uniform(5, 100);
   move.to.position = (random.coin() ? 1 : -1) * random.log_uniform(0.01, 500);
   if (rest) return move;
-  const auto state = [&](AxisState& state, double sign) {
+  const auto draw = [&](AxisState& state, double sign) {
     double settled{};
     do {
       state.velocity = axis.velocity * random.uniform(-1, 1);
@@ -30,8 +30,8 @@ inline AxisMove draw_axis_move(test::Random& random, bool rest) {
       settled = state.velocity + sign * state.acceleration * std::abs(state.acceleration) / (2 * axis.jerk);
     } while (std::abs(settled) > axis.velocity);
   };
-  state(move.from, 1);
-  state(move.to, -1);
+  draw(move.from, 1);
+  draw(move.to, -1);
   return move;
 }
 

@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
     std::vector<double> speeds(blocks.size() + 1);
     std::vector<plan::Span> spans, singles;
     if (!plan::plan_spans(blocks, plan::SevenPhase{}, std::span(gates), std::back_inserter(spans)) ||
-        !plan::plan_blocks(blocks, plan::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
+        !published::plan_blocks(blocks, plan::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
       return std::fprintf(stderr, "no plan\n"), 1;
 
     std::vector<double> highest(nodes, limits.velocity * limits.velocity);

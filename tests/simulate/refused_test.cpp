@@ -60,7 +60,7 @@ TEST_CASE("bad programs: file, line, column and what is wrong") {
        }) {
     INFO(program);
     folder.write("part.ngc", program);
-    const std::string line = refused(folder, std::string("part.ngc") + outputs, 2);
+    const std::string line = refused(folder, "part.ngc" + std::string(outputs), 2);
     INFO(line);
     CHECK(line.starts_with(error));
   }
@@ -103,7 +103,7 @@ TEST_CASE("odd arcs are accepted and refused as by LinuxCNC") {
     if (columns[2] == "1")
       CHECK(folder.run("part.ngc --quiet --period 1").exit == 0);
     else
-      CHECK(refused(folder, std::string("part.ngc") + outputs, 2).starts_with("part.ngc:"));
+      CHECK(refused(folder, "part.ngc" + std::string(outputs), 2).starts_with("part.ngc:"));
     ++blocks;
   }
   CHECK(blocks == 34);
@@ -145,7 +145,7 @@ TEST_CASE("bad arguments: exit code 2 and the option's name") {
                                        {"--plot ''", "--plot: the file name is empty"},
                                        {"--machine none.toml", "none.toml"},
                                        {"--machine .", "error"}}) {
-    const std::string line = refused(folder, std::string("part.ngc ") + options, 2);
+    const std::string line = refused(folder, "part.ngc " + std::string(options), 2);
     INFO(line);
     CHECK(line.starts_with("error: "));
     CHECK(line.find(named) != std::string::npos);
@@ -161,7 +161,7 @@ TEST_CASE("outputs that cannot be written: exit code 1, and the others are not w
   folder.write("part.ngc", "G1 X1\n");
   for (const char* option : {"--motions", "--blocks", "--samples", "--steps"})
     for (const char* place : {"no/such/folder/file", ".", "part.ngc/file"}) {
-      const std::string alone = refused(folder, std::string("part.ngc --quiet ") + option + " " + place, 1);
+      const std::string alone = refused(folder, "part.ngc --quiet " + std::string(option) + " " + place, 1);
       INFO(alone);
       CHECK(alone.starts_with("error: " + std::string(place)));
     }
