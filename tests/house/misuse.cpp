@@ -28,7 +28,7 @@ struct NoBend {
 };
 auto parametric_path = published::taylor_samples(NoBend{}, travel, 1e-3);
 
-// expect NoInverse, Path: path.parameter_at(s)
+// expect NoInverse, Travelled: CurveByLength
 struct NoInverse : NoBend {
   Vector second_derivative(double) const;
 };

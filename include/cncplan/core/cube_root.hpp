@@ -5,6 +5,8 @@
 #include <concepts>
 #include <cstdint>
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan {
 
 /// Cube root to 5 %: a third of the exponent and mantissa read as one logarithm. x > 0, normal.

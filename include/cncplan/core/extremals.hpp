@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cncplan/core/bracketed_root.hpp"
+#include "cncplan/core/compiler.hpp"
 #include "cncplan/core/cube_root.hpp"
 
 namespace cncplan {

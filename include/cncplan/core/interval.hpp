@@ -8,6 +8,8 @@
 #include <numbers>
 #include <type_traits>
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan {
 
 /// All numbers from `low` to `high`, ends included. Each operation gives an interval that holds all results

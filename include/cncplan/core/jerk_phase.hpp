@@ -4,6 +4,7 @@
 #include <concepts>
 
 #include "cncplan/core/axis_state.hpp"
+#include "cncplan/core/compiler.hpp"
 
 namespace cncplan {
 

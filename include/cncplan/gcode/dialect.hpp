@@ -140,4 +140,15 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
   return dialect;
 }
 
+/// Whether rotary axes alone move: F counts degrees then, whatever the unit of length.
+[[nodiscard]] inline bool turns_only(const Dialect& dialect, const Motion& motion) {
+  bool turns = false;
+  for (std::size_t i = 0; i < dialect.axes.size(); ++i) {
+    if (motion.end[i] == motion.start[i]) continue;
+    if (dialect.axes[i].kind == AxisKind::linear) return false;
+    turns = true;
+  }
+  return turns;
+}
+
 }  // namespace cncplan::gcode

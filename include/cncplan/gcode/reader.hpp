@@ -324,8 +324,10 @@ class Reader {
     return motion;
   }
 
-  /// mm/s, or 1/s under inverse time.
+  /// mm/s (degrees/s where only rotary axes move), or 1/s under inverse time.
   [[nodiscard]] std::optional<double> feed(const Motion& motion) const {
+    if (modal_.feed && modal_.feed_mode == FeedMode::per_minute && turns_only(dialect_, motion))
+      return modal_.rotary_feed;
     if (modal_.feed_mode != FeedMode::per_revolution || !modal_.feed) return modal_.feed;
     return spindle_.feed(*modal_.feed, std::max(std::abs(motion.start[0]), std::abs(motion.end[0])));
   }
