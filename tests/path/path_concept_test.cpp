@@ -138,10 +138,12 @@ TEST_CASE("curves of one's own keep the laws of paths", "[path]") {
     REQUIRE(path);
     const auto at = curve.point(0.0);
     const auto start = path->position_at(0);
-    for (std::size_t i = 0; i < at.size(); ++i) REQUIRE(start[static_cast<Eigen::Index>(i)] == at[i]);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      REQUIRE(start[static_cast<Eigen::Index>(i)] == Approx(at[i]).epsilon(1e-15).margin(1e-15));
     const auto last = curve.point(curve.parameter_end());
     const auto end = path->position_at(path->length());
-    for (std::size_t i = 0; i < last.size(); ++i) REQUIRE(end[static_cast<Eigen::Index>(i)] == last[i]);
+    for (std::size_t i = 0; i < last.size(); ++i)
+      REQUIRE(end[static_cast<Eigen::Index>(i)] == Approx(last[i]).epsilon(1e-15).margin(1e-14));
     test::check_path_by_length(test::path_by_length_errors(*path, unit, random), what, 1e-9, 1e-6, 0.1);
     using Curve = std::remove_cvref_t<decltype(curve)>;
     if constexpr (std::same_as<typename Curve::Vector, Vector3>) {
