@@ -1,26 +1,16 @@
 // Diagnostics as sentences, for programs that print them (set-up).
 #pragma once
 
-#include <array>
-#include <charconv>
 #include <string>
 #include <string_view>
 
+#include "cncplan/core/error_text.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {
 
 namespace detail {
-
-inline std::string number_text(double number) {
-  std::array<char, 32> digits;
-  const double size = number < 0.0 ? -number : number;
-  const auto format =
-      size == 0.0 || (size > 1e-4 && size < 1e9) ? std::chars_format::fixed : std::chars_format::general;
-  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number, format).ptr;
-  return std::string(digits.data(), end);
-}
 
 /// A character, or the number of a byte that has no picture.
 inline std::string character_text(double code) {
@@ -51,7 +41,7 @@ inline std::string word_text(const Error& error) {
   text += has_verb ? " " : ": ";
   text += sentence;
   if (error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit)
-    text += ' ' + detail::number_text(error.bound);
+    text += ' ' + number_text(error.bound);
   if (error.code == ErrorCode::missing_number && error.value != 0.0)
     text += ": " + detail::character_text(error.value) + " follows";
   if (!diagnostic.other.empty())
