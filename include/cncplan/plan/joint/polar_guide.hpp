@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/plan/joint/radius.hpp"
+#include "cncplan/plan/tire_mold/radius.hpp"
 #include "cncplan/plan/joint/stretch.hpp"
 
 namespace cncplan::plan {
