@@ -15,8 +15,8 @@ inline cncplan::plan::Plan published_plan(const std::vector<cncplan::plan::Block
   const auto caps = plan::all_caps(blocks, cncplan::published::JunctionTable{}, plan::CapSpeed{});
   std::vector<double> speeds(caps.size() + 1);
   plan::Plan result;
-  cncplan::published::plan_blocks(std::span<const plan::BlockCaps>(caps), plan::FivePhase{}, std::span(speeds),
-                         std::back_inserter(result.spans))
+  cncplan::published::plan_blocks(std::span<const plan::BlockCaps>(caps), plan::FivePhase{},
+                                  std::span(speeds), std::back_inserter(result.spans))
       .value();
   for (const plan::BlockCaps& block : caps) result.lengths.push_back(block.length);
   for (const plan::Span& span : result.spans) result.duration += span.profile.duration();

@@ -90,8 +90,7 @@ class Converter {
       return;
     }
     std::vector<WallPart> parts;
-    if (auto ok = cutter_.cut(move.segment, parts); !ok)
-      refuse_move(artwork_, index_, move, ok.error());
+    if (auto ok = cutter_.cut(move.segment, parts); !ok) refuse_move(artwork_, index_, move, ok.error());
     row_start_ = 0.0;
     row_length_ = next_length_ = length_of_rows(move.segment);
     for (std::size_t i = 0; i < parts.size(); ++i)

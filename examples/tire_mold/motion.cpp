@@ -37,8 +37,7 @@ plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall&
       if (const auto ok = program.append(flat_block(move, static_cast<int>(i) + 1)); !ok)
         refuse_move(artwork, i, move, ok.error());
     }
-    if (line.stops || line.pause > 0.0)
-      (void)program.append({.pause = line.pause, .exact_stop = line.stops});
+    if (line.stops || line.pause > 0.0) (void)program.append({.pause = line.pause, .exact_stop = line.stops});
   }
   return program;
 }

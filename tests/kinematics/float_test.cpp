@@ -75,9 +75,8 @@ Summary round_the_table() {
   std::vector<BasicBlock<S, 3, Path>> blocks;
   S table{};
   for (const auto& segment : test::wall_artwork<S>())
-    REQUIRE(plan::follow_table(segment, BasicPolarChart<S>{}, S(1), table, [&](const Path& path) {
-      blocks.push_back({.path = path, .feed = S(60)});
-    }));
+    REQUIRE(plan::follow_table(segment, BasicPolarChart<S>{}, S(1), table,
+                               [&](const Path& path) { blocks.push_back({.path = path, .feed = S(60)}); }));
   return summary(blocks, test::table_machine<S>());
 }
 

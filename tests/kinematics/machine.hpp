@@ -27,8 +27,7 @@ template <std::floating_point S>
 BasicMachine<S, 4> wall_machine() {
   BasicMachine<S, 4> machine;
   machine.axes = {axis<S>('R', false, 100, 500, 5000), axis<S>('Z', false, 100, 500, 5000),
-                  axis<S>('A', true, 1, 5, 50),
-                  axis<S>('C', true, std::numbers::pi_v<S> / S(3), 10, 100)};
+                  axis<S>('A', true, 1, 5, 50), axis<S>('C', true, std::numbers::pi_v<S> / S(3), 10, 100)};
   machine.limits.velocity = S(150);
   return machine;
 }
@@ -50,15 +49,9 @@ std::vector<path::BasicSegment<S>> wall_artwork() {
   };
   const auto arc = path::arc_from_center<S>({S(70), S(30), S(0)}, {S(70), S(30), S(0)}, {S(80), S(30), S(0)},
                                             Turn::clockwise, Plane::xy);
-  return {line(60, 0, 5, 70, 30, 5),
-          line(70, 30, 5, 70, 30, 0),
-          *arc,
-          line(70, 30, 0, 40, 80, 0),
-          line(40, 80, 0, -30, 90, 0),
-          line(-30, 90, 0, -60, 60, 0),
-          line(-60, 60, 0, -60, -40, 0),
-          line(-60, -40, 0, -125, -20, 0),
-          line(-125, -20, 0, -60, -30, 2)};
+  return {line(60, 0, 5, 70, 30, 5),     line(70, 30, 5, 70, 30, 0),      *arc,
+          line(70, 30, 0, 40, 80, 0),    line(40, 80, 0, -30, 90, 0),     line(-30, 90, 0, -60, 60, 0),
+          line(-60, 60, 0, -60, -40, 0), line(-60, -40, 0, -125, -20, 0), line(-125, -20, 0, -60, -30, 2)};
 }
 
 }  // namespace cncplan::test

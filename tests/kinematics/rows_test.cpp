@@ -59,8 +59,7 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
       const double width = part.parameter_end() / division.rows;
       double largest = 0;
       for (int k = 0; k < division.rows; ++k)
-        largest =
-            std::max(largest, distance(part, width * k, width * (k + 1)));
+        largest = std::max(largest, distance(part, width * k, width * (k + 1)));
       worst = std::max(worst, largest / tolerance);
       told_too_little = std::max(told_too_little, largest / (division.error + 1e-9));
       if (division.rows > 20 && plan::largest_chord_error(part, division.rows * 8 / 10) < tolerance)

@@ -83,8 +83,7 @@ TEST_CASE("jets of the mapping are its derivatives", "[sidewall]") {
   const auto map = sidewall.map(1, Azimuth(0.6, 0.8, 0));
   // along a line over the arc piece
   const auto point = [](double t) { return std::array<double, 3>{62 + 3 * t, 75 - 2 * t, 1 + 0.5 * t}; };
-  const auto joints =
-      map.joints(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
+  const auto joints = map.joints(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
   const auto tip = map.tip(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
   const double h = 0.02;
   const auto check = [&](auto at, const Jet& jet) {

@@ -71,8 +71,7 @@ TEMPLATE_TEST_CASE("rows: as long as the polygon of the tip's places", "[rows]",
     // at its middle by length, the tip is on the row
     const S u = path.parameter_at(path.length() / S(2));
     const auto place = row.tip(std::array<S, 3>{u, S(0), S(0)});
-    off = std::max(off,
-                   (tip(static_cast<double>(u)) - Vector3(place[0], place[1], place[2])).norm() / 300);
+    off = std::max(off, (tip(static_cast<double>(u)) - Vector3(place[0], place[1], place[2])).norm() / 300);
   }
   CHECK(length < rounding);
   CHECK(joined < 300 * rounding);

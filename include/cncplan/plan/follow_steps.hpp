@@ -63,8 +63,7 @@ follow_steps(const Trajectory<M, B>& trajectory, typename M::Scalar period, Take
       const step::BasicEdge<S> signal{edge->time, edge->axis, edge->direction};
       if (auto kept = check.accept(signal); !kept) return tl::unexpected(kept.error());
       if (auto taken = backend.accept(signal); !taken)
-        return tl::unexpected(
-            step::Violation{taken.error(), edge->axis, static_cast<double>(edge->time)});
+        return tl::unexpected(step::Violation{taken.error(), edge->axis, static_cast<double>(edge->time)});
     }
     take(*edge);
   }

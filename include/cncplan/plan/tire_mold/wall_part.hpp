@@ -62,7 +62,8 @@ using BasicWallBlock = cncplan::BasicBlock<S, 4, BasicWallPath<S>>;
 using WallBlock = BasicWallBlock<double>;
 
 /// Cuts a part where the table, the wall or an arc of the artwork has turned by about a radian, and calls
-/// `add` with each path. `table` is the angle at which the table stands, rad with whole turns; it is moved on.
+/// `add` with each path. `table` is the angle at which the table stands, rad with whole turns; it is moved
+/// on.
 template <std::floating_point S, std::invocable<const BasicWallPath<S>&> Add>
 void follow_wall(BasicWallPart<S> part, S& table, Add&& add) {
   const bool curved = part.artwork.arc() != nullptr;

@@ -32,11 +32,8 @@ class BasicWallProgram {
     for (const BasicWallPart<S>& part : parts_) {
       if (part.kink) stop();
       follow_wall(part, table_, [&](const BasicWallPath<S>& path) {
-        blocks_.push_back({.path = path,
-                           .feed = flat.feed,
-                           .rapid = flat.rapid,
-                           .line = flat.line,
-                           .column = flat.column});
+        blocks_.push_back(
+            {.path = path, .feed = flat.feed, .rapid = flat.rapid, .line = flat.line, .column = flat.column});
       });
       if (part.kink) stop();
     }
