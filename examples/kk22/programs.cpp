@@ -12,8 +12,7 @@
 #include "experiments.hpp"
 #include "generate/programs.hpp"
 #include "published.hpp"
-#include "support/plan.hpp"
-#include "support/stepping.hpp"
+#include "support/failure.hpp"
 
 namespace kk22 {
 
@@ -21,8 +20,9 @@ using namespace cncplan;
 
 namespace {
 
-using Course = plan::JointCourse<plan::PolarGuide>;
-using Path = plan::MappedPath<kinematics::PolarChart>;
+using Table = MappedMachine<kinematics::PolarChart>;
+using TablePath = plan::TablePath<kinematics::PolarChart, path::Segment<3>>;
+using TableBlock = cncplan::Block<3, TablePath>;
 
 // What the paper says of a program: minutes, and Table 4's root mean square errors of the servo axes, mm and
 // degrees.
@@ -60,29 +60,36 @@ std::vector<plan::Block> blocks_of(generate::Kind kind, const support::Machine& 
   return blocks;
 }
 
+// The blocks round the table, C without a jump.
+std::vector<TableBlock> on_table(const std::vector<plan::Block>& blocks, double smallest_radius) {
+  std::vector<TableBlock> result;
+  double table = 0.0;
+  for (const plan::Block& block : blocks) {
+    const auto followed = plan::follow_table(
+        block.segment, kinematics::PolarChart{}, smallest_radius, table,
+        [&](const TablePath& path) { result.push_back({.path = path, .feed = block.limits.velocity}); });
+    if (!followed)
+      throw support::Failure(support::Exit::other, "a program comes too near to the table's axis");
+    if (block.stop_at_end && !result.empty()) result.back().exact_stop = true;
+  }
+  return result;
+}
+
 // Turned into steps on the machine, with look-ahead within the limits of its axes.
 struct Run {
   double minutes{};
-  support::StepReports axes;
+  std::array<step::AxisReport, 3> axes;
 };
 
 Run run(const std::vector<plan::Block>& blocks, const support::Machine& machine) {
-  Course course(plan::PolarGuide(machine.smallest_radius.value_or(1.0)));
-  for (const plan::Block& block : blocks) {
-    if (!course.append(block.segment, block.limits.velocity))
-      throw support::Failure(support::Exit::other, "a program comes too near to the table's axis");
-    if (block.stop_at_end) course.stop();
-  }
-  const auto& pieces = course.blocks();
-  std::vector<plan::BlockCaps> caps;
-  plan::joint_caps(std::span<const Course::Block>(pieces), machine.joint_limits<3>(), period,
-                   std::back_inserter(caps));
-  auto spans = support::spans_of(caps, plan::SevenPhase{});
-  const support::Plan plan = support::plan_of(std::move(caps), std::move(spans));
-  const auto path = [&](std::size_t i) -> const Path& { return pieces[i].path; };
-  const auto where = [](std::size_t i) { return fmt::format("piece {}", i); };
-  return {plan.duration / 60.0,
-          support::make_steps<Path>(plan, machine, period, path, where, [](const step::Edge&) {})};
+  Table table;
+  for (std::size_t i = 0; i < table.axes.size(); ++i) table.axes[i] = machine.axis(i);
+  table.limits.velocity = limits.velocity;
+  const auto planned = plan_blocks(on_table(blocks, machine.smallest_radius.value_or(1.0)), table);
+  if (!planned) throw support::Failure(support::Exit::other, to_text(planned.error()));
+  const auto axes = follow_steps(*planned, period, [](const MotorEdge&) {});
+  if (!axes) throw support::Failure(support::Exit::other, to_text(axes.error().error));
+  return {planned->duration() / 60.0, *axes};
 }
 
 }  // namespace
@@ -107,7 +114,7 @@ void programs(const support::Machine& machine, const std::vector<std::string>& n
                std::floor(ours.minutes * 60.0 / period) + 1.0);
     for (std::size_t axis = 0; axis < 3; ++axis)
       errors += fmt::format("| {}, {} | {} | {:.3g} | {:.3g} |\n", paper.name, machine.axes[axis].letter,
-                            paper.error[axis], ours.axes[axis].rms_error,
+                            paper.error[axis], machine.shown(axis, ours.axes[axis].rms_error),
                             1.0 / machine.axes[axis].drive.steps_per_unit / std::sqrt(12.0));
   }
   fmt::print(

@@ -282,6 +282,29 @@ Machine interpret(const std::string& file, const toml::table& root) {
 
 }  // namespace
 
+cncplan::Axis Machine::axis(std::size_t i) const {
+  const MachineAxis& told = axes[i];
+  const double scale = told.unit();
+  cncplan::step::Drive drive = told.drive;
+  drive.steps_per_unit /= scale;
+  drive.backlash *= scale;
+  return {.letter = told.letter,
+          .kind = told.rotary ? cncplan::AxisKind::rotary : cncplan::AxisKind::linear,
+          .velocity = told.limits.velocity * scale,
+          .acceleration = told.limits.acceleration * scale,
+          .jerk = told.limits.jerk * scale,
+          .low = told.low * scale,
+          .high = told.high * scale,
+          .motors = {drive}};
+}
+
+std::vector<cncplan::step::Trace> Machine::traces() const {
+  std::vector<cncplan::step::Trace> traces;
+  for (const MachineAxis& axis : axes)
+    traces.push_back({std::string(1, axis.letter), axis.drive.high_time, axis.drive.direction_setup});
+  return traces;
+}
+
 std::string beyond_travel(const MachineAxis& axis, double place, bool at_start) {
   return fmt::format("axis {} {} {:.6g}, beyond its travel of {:.6g} to {:.6g}", axis.letter,
                      at_start ? "starts at" : "would move to", place / axis.unit(), axis.low, axis.high);

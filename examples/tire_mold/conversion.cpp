@@ -14,7 +14,7 @@ namespace {
 
 using namespace cncplan;
 using Joints = VectorN<double, 4>;
-using Stretch = plan::SidewallStretch<double>;
+using plan::WallPart;
 
 bool is_arc_code(const gcode::Word& word) {
   return word.letter == 'G' && (word.number == 2 || word.number == 3);
@@ -52,7 +52,7 @@ class Converter {
         sidewall_(sidewall),
         machine_(machine),
         options_(options),
-        guide_(sidewall, smallest_radius(machine)),
+        cutter_(sidewall, smallest_radius(machine)),
         limits_(machine.joint_limits<4>()) {}
 
   Conversion run() {
@@ -82,32 +82,31 @@ class Converter {
     const Vector3 end = move.segment.end();
     if (!here_) {
       const path::Segment<3> standing{path::Line<3>(end, end)};
-      std::vector<Stretch> none;
-      if (auto ok = guide_.follow(standing, none); !ok) refuse_move(artwork_, index_, move, ok.error());
+      std::vector<WallPart> none;
+      if (auto ok = cutter_.cut(standing, none); !ok) refuse_move(artwork_, index_, move, ok.error());
       const auto joints = sidewall_.joints(end);
       if (!joints) refuse_move(artwork_, index_, move, joints.error());
       add(move, *joints, rows);
       return;
     }
-    std::vector<Stretch> stretches;
-    if (auto ok = guide_.follow(move.segment, stretches); !ok)
-      refuse_move(artwork_, index_, move, ok.error());
+    std::vector<WallPart> parts;
+    if (auto ok = cutter_.cut(move.segment, parts); !ok) refuse_move(artwork_, index_, move, ok.error());
     row_start_ = 0.0;
     row_length_ = next_length_ = length_of_rows(move.segment);
-    for (std::size_t i = 0; i < stretches.size(); ++i)
-      if (options_.subdivide && !stretches[i].kink)
-        add_by_length(move, stretches[i], i + 1 == stretches.size() || stretches[i + 1].kink, rows);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (options_.subdivide && !parts[i].kink)
+        add_by_length(move, parts[i], i + 1 == parts.size() || parts[i + 1].kink, rows);
       else
-        add_by_tolerance(move, stretches[i], rows);
+        add_by_tolerance(move, parts[i], rows);
   }
 
-  void add_by_tolerance(const Move& move, const Stretch& stretch, std::vector<Joints>& rows) {
-    const auto division = plan::divide(stretch, options_.tolerance);
+  void add_by_tolerance(const Move& move, const WallPart& part, std::vector<Joints>& rows) {
+    const auto division = plan::divide(part, options_.tolerance);
     result_.chord_error = std::max(result_.chord_error, division.error);
-    const double width = (stretch.to - stretch.from) / division.rows;
+    const double end = part.parameter_end(), width = end / division.rows;
     for (int k = 1; k <= division.rows; ++k) {
-      const double u = k == division.rows ? stretch.to : stretch.from + width * k;
-      add(move, plan::sidewall_joints(stretch, u, (*here_)[3]), rows);
+      const double u = k == division.rows ? end : width * k;
+      add(move, plan::wall_joints(part, u, (*here_)[3]), rows);
     }
   }
 
@@ -121,32 +120,29 @@ class Converter {
   }
 
   // Rows at whole multiples of the length along the move, and where it ends or a kink is.
-  void add_by_length(const Move& move, const Stretch& stretch, bool to_end, std::vector<Joints>& rows) {
+  void add_by_length(const Move& move, const WallPart& part, bool to_end, std::vector<Joints>& rows) {
     const auto row = [&](double u) {
-      const Joints joints = plan::sidewall_joints(stretch, u, (*here_)[3]);
-      result_.chord_error = std::max(result_.chord_error, wall_error(stretch.segment, joints, u));
+      const Joints joints = plan::wall_joints(part, u - part.from, (*here_)[3]);
+      result_.chord_error = std::max(result_.chord_error, wall_error(part.artwork, joints, u));
       add(move, joints, rows);
       row_start_ = u;
     };
     constexpr double rounding = 1e-9;
-    const double until = stretch.segment.length_at(stretch.to) - rounding;
-    for (; next_length_ < until; next_length_ += row_length_) row(stretch.segment.parameter_at(next_length_));
-    if (to_end) row(stretch.to);
+    const double until = part.artwork.length_at(part.to) - rounding;
+    for (; next_length_ < until; next_length_ += row_length_) row(part.artwork.parameter_at(next_length_));
+    if (to_end) row(part.to);
   }
 
   // As plan::chord_error, for a row that may cross from one piece of the profile to the next.
-  [[nodiscard]] double wall_error(const path::Segment<3>& segment, const Joints& joints, double to) const {
+  [[nodiscard]] double wall_error(const path::Segment<3>& artwork, const Joints& joints, double to) const {
     const kinematics::TireMold machine{.tool_length = sidewall_.tool_length()};
     double worst = 0.0;
     for (int k = 1; k < 8; ++k) {
-      const double part = k / 8.0;
-      const double u = row_start_ + part * (to - row_start_);
-      const auto tip = sidewall_.chart(sidewall_.piece_at(plan::radius_at(segment, u)))
-                           .tip(plan::moving_point(segment, u));
-      const Vector3 truth(tip[0].value, tip[1].value, tip[2].value);
-      const Vector3 tangent = Vector3(tip[0].first, tip[1].first, tip[2].first).normalized();
-      const Vector3 apart = machine.forward(*here_ + part * (joints - *here_)).position - truth;
-      worst = std::max(worst, (apart - tangent * tangent.dot(apart)).norm());
+      const double share = k / 8.0;
+      const double u = row_start_ + share * (to - row_start_);
+      const WallPart on{artwork, sidewall_.map(sidewall_.piece_at(plan::radius_at(artwork, u))), 0.0, to};
+      const Vector3 tip = machine.forward(*here_ + share * (joints - *here_)).position;
+      worst = std::max(worst, plan::off_wall(on, u, tip));
     }
     return worst;
   }
@@ -239,7 +235,7 @@ class Converter {
   const kinematics::Sidewall& sidewall_;
   const Machine& machine_;
   const Options& options_;
-  plan::SidewallGuide guide_;
+  plan::WallCutter cutter_;
   BasicJointLimits<double, 4> limits_;
   std::size_t index_ = 0;
   std::optional<Joints> here_;

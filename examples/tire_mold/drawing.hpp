@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/kinematics/profile_chain.hpp"
+#include "cncplan/kinematics/tire_mold/profile_chain.hpp"
 
 namespace tire_mold {
 

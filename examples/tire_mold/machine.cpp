@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "support/failure.hpp"
@@ -36,6 +37,14 @@ Machine of_the_thesis() {
 
 double rapid_rate(const Machine& machine) { return machine.rapid_rate.value_or(1000.0); }
 double smallest_radius(const Machine& machine) { return machine.smallest_radius.value_or(1.0); }
+
+cncplan::Machine<4> planned_machine(const Machine& machine) {
+  cncplan::Machine<4> planned;
+  for (std::size_t i = 0; i < planned.axes.size(); ++i) planned.axes[i] = machine.axis(i);
+  planned.limits.velocity = rapid_rate(machine);
+  planned.feed_limit = std::min(machine.feed_limit, rapid_rate(machine));
+  return planned;
+}
 
 gcode::Dialect artwork_dialect(const Machine& machine) {
   gcode::Dialect dialect;

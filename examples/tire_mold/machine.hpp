@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "cncplan/plan/machine.hpp"
 #include "support/machine_file.hpp"
 
 namespace tire_mold {
@@ -14,6 +15,9 @@ using support::Machine;
 [[nodiscard]] double rapid_rate(const Machine& machine);
 /// Nothing nearer to the table's axis is driven, mm.
 [[nodiscard]] double smallest_radius(const Machine& machine);
+
+/// The machine as the library plans it: its axes, and the tip no faster than the rapid rate.
+[[nodiscard]] cncplan::Machine<4> planned_machine(const Machine& machine);
 
 /// Flat programs name X, Y and Z, and the words that pass through.
 [[nodiscard]] cncplan::gcode::Dialect artwork_dialect(const Machine& machine);

@@ -18,12 +18,13 @@ namespace tire_mold {
 
 namespace {
 
-void write_sample(std::ostream& out, const Machine& machine, const Sample& s) {
+void write_sample(std::ostream& out, const Machine& machine, const Motion& motion, const Sample& s) {
+  const auto flat = flat_point(motion, s);
   out << fmt::format("{:.17g}", s.time);
   for (std::size_t i = 0; i < 4; ++i)
-    out << fmt::format(",{:.17g}", machine.shown(i, s.joints[static_cast<Eigen::Index>(i)]));
+    out << fmt::format(",{:.17g}", machine.shown(i, s.position[static_cast<Eigen::Index>(i)]));
   out << fmt::format(",{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", s.along.position,
-                     s.along.velocity, s.along.acceleration, s.along.jerk, s.flat[0], s.flat[1], s.flat[2]);
+                     s.along.velocity, s.along.acceleration, s.along.jerk, flat[0], flat[1], flat[2]);
 }
 
 // At most so many points are drawn.
@@ -35,9 +36,8 @@ int run(const Options& options) {
   const cncplan::kinematics::Sidewall sidewall(chain.pieces, options.start_radius, options.tool_length);
   const Artwork artwork = read_artwork(options.artwork, artwork_dialect(machine));
   const Conversion conversion = convert(artwork, sidewall, machine, options);
-  const Motion motion = plan_motion(artwork, sidewall, machine, options);
-  Measures measures{chain.length(), chain.pieces.size(), axis_peaks(motion),
-                    support::StepReports(machine.axes.size()), 0};
+  const Motion motion = plan_motion(artwork, sidewall, machine);
+  Measures measures{chain.length(), chain.pieces.size(), cncplan::peaks(motion), {}, 0};
 
   if (options.plot) support::make_folder(*options.plot);
 
@@ -53,23 +53,22 @@ int run(const Options& options) {
     *samples << ",s,v,a,j,x,y,z\n";
   }
   if (samples != nullptr || options.plot) {
-    const auto every = static_cast<std::size_t>(motion.plan.duration / options.period) / drawn_points + 1;
+    const auto every = static_cast<std::size_t>(motion.duration() / options.period) / drawn_points + 1;
     make_samples(motion, options.period, [&](const Sample& sample) {
-      if (samples != nullptr) write_sample(*samples, machine, sample);
+      if (samples != nullptr) write_sample(*samples, machine, motion, sample);
       if (options.plot && measures.samples % every == 0) drawn.push_back(sample);
       ++measures.samples;
     });
   }
   if (steps != nullptr) {
-    auto vcd = cncplan::step::vcd_writer(*steps, support::traces_of(machine));
-    measures.steps =
-        make_steps(motion, machine, artwork, options.period, [&](const cncplan::step::Edge& edge) {
-          if (!vcd.accept(edge)) throw support::Failure(support::Exit::other, "an edge came out of order");
-        });
+    auto vcd = cncplan::step::vcd_writer(*steps, machine.traces());
+    measures.steps = make_steps(motion, artwork, options.period, [&](const cncplan::step::Edge& edge) {
+      if (!vcd.accept(edge)) throw support::Failure(support::Exit::other, "an edge came out of order");
+    });
     vcd.finish();
   }
   files.finish();
-  if (options.plot) draw(*options.plot, sidewall, conversion, machine, drawn);
+  if (options.plot) draw(*options.plot, sidewall, conversion, machine, motion, drawn);
   files.commit();
   if (out == nullptr && !options.json) support::print(conversion.text);
   if (options.json)

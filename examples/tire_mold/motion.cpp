@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <span>
+#include <limits>
+#include <utility>
 
 #include "conversion.hpp"
+#include "support/failure.hpp"
 
 namespace tire_mold {
 
@@ -15,78 +15,74 @@ namespace {
 
 using namespace cncplan;
 
-using Course = plan::JointCourse<plan::SidewallGuide>;
-using Block = Course::Block;
+// A feed of none, or one that is not told, is the rapid rate.
+cncplan::Block<3> flat_block(const Move& move, int line) {
+  const double feed = move.feed == 0.0 ? std::numeric_limits<double>::infinity() : move.feed;
+  return {.path = move.segment,
+          .feed = feed,
+          .exact_stop = move.exact_stop,
+          .rapid = move.rapid,
+          .line = line,
+          .column = move.column};
+}
 
-Course course_of(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine) {
-  Course course{plan::SidewallGuide(sidewall, smallest_radius(machine))};
-  const double rapid = rapid_rate(machine);
+plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall& sidewall,
+                             const Machine& machine) {
+  plan::WallProgram program(sidewall, smallest_radius(machine));
   bool over_mold = false;
   for (std::size_t i = 0; i < artwork.lines.size(); ++i) {
     const Line& line = artwork.lines[i];
     for (const Move& move : line.moves) {
       if (!std::exchange(over_mold, over_mold || leads_to_mold(move))) continue;
-      const double feed = move.rapid || move.feed == 0.0 ? rapid : move.feed;
-      if (const auto ok = course.append(move.segment, std::min(feed, rapid), i); !ok)
+      if (const auto ok = program.append(flat_block(move, static_cast<int>(i) + 1)); !ok)
         refuse_move(artwork, i, move, ok.error());
-      if (move.exact_stop) course.stop();
     }
-    if (line.stops) course.stop();
-    course.pause(line.pause);
+    if (line.stops || line.pause > 0.0) (void)program.append({.pause = line.pause, .exact_stop = line.stops});
   }
-  return course;
-}
-
-// What the joints do at a place of the plan.
-Sample evaluate(const Motion& motion, const plan::Place& place, double time) {
-  const Path& path = motion.path(place.block);
-  State within = place.state;
-  within.position = place.along;
-  const auto axes = support::axis_motion(path, within);
-  auto flat = path.point(path.parameter_at(place.along));
-  if (path.chart().piece.is_kink()) {  // whose radii are the angle turned
-    const double radius = std::hypot(flat[0], flat[1]);
-    for (const std::size_t i : {0U, 1U}) flat[i] *= path.chart().begins / radius;
-  }
-  return {time, place.state, flat, axes.position, axes.velocity, axes.acceleration};
+  return program;
 }
 
 }  // namespace
 
-Motion plan_motion(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
-                   const Options& options) {
-  Motion motion{course_of(artwork, sidewall, machine).blocks(), {}};
-  if (motion.blocks.empty()) return motion;
-  std::vector<plan::BlockCaps> caps;
-  plan::joint_caps(std::span<const Block>(motion.blocks), machine.joint_limits<4>(), options.corner_time,
-                   std::back_inserter(caps));
-  auto spans = support::spans_of(caps, plan::SevenPhase{});
-  motion.plan = support::plan_of(std::move(caps), std::move(spans));
-  return motion;
+Motion plan_motion(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine) {
+  const auto program = program_of(artwork, sidewall, machine);
+  auto planned = plan_blocks(program.blocks(), planned_machine(machine));
+  if (planned) return std::move(*planned);
+  planned.error().file = artwork.file;
+  throw support::Failure(support::Exit::bad_input, to_text(planned.error()));
+}
+
+std::array<double, 3> flat_point(const Motion& motion, const Sample& sample) {
+  const plan::WallPath& path = *motion.program()[sample.block].path.as<plan::WallPath>();
+  const plan::WallPart& part = path.curve();
+  auto flat = part.flat(path.parameter_at(sample.along.position - motion.start_length(sample.block)));
+  if (part.kink) {  // whose radii are the angle turned
+    const double radius = std::hypot(flat[0], flat[1]);
+    for (const std::size_t i : {0U, 1U}) flat[i] *= part.map.begins / radius;
+  }
+  return flat;
 }
 
 void make_samples(const Motion& motion, double period, const std::function<void(const Sample&)>& take) {
-  if (motion.blocks.empty()) return;
-  const double end = motion.plan.duration;
-  plan::Cursor cursor(motion.plan.spans, motion.plan.lengths);
-  double time = 0.0;
-  for (std::size_t k = 0; time < end; time = static_cast<double>(++k) * period)
-    take(evaluate(motion, cursor.at(time), time));
-  take(evaluate(motion, cursor.at(end), end));
+  if (motion.program().empty()) return;
+  for (const Sample& sample : motion.samples(period)) take(sample);
 }
 
-AxisPeaks axis_peaks(const Motion& motion) {
-  return support::axis_peaks<Path>(motion.plan, [&](std::size_t i) -> const Path& { return motion.path(i); });
-}
-
-support::StepReports make_steps(const Motion& motion, const Machine& machine, const Artwork& artwork,
-                                double period, const std::function<void(const step::Edge&)>& take) {
-  if (motion.blocks.empty()) return support::StepReports(machine.axes.size());
-  const auto path = [&](std::size_t i) -> const Path& { return motion.path(i); };
-  const auto where = [&](std::size_t i) {
-    return fmt::format("{}:{}:1", artwork.file, motion.blocks[i].motion + 1);
-  };
-  return support::make_steps<Path>(motion.plan, machine, period, path, where, take);
+StepReports make_steps(const Motion& motion, const Artwork& artwork, double period,
+                       const std::function<void(const step::Edge&)>& take) {
+  if (motion.program().empty()) return {};
+  const auto& axes = motion.machine().axes;
+  const auto report = follow_steps(motion, period, [&](const MotorEdge& edge) {
+    const bool inverted = axes[static_cast<std::size_t>(edge.axis)].motors[0].inverted;
+    take({edge.time, edge.axis, inverted ? -edge.direction : edge.direction});
+  });
+  if (report) return *report;
+  const step::Violation& broken = report.error();
+  throw support::Failure(
+      support::Exit::bad_input,
+      fmt::format("{}:{}:1: error: {} at {:.9f} s: {}", artwork.file, motion.at(broken.time).line,
+                  axis_name(axes[static_cast<std::size_t>(broken.axis)].letter), broken.time,
+                  to_text(broken.error)));
 }
 
 }  // namespace tire_mold

@@ -27,9 +27,6 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--chain-tolerance", options.chain_tolerance, "largest gap between entities, mm")
       ->check(support::not_negative());
   app.add_option("--decimals", options.decimals, "of the numbers written")->check(CLI::Range(0, 15));
-  app.add_option("--corner-time", options.corner_time,
-                 "s within which a corner may change what an axis does at its limits; 0 stops at corners")
-      ->check(support::not_negative());
   support::add_period(app, options);
   app.option_defaults()->always_capture_default(false);
   app.add_option("--subdivide", options.subdivide, "rows of this length along the artwork instead, mm")

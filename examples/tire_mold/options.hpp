@@ -18,7 +18,6 @@ struct Options : support::RunOptions {
   std::optional<double> subdivide;  ///< mm
   double chain_tolerance = 0.001;   ///< mm
   int decimals = 3;
-  double corner_time = 0.0;  ///< s
   std::optional<std::string> out;
 };
 

@@ -36,14 +36,14 @@ void write_tools(Gnuplot& plot, const Conversion& conversion, double tool_length
 }
 
 // Time, joints, flat point, and each axis' speed and acceleration as a share of its limit.
-void write_samples(Gnuplot& plot, const Machine& machine, double tool_length,
+void write_samples(Gnuplot& plot, const Machine& machine, double tool_length, const Motion& motion,
                    const std::vector<Sample>& samples) {
   const kinematics::TireMold forward{.tool_length = tool_length};
   plot("$samples << EOD\n");
   for (const Sample& s : samples) {
-    const Vector3 tip = forward.forward(s.joints).position;
-    plot("{:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f}", s.time, s.flat[0], s.flat[1], s.flat[2], tip.x(),
-         tip.y(), tip.z());
+    const Vector3 tip = forward.forward(s.position).position;
+    const auto [x, y, z] = flat_point(motion, s);
+    plot("{:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f}", s.time, x, y, z, tip.x(), tip.y(), tip.z());
     support::put_axis_shares(plot, machine, s.velocity, s.acceleration);
   }
   plot("EOD\n");
@@ -52,12 +52,12 @@ void write_samples(Gnuplot& plot, const Machine& machine, double tool_length,
 }  // namespace
 
 void draw(const std::string& folder, const kinematics::Sidewall& sidewall, const Conversion& conversion,
-          const Machine& machine, const std::vector<Sample>& samples) {
+          const Machine& machine, const Motion& motion, const std::vector<Sample>& samples) {
   auto plot = Gnuplot::start(folder);
   if (!plot) return;
   write_wall(*plot, sidewall);
   write_tools(*plot, conversion, sidewall.tool_length());
-  write_samples(*plot, machine, sidewall.tool_length(), samples);
+  write_samples(*plot, machine, sidewall.tool_length(), motion, samples);
   plot->picture("profile.svg");
   (*plot)(
       "set size ratio -1\nset xlabel 'R mm'\nset ylabel 'Z mm'\n"

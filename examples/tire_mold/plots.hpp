@@ -15,6 +15,7 @@ namespace tire_mold {
 /// axis' speed and acceleration against its limit) into a folder; says so on standard error where gnuplot is
 /// missing.
 void draw(const std::string& folder, const cncplan::kinematics::Sidewall& sidewall,
-          const Conversion& conversion, const Machine& machine, const std::vector<Sample>& samples);
+          const Conversion& conversion, const Machine& machine, const Motion& motion,
+          const std::vector<Sample>& samples);
 
 }  // namespace tire_mold

@@ -8,6 +8,7 @@ namespace tire_mold {
 
 namespace {
 
+using namespace cncplan;
 using Json = nlohmann::ordered_json;
 
 struct Range {
@@ -24,6 +25,10 @@ Range range(const Conversion& conversion, const Machine& machine, std::size_t ax
     range.high = std::max(range.high, row[k]);
   }
   return {machine.shown(axis, range.low), machine.shown(axis, range.high)};
+}
+
+double shown(const Machine& machine, const VectorN<double, 4>& axes, std::size_t i) {
+  return machine.shown(i, axes[static_cast<Eigen::Index>(i)]);
 }
 
 template <class F>
@@ -47,12 +52,12 @@ std::string json_summary(const Conversion& conversion, const Motion& motion, con
     return Json::array({low, high});
   });
   json["max_chord_error_mm"] = conversion.chord_error;
-  json["time_s"] = motion.plan.duration;
-  const AxisPeaks& peaks = measures.peaks;
+  json["time_s"] = motion.duration();
+  const Peaks& peaks = measures.peaks;
   json["axis_peak"] = {
-      {"velocity", per_axis(machine, [&](std::size_t i) { return machine.shown(i, peaks.velocity(i)); })},
+      {"velocity", per_axis(machine, [&](std::size_t i) { return shown(machine, peaks.velocity, i); })},
       {"acceleration",
-       per_axis(machine, [&](std::size_t i) { return machine.shown(i, peaks.acceleration(i)); })}};
+       per_axis(machine, [&](std::size_t i) { return shown(machine, peaks.acceleration, i); })}};
   json["samples"] = measures.samples;
   json["steps"] = per_axis(machine, [&](std::size_t i) { return measures.steps[i].total_steps; });
   return json.dump(2) + "\n";
@@ -67,15 +72,15 @@ std::string table_summary(const Conversion& conversion, const Motion& motion, co
   row("points, rows", fmt::format("{}, {}", conversion.points, conversion.rows.size()));
   row("profile", fmt::format("{} entities, {:.4f} mm", measures.entities, measures.profile_length));
   row("largest chord error", fmt::format("{:.4g} mm", conversion.chord_error));
-  row("time", fmt::format("{:.3f} s", motion.plan.duration));
+  row("time", fmt::format("{:.3f} s", motion.duration()));
   text += fmt::format("\n{:<6}{:>12}{:>12}{:>12}{:>12}{:>16}{:>12}\n", "axis", "from", "to", "peak /s",
                       "limit /s", "peak /s^2", "limit /s^2");
   for (std::size_t i = 0; i < 4; ++i) {
     const auto [low, high] = range(conversion, machine, i);
     const support::MachineAxis& axis = machine.axes[i];
     text += fmt::format("{:<6}{:>12.3f}{:>12.3f}{:>12.4g}{:>12.4g}{:>16.4g}{:>12.4g}  {}\n", axis.letter, low,
-                        high, machine.shown(i, measures.peaks.velocity(i)), axis.limits.velocity,
-                        machine.shown(i, measures.peaks.acceleration(i)), axis.limits.acceleration,
+                        high, shown(machine, measures.peaks.velocity, i), axis.limits.velocity,
+                        shown(machine, measures.peaks.acceleration, i), axis.limits.acceleration,
                         axis.rotary ? "deg" : "mm");
   }
   return text;

@@ -12,8 +12,8 @@ namespace tire_mold {
 struct Measures {
   double profile_length = 0.0;
   std::size_t entities = 0;
-  AxisPeaks peaks;
-  support::StepReports steps;
+  Peaks peaks;
+  StepReports steps{};
   std::size_t samples = 0;
 };
 

@@ -59,35 +59,24 @@ struct ForwardOnly {
 };
 auto tip = kinematics::tip_velocity(ForwardOnly{}, Vector3{}, Vector3{});
 
-// expect NumbersOnly, Chart: chart.joints(moving)
+// expect NoJoints, Map: map.joints(x)
+struct NoJoints {
+  using Scalar = double;
+  static constexpr int axis_count = 3;
+};
+path::Mapped<NoJoints, path::Line<3>>* mapped;
+
+// expect NumbersOnly, Curve: curve.point(jet)
 struct NumbersOnly {
   using Scalar = double;
-  static constexpr std::size_t axis_count = 3;
-  double reach(const std::array<double, 3>&) const;
-  std::array<double, 3> joints(const std::array<double, 3>&) const;
+  using Vector = Vector3;
+  double parameter_end() const;
+  std::array<double, 3> point(double) const;
 };
-auto chart = plan::OneChart<NumbersOnly>({});
-
-// expect NumbersMeasured, MeasuringChart: a chart measures numbers and jets
-struct NumbersMeasured : kinematics::PolarChart {
-  std::array<double, 3> measured(const std::array<double, 3>& point) const { return point; }
-};
-auto measured = plan::measured_point(NumbersMeasured{}, std::array<double, 3>{});
+auto measured = path::measured(NumbersOnly{});
 
 // expect int, NumberOver: same_as
 auto joints_of_int = kinematics::PolarChart{}.joints(std::array<int, 3>{});
-
-// expect NoFollow, Guide: guide.follow(segment, out)
-struct NoFollow {
-  using Chart = kinematics::PolarChart;
-};
-plan::JointCourse<NoFollow>* course;
-
-// expect NoRates, JointPath: path.rates(u)
-struct NoRates : NoInverse {
-  double parameter_at(double) const;
-};
-plan::JointBlock<NoRates>* joint_block;
 
 // expect SpeedNotSquared, JunctionPolicy: policy.speed_sq(junction)
 struct SpeedNotSquared {

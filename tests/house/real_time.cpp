@@ -14,7 +14,7 @@
 #include "cncplan/junction/minimum.hpp"
 #include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/kinematics/tire_mold_row.hpp"
+#include "cncplan/kinematics/tire_mold/row.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"

@@ -1,5 +1,6 @@
 #include "cncplan/kinematics/cartesian.hpp"
 
+#include "cncplan/path/mapped.hpp"
 #include "laws.hpp"
 #include "support/random.hpp"
 
@@ -7,7 +8,7 @@ using namespace cncplan;
 using namespace cncplan::kinematics;
 
 static_assert(Kinematics<Cartesian> && Kinematics<BasicCartesian<float>>);
-static_assert(Chart<CartesianChart> && Chart<BasicCartesianChart<float>>);
+static_assert(path::Map<CartesianChart> && path::Map<BasicCartesianChart<float>>);
 
 TEST_CASE("a plain mill goes where it is told", "[cartesian]") {
   test::Random random;

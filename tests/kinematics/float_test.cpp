@@ -1,18 +1,17 @@
 // Everything of the machines in float, held against the same in double: as exact as float allows, and the
 // same pieces, kinks and stops.
-#include <iterator>
+#include <algorithm>
 #include <vector>
 
 #include "cncplan/kinematics/cartesian.hpp"
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/kinematics/tire_mold.hpp"
-#include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/joint/caps.hpp"
-#include "cncplan/plan/joint/course.hpp"
-#include "cncplan/plan/joint/polar_guide.hpp"
-#include "cncplan/plan/joint/sidewall_guide.hpp"
-#include "cncplan/plan/joint/sidewall_rows.hpp"
+#include "cncplan/kinematics/tire_mold/tire_mold.hpp"
+#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/plan/table_path.hpp"
+#include "cncplan/plan/tire_mold/wall_program.hpp"
+#include "cncplan/plan/tire_mold/wall_rows.hpp"
 #include "laws.hpp"
+#include "machine.hpp"
 #include "support/random.hpp"
 #include "wall.hpp"
 
@@ -21,107 +20,64 @@ using namespace cncplan::kinematics;
 
 namespace {
 
-template <class S>
-path::BasicSegment<S> line(S x0, S y0, S z0, S x1, S y1, S z1) {
-  return path::BasicLine<S>({x0, y0, z0}, {x1, y1, z1});
-}
-
-// Over the shoulder, round the arc and across the kink, there and back.
-template <class S>
-std::vector<path::BasicSegment<S>> artwork() {
-  const auto arc = path::arc_from_center<S>({S(70), S(30), S(0)}, {S(70), S(30), S(0)}, {S(80), S(30), S(0)},
-                                            Turn::clockwise, Plane::xy);
-  return {line<S>(60, 0, 5, 70, 30, 5),
-          line<S>(70, 30, 5, 70, 30, 0),
-          *arc,
-          line<S>(70, 30, 0, 40, 80, 0),
-          line<S>(40, 80, 0, -30, 90, 0),
-          line<S>(-30, 90, 0, -60, 60, 0),
-          line<S>(-60, 60, 0, -60, -40, 0),
-          line<S>(-60, -40, 0, -125, -20, 0),
-          line<S>(-125, -20, 0, -60, -30, 2)};
-}
-
-// What a course comes to, as doubles: lengths, stops, joints at a hundred places, and the caps.
+// What a trajectory comes to, as doubles: length, time, stops, and the axes at a hundred places of its way.
 struct Summary {
-  double length = 0;
-  std::size_t kinks = 0;
-  std::vector<Eigen::VectorXd> joints;
-  double slowest = 1e9, slowest_corner = 1e9, least_acceleration = 1e9, least_jerk = 1e9;
+  double length = 0, duration = 0;
+  long stops = 0;
+  std::vector<Eigen::VectorXd> places;
 };
 
-template <class Guide, class S, int N>
-Summary summary(Guide guide, const BasicJointLimits<S, N>& limits) {
-  plan::JointCourse<Guide> course{std::move(guide)};
-  std::size_t number = 0;
-  for (const auto& segment : artwork<S>()) {
-    const auto appended = course.append(segment, S(60), number++);
-    CAPTURE(number, appended ? 0.0 : appended.error().value, appended ? 0.0 : appended.error().bound);
-    REQUIRE(appended);
-  }
+template <class M, class B>
+Summary summary(const std::vector<B>& blocks, const M& machine) {
   Summary result;
-  const auto& blocks = course.blocks();
-  for (const auto& block : blocks) {
-    result.length += static_cast<double>(block.path.length());
-    if (block.stop_at_end) ++result.kinks;
-  }
+  for (const B& block : blocks) result.length += static_cast<double>(block.path.length());
+  result.stops = std::count_if(blocks.begin(), blocks.end(), [](const B& block) { return block.exact_stop; });
   double origin = 0;
   int next = 0;
-  for (const auto& block : blocks) {
+  for (const B& block : blocks) {
     const double length = static_cast<double>(block.path.length());
-    for (; next <= 100 && next / 100.0 * result.length <= origin + length; ++next) {
-      const double along = next / 100.0 * result.length - origin;
-      result.joints.push_back(
-          block.path.position(block.path.parameter_at(static_cast<S>(along))).template cast<double>());
-    }
+    for (; next <= 100 && next / 100.0 * result.length <= origin + length; ++next)
+      result.places.push_back(
+          block.path.position_at(static_cast<typename M::Scalar>(next / 100.0 * result.length - origin))
+              .template cast<double>());
     origin += length;
   }
-  std::vector<plan::BasicBlockCaps<S>> caps;
-  using Block = typename plan::JointCourse<Guide>::Block;
-  plan::joint_caps(std::span<const Block>(blocks), limits, S(0.001), std::back_inserter(caps));
-  for (std::size_t i = 0; i < caps.size(); ++i) {
-    const auto least = [](double& worst, S value) { worst = std::min(worst, static_cast<double>(value)); };
-    least(result.slowest, caps[i].limits.velocity);
-    least(result.least_acceleration, caps[i].limits.acceleration);
-    least(result.least_jerk, caps[i].limits.jerk);
-    if (i > 0 && !blocks[i - 1].stop_at_end) least(result.slowest_corner, caps[i].entry);
-  }
+  const auto trajectory = plan_blocks(blocks, machine);
+  REQUIRE(trajectory);
+  result.duration = static_cast<double>(trajectory->duration());
   return result;
 }
 
 void compare(const Summary& single, const Summary& exact) {
   CHECK(single.length == Approx(exact.length).epsilon(1e-6));
-  CHECK(single.kinks == exact.kinks);
-  REQUIRE(single.joints.size() >= 100);
+  CHECK(single.stops == exact.stops);
+  CHECK(single.duration == Approx(exact.duration).epsilon(0.01));
+  REQUIRE(single.places.size() >= 100);
   double worst = 0;
-  for (std::size_t i = 0; i < std::min(single.joints.size(), exact.joints.size()); ++i)
-    worst = std::max(worst, (single.joints[i] - exact.joints[i]).cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < std::min(single.places.size(), exact.places.size()); ++i)
+    worst = std::max(worst, (single.places[i] - exact.places[i]).cwiseAbs().maxCoeff());
   CHECK(worst < 1e-3);  // a path of 500 mm and more, and its rounding
-  // speeds come in steps of 2 %
-  CHECK(single.slowest == Approx(exact.slowest).epsilon(0.05));
-  CHECK(single.slowest_corner == Approx(exact.slowest_corner).epsilon(0.05));
-  CHECK(single.least_acceleration == Approx(exact.least_acceleration).epsilon(0.1));
-  CHECK(single.least_jerk == Approx(exact.least_jerk).epsilon(0.1));
 }
 
 template <class S>
 Summary on_the_wall() {
   const auto chain = test::wall<S>();
   const BasicSidewall<S> sidewall(chain.pieces, S(50), S(20.8));
-  BasicJointLimits<S, 4> limits;
-  limits.velocity << 100, 100, 1, 1;
-  limits.acceleration << 500, 500, 5, 10;
-  limits.jerk << 5000, 5000, 50, 100;
-  return summary(plan::BasicSidewallGuide<S>(sidewall, S(1)), limits);
+  plan::BasicWallProgram<S> program(sidewall, S(1));
+  for (const auto& segment : test::wall_artwork<S>())
+    REQUIRE(program.append({.path = segment, .feed = S(60)}));
+  return summary(program.blocks(), test::wall_machine<S>());
 }
 
 template <class S>
 Summary round_the_table() {
-  BasicJointLimits<S, 3> limits;
-  limits.velocity << 100, 100, 1;
-  limits.acceleration << 500, 500, 10;
-  limits.jerk << 5000, 5000, 100;
-  return summary(plan::BasicPolarGuide<S>(S(1)), limits);
+  using Path = plan::TablePath<BasicPolarChart<S>, path::BasicSegment<S>>;
+  std::vector<BasicBlock<S, 3, Path>> blocks;
+  S table{};
+  for (const auto& segment : test::wall_artwork<S>())
+    REQUIRE(plan::follow_table(segment, BasicPolarChart<S>{}, S(1), table,
+                               [&](const Path& path) { blocks.push_back({.path = path, .feed = S(60)}); }));
+  return summary(blocks, test::table_machine<S>());
 }
 
 // The largest error of joints there and back, over their scale.
@@ -176,24 +132,24 @@ TEST_CASE("float: the profile is chained and mapped as in double", "[float]") {
   CHECK(worst < 2e-4);  // mm at 200 mm, and rad
 }
 
-TEST_CASE("float: a program over the wall, its kinks and its caps as in double", "[float]") {
+TEST_CASE("float: a program over the wall and its kinks as in double", "[float]") {
   const Summary exact = on_the_wall<double>();
-  CHECK(exact.kinks == 4);
+  CHECK(exact.stops == 4);  // before and behind the kink, there and back
   compare(on_the_wall<float>(), exact);
 }
 
-TEST_CASE("float: a program round the table and its caps as in double", "[float]") {
+TEST_CASE("float: a program round the table as in double", "[float]") {
   compare(round_the_table<float>(), round_the_table<double>());
 }
 
-TEST_CASE("float: rows of a stretch keep the tolerance", "[float]") {
+TEST_CASE("float: rows of a part keep the tolerance", "[float]") {
   const auto chain = test::wall<float>();
   const BasicSidewall<float> sidewall(chain.pieces, 50, 20.8F);
-  plan::BasicSidewallGuide<float> guide(sidewall, 1);
-  std::vector<plan::SidewallStretch<float>> stretches;
-  REQUIRE(guide.follow(line<float>(60, 0, 0, 0, 110, 0), stretches));
-  for (const auto& stretch : stretches) {
-    const auto division = plan::divide(stretch, 0.01F);
+  plan::BasicWallCutter<float> cutter(sidewall, 1);
+  std::vector<plan::BasicWallPart<float>> parts;
+  REQUIRE(cutter.cut(path::BasicSegment<float>(path::BasicLine<float>({60, 0, 0}, {0, 110, 0})), parts));
+  for (const auto& part : parts) {
+    const auto division = plan::divide(part, 0.01F);
     CHECK(division.error <= 0.01F);
     CHECK(division.rows < 100);
   }

@@ -1,5 +1,6 @@
 #include "cncplan/kinematics/polar.hpp"
 
+#include "cncplan/path/mapped.hpp"
 #include "laws.hpp"
 #include "support/random.hpp"
 
@@ -7,7 +8,7 @@ using namespace cncplan;
 using namespace cncplan::kinematics;
 
 static_assert(Kinematics<Polar> && Kinematics<BasicPolar<float>>);
-static_assert(Chart<PolarChart> && Chart<BasicPolarChart<float>>);
+static_assert(path::Map<PolarChart> && path::Map<BasicPolarChart<float>>);
 
 namespace {
 constexpr double pi = std::numbers::pi;

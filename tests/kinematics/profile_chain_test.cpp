@@ -1,4 +1,4 @@
-#include "cncplan/kinematics/profile_chain.hpp"
+#include "cncplan/kinematics/tire_mold/profile_chain.hpp"
 
 #include <numeric>
 

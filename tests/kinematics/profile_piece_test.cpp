@@ -1,4 +1,4 @@
-#include "cncplan/kinematics/profile_piece.hpp"
+#include "cncplan/kinematics/tire_mold/profile_piece.hpp"
 
 #include "support/catch.hpp"
 #include "support/random.hpp"

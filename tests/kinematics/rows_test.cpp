@@ -1,7 +1,7 @@
-// Straight rows in machine space, held against the wall at many more places than the division looks at.
+// Straight rows of the four axes, held against the wall at many more places than the division looks at.
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/joint/sidewall_guide.hpp"
-#include "cncplan/plan/joint/sidewall_rows.hpp"
+#include "cncplan/plan/tire_mold/wall_cutter.hpp"
+#include "cncplan/plan/tire_mold/wall_rows.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 #include "wall.hpp"
@@ -14,16 +14,16 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 // The largest distance of a row's places from the true path, found by looking for the nearest place.
-double distance(const plan::SidewallStretch<double>& stretch, double from, double to) {
-  const TireMold machine{.tool_length = stretch.chart.tool_length};
-  const auto q0 = plan::sidewall_joints(stretch, from, 0.0);
-  const auto q1 = plan::sidewall_joints(stretch, to, q0[3]);
+double distance(const plan::WallPart& part, double from, double to) {
+  const TireMold machine{.tool_length = part.map.tool_length};
+  const auto q0 = plan::wall_joints(part, from, 0.0);
+  const auto q1 = plan::wall_joints(part, to, q0[3]);
   double worst = 0;
   for (int k = 1; k < 40; ++k) {
-    const double part = k / 40.0;
-    const Vector3 tip = machine.forward(q0 + part * (q1 - q0)).position;
+    const double share = k / 40.0;
+    const Vector3 tip = machine.forward(q0 + share * (q1 - q0)).position;
     const auto apart = [&](double u) {
-      const auto p = stretch.chart.tip(plan::point_at(stretch.segment, u));
+      const auto p = part.map.tip(part.flat(u));
       return (Vector3(p[0], p[1], p[2]) - tip).norm();
     };
     double low = from, high = to;
@@ -44,26 +44,25 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
   test::Random random;
   double worst = 0, told_too_little = 0;
   int rows = 0, too_many = 0;
-  plan::SidewallGuide guide(sidewall, 1.0);
+  plan::WallCutter cutter(sidewall, 1.0);
   Vector3 at(60, 20, 0);
   for (int i = 0; i < 200; ++i) {
     const double r = random.uniform(55, 130), c = random.uniform(-pi, pi);
     const Vector3 to(r * std::cos(c), r * std::sin(c), random.uniform(-1, 1));
-    std::vector<plan::SidewallStretch<double>> stretches;
-    if (!guide.follow(path::Line<3>(at, to), stretches)) continue;
+    std::vector<plan::WallPart> parts;
+    if (!cutter.cut(path::Line<3>(at, to), parts)) continue;
     at = to;
-    for (const auto& stretch : stretches) {
+    for (const auto& part : parts) {
       const double tolerance = random.log_uniform(1e-3, 0.1);
-      const auto division = plan::divide(stretch, tolerance);
+      const auto division = plan::divide(part, tolerance);
       rows += division.rows;
-      const double width = (stretch.to - stretch.from) / division.rows;
+      const double width = part.parameter_end() / division.rows;
       double largest = 0;
       for (int k = 0; k < division.rows; ++k)
-        largest =
-            std::max(largest, distance(stretch, stretch.from + width * k, stretch.from + width * (k + 1)));
+        largest = std::max(largest, distance(part, width * k, width * (k + 1)));
       worst = std::max(worst, largest / tolerance);
       told_too_little = std::max(told_too_little, largest / (division.error + 1e-9));
-      if (division.rows > 20 && plan::largest_chord_error(stretch, division.rows * 8 / 10) < tolerance)
+      if (division.rows > 20 && plan::largest_chord_error(part, division.rows * 8 / 10) < tolerance)
         ++too_many;
     }
   }
@@ -73,13 +72,13 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
   CHECK(too_many == 0);
 }
 
-TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]") {
+TEST_CASE("parts cover a segment, and change where the wall does", "[rows]") {
   const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
-  plan::SidewallGuide guide(sidewall, 1.0);
-  std::vector<plan::SidewallStretch<double>> out;
+  plan::WallCutter cutter(sidewall, 1.0);
+  std::vector<plan::WallPart> out;
   // out over all three pieces and back: 90 and 122 mm are the borders, the outer one a kink
-  REQUIRE(guide.follow(path::Line<3>({60, 0, 3}, {130, 0, 3}), out));
+  REQUIRE(cutter.cut(path::Line<3>({60, 0, 3}, {130, 0, 3}), out));
   REQUIRE(out.size() == 4);
   CHECK(out[0].to == Approx(30));
   CHECK(out[1].to == Approx(62));
@@ -87,18 +86,14 @@ TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]")
   CHECK(out[2].to == Approx(std::abs(kink_angle(chain.pieces[1], chain.pieces[2]))));
   CHECK(out[3].from == out[1].to);
   CHECK(out[3].to == 70);
-  CHECK(guide.piece() == 2U);
+  CHECK(cutter.piece() == 2U);
   out.clear();
-  REQUIRE(guide.follow(path::Line<3>({130, 0, 3}, {60, 0, 3}), out));
+  REQUIRE(cutter.cut(path::Line<3>({130, 0, 3}, {60, 0, 3}), out));
   CHECK(out.size() == 4);
   CHECK(out[1].kink);
-  CHECK(guide.piece() == 0U);
-  const auto low = [](const auto& stretch) {
-    return stretch.chart.joints(plan::point_at(stretch.segment, stretch.from));
-  };
-  const auto high = [](const auto& stretch) {
-    return stretch.chart.joints(plan::point_at(stretch.segment, stretch.to));
-  };
+  CHECK(cutter.piece() == 0U);
+  const auto low = [](const auto& part) { return part.point(0.0); };
+  const auto high = [](const auto& part) { return part.point(part.parameter_end()); };
   double worst = 0;
   for (std::size_t i = 0; i + 1 < out.size(); ++i)
     for (std::size_t k = 0; k < 4; ++k)
@@ -108,27 +103,27 @@ TEST_CASE("stretches cover a segment, and change where the wall does", "[rows]")
   // an arc that leaves a piece and comes back: two crossings
   const auto arc =
       path::arc_from_center<double>({80, 0, 0}, {80, 0, 0}, {88, 0, 0}, Turn::clockwise, Plane::xy);
-  REQUIRE(guide.follow(*arc, out));
+  REQUIRE(cutter.cut(*arc, out));
   CHECK(out.size() == 3);
   // one that ends on a border has not left its piece
   out.clear();
-  REQUIRE(guide.follow(path::Line<3>({80, 0, 0}, {90, 0, 0}), out));
+  REQUIRE(cutter.cut(path::Line<3>({80, 0, 0}, {90, 0, 0}), out));
   CHECK(out.size() == 1);
-  CHECK(guide.piece() == 0U);
+  CHECK(cutter.piece() == 0U);
 }
 
 TEST_CASE("segments that leave the wall are refused", "[rows]") {
   const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
-  plan::SidewallGuide guide(sidewall, 60.0);
-  std::vector<plan::SidewallStretch<double>> out;
-  const auto inside = guide.follow(path::Line<3>({-70, 40, 0}, {70, 40, 0}), out);
+  plan::WallCutter cutter(sidewall, 60.0);
+  std::vector<plan::WallPart> out;
+  const auto inside = cutter.cut(path::Line<3>({-70, 40, 0}, {70, 40, 0}), out);
   REQUIRE(!inside);
   CHECK(inside.error() == Error{ErrorCode::below_limit, "radius", 40, 50});
   CHECK(out.empty());
-  const auto near = guide.follow(path::Line<3>({-70, 55, 0}, {70, 55, 0}), out);
+  const auto near = cutter.cut(path::Line<3>({-70, 55, 0}, {70, 55, 0}), out);
   CHECK(near.error() == Error{ErrorCode::below_limit, "radius", 55, 60});
-  const auto beyond = guide.follow(path::Line<3>({100, 0, 0}, {200, 0, 0}), out);
+  const auto beyond = cutter.cut(path::Line<3>({100, 0, 0}, {200, 0, 0}), out);
   CHECK(beyond.error() == Error{ErrorCode::above_limit, "radius", 200, sidewall.end_radius()});
-  CHECK(!guide.piece());
+  CHECK(!cutter.piece());
 }

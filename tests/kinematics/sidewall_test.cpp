@@ -1,7 +1,8 @@
-#include "cncplan/kinematics/sidewall.hpp"
+#include "cncplan/kinematics/tire_mold/sidewall.hpp"
 
-#include "cncplan/kinematics/profile_chain.hpp"
-#include "cncplan/kinematics/tire_mold.hpp"
+#include "cncplan/kinematics/tire_mold/profile_chain.hpp"
+#include "cncplan/kinematics/tire_mold/tire_mold.hpp"
+#include "cncplan/path/mapped.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
@@ -9,7 +10,7 @@
 using namespace cncplan;
 using namespace cncplan::kinematics;
 
-static_assert(Chart<SidewallChart> && Chart<BasicSidewallChart<float>>);
+static_assert(path::Map<SidewallMap> && path::Map<BasicSidewallMap<float>>);
 
 namespace {
 
@@ -79,12 +80,11 @@ TEST_CASE("the wall ends somewhere, and the origin has no angle", "[sidewall]") 
 TEST_CASE("jets of the mapping are its derivatives", "[sidewall]") {
   const auto chain = wall();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
-  const auto chart = sidewall.chart(1, Azimuth(0.6, 0.8, 0));
+  const auto map = sidewall.map(1, Azimuth(0.6, 0.8, 0));
   // along a line over the arc piece
   const auto point = [](double t) { return std::array<double, 3>{62 + 3 * t, 75 - 2 * t, 1 + 0.5 * t}; };
-  const auto joints =
-      chart.joints(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
-  const auto tip = chart.tip(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
+  const auto joints = map.joints(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
+  const auto tip = map.tip(std::array<Jet, 3>{Jet(62, 3, 0, 0), Jet(75, -2, 0, 0), Jet(1, 0.5, 0, 0)});
   const double h = 0.02;
   const auto check = [&](auto at, const Jet& jet) {
     CHECK(jet.value == Approx(at(0.0)));
@@ -96,8 +96,8 @@ TEST_CASE("jets of the mapping are its derivatives", "[sidewall]") {
                            .epsilon(1e-3)
                            .margin(1e-8));
   };
-  for (std::size_t i = 0; i < 4; ++i) check([&](double t) { return chart.joints(point(t))[i]; }, joints[i]);
-  for (std::size_t i = 0; i < 3; ++i) check([&](double t) { return chart.tip(point(t))[i]; }, tip[i]);
+  for (std::size_t i = 0; i < 4; ++i) check([&](double t) { return map.joints(point(t))[i]; }, joints[i]);
+  for (std::size_t i = 0; i < 3; ++i) check([&](double t) { return map.tip(point(t))[i]; }, tip[i]);
 }
 
 TEST_CASE("over a kink the tip stands still and the tool turns", "[sidewall]") {
@@ -106,7 +106,7 @@ TEST_CASE("over a kink the tip stands still and the tool turns", "[sidewall]") {
   const double angle = kink_angle(chain.pieces[1], chain.pieces[2]);
   REQUIRE(std::abs(angle) > 0.2);
   const double c = 2.5, begins = sidewall.begins(2);
-  const auto chart = sidewall.kink_chart(1, Azimuth(std::cos(c), std::sin(c), 0));
+  const auto map = sidewall.kink_map(1, Azimuth(std::cos(c), std::sin(c), 0));
   const TireMold machine{.tool_length = 20.8};
   const auto at = [&](double turned) {
     const double r = begins + turned;
@@ -114,15 +114,15 @@ TEST_CASE("over a kink the tip stands still and the tool turns", "[sidewall]") {
   };
   double worst = 0;
   for (int k = 0; k <= 10; ++k) {
-    const auto q = chart.joints(at(std::abs(angle) * k / 10));
+    const auto q = map.joints(at(std::abs(angle) * k / 10));
     const auto p = chain.pieces[2].start;
     worst = std::max(worst, (machine.forward({q[0], q[1], q[2], q[3]}).position -
                              Vector3(p.x() * std::cos(c), p.x() * std::sin(c), p.y()))
                                 .norm());
   }
   CHECK(worst < 1e-12 * 500);
-  const auto before = sidewall.chart(1).joints(at(0)), after = sidewall.chart(2).joints(at(0));
-  const auto first = chart.joints(at(0)), last = chart.joints(at(std::abs(angle)));
+  const auto before = sidewall.map(1).joints(at(0)), after = sidewall.map(2).joints(at(0));
+  const auto first = map.joints(at(0)), last = map.joints(at(std::abs(angle)));
   for (std::size_t i = 0; i < 4; ++i) {
     CHECK(std::abs(first[i] - before[i]) < 1e-12 * 500);
     CHECK(std::abs(last[i] - after[i]) < 1e-12 * 500);

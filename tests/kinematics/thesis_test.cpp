@@ -2,8 +2,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "cncplan/kinematics/profile_chain.hpp"
-#include "cncplan/kinematics/sidewall.hpp"
+#include "cncplan/kinematics/tire_mold/profile_chain.hpp"
+#include "cncplan/kinematics/tire_mold/sidewall.hpp"
 #include "support/catch.hpp"
 #include "support/shared.hpp"
 

@@ -1,9 +1,7 @@
 // Rows of the four-axis machine: the tip's way along them, and rows about a standing tip.
-#include "cncplan/kinematics/tire_mold_row.hpp"
+#include "cncplan/kinematics/tire_mold/row.hpp"
 
-#include "cncplan/path/line.hpp"
-#include "cncplan/plan/joint/limits_along.hpp"
-#include "cncplan/plan/joint/stretch.hpp"
+#include "cncplan/path/measured.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
@@ -11,21 +9,30 @@
 using namespace cncplan;
 using namespace cncplan::kinematics;
 
-static_assert(Chart<TireMoldRow> && Chart<BasicTireMoldRow<float>>);
-
 namespace {
 
+// A row as a path of the four axes by the length that counts.
 template <class S>
-using Paths = std::vector<plan::MappedPath<BasicTireMoldRow<S>>>;
+struct RowCurve {
+  using Scalar = S;
+  using Vector = VectorN<S, 4>;
+
+  BasicTireMoldRow<S> row;
+
+  [[nodiscard]] S parameter_end() const { return S(1); }
+  template <class T>
+  [[nodiscard]] std::array<T, 4> point(const T& u) const {
+    return row.joints(std::array<T, 3>{u, T(0), T(0)});
+  }
+  template <class T>
+  [[nodiscard]] std::array<T, 3> travelled(const T& u) const {
+    return row.measured(std::array<T, 3>{u, T(0), T(0)});
+  }
+};
 
 template <class S>
-Paths<S> paths_of(const BasicTireMoldRow<S>& row) {
-  const path::BasicSegment<S> whole(path::BasicLine<S>({S(0), S(0), S(0)}, {S(1), S(0), S(0)}));
-  Paths<S> paths;
-  S table{};
-  plan::cut(plan::Stretch<BasicTireMoldRow<S>>{whole, row, S(0), S(1), false}, S(2), table,
-            [&](const auto& path) { paths.push_back(path); });
-  return paths;
+path::Measured<RowCurve<S>> path_of(const BasicTireMoldRow<S>& row) {
+  return path::Measured<RowCurve<S>>(RowCurve<S>{row});
 }
 
 }  // namespace
@@ -42,7 +49,7 @@ TEMPLATE_TEST_CASE("rows: as long as the polygon of the tip's places", "[rows]",
     const Joints to(any(50, 300), any(0, 300), any(-1, 1), any(-6, 6));
     const S aside = i % 2 == 0 ? S(0) : any(-30, 30);
     const auto row = tire_mold_row(BasicTireMold<S>{.tool_length = S(20), .side_offset = aside}, from, to);
-    const auto paths = paths_of(row);
+    const auto path = path_of(row);
     // the machine written out, in double
     const auto tip = [&](double part) {
       const Eigen::Vector4d q = from.template cast<double>() + part * (to - from).template cast<double>();
@@ -57,18 +64,14 @@ TEMPLATE_TEST_CASE("rows: as long as the polygon of the tip's places", "[rows]",
       return sum;
     };
     const double exact = polygon(4000) + (polygon(4000) - polygon(2000)) / 3;
-    double sum = 0;
-    for (const auto& path : paths) sum += static_cast<double>(path.length());
-    if (row.even_length == S(0)) length = std::max(length, std::abs(sum - exact) / exact);
-    joined = std::max(joined, static_cast<double>((paths.front().position(S(0)) - from).norm()));
-    joined = std::max(joined,
-                      static_cast<double>((paths.back().position(paths.back().parameter_end()) - to).norm()));
-    // at its middle by length, the tip is on the row, and so fast as the length says
-    const auto& path = paths[paths.size() / 2];
+    const auto whole = static_cast<double>(path.length());
+    if (row.even_length == S(0)) length = std::max(length, std::abs(whole - exact) / exact);
+    joined = std::max(joined, static_cast<double>((path.position_at(S(0)) - from).norm()));
+    joined = std::max(joined, static_cast<double>((path.position_at(path.length()) - to).norm()));
+    // at its middle by length, the tip is on the row
     const S u = path.parameter_at(path.length() / S(2));
-    const auto place = row.tip(path.point(u));
-    const double part = static_cast<double>(path.point(u)[0]);
-    off = std::max(off, (tip(part) - Vector3(place[0], place[1], place[2])).norm() / 300);
+    const auto place = row.tip(std::array<S, 3>{u, S(0), S(0)});
+    off = std::max(off, (tip(static_cast<double>(u)) - Vector3(place[0], place[1], place[2])).norm() / 300);
   }
   CHECK(length < rounding);
   CHECK(joined < 300 * rounding);
@@ -78,16 +81,14 @@ TEMPLATE_TEST_CASE("rows: as long as the polygon of the tip's places", "[rows]",
 TEST_CASE("rows: speed along them is the tip's", "[rows]") {
   const TireMold machine{.tool_length = 20};
   const auto row = tire_mold_row<double>(20, {0, 0, 0, 0}, {244, 150, -0.3, 1.2});
+  const auto path = path_of(row);
   double worst = 0;
-  for (const auto& path : paths_of(row))
-    for (const double part : {0.0, 0.3, 1.0}) {
-      const double u = part * path.parameter_end();
-      worst =
-          std::max(worst, std::abs(tip_velocity(machine, path.position(u), path.rates(u).first).norm() - 1));
-    }
+  for (int k = 0; k <= 100; ++k) {
+    const auto point = path.point_at(path.length() * k / 100);
+    worst = std::max(worst, std::abs(tip_velocity(machine, point.position, point.first).norm() - 1));
+  }
   CHECK(worst < 1e-12);
-  const auto paths = paths_of(row);
-  CHECK(test::heap_allocations_of([&] { (void)plan::rate_bounds(paths.front()); }) == 0);
+  CHECK(test::heap_allocations_of([&] { (void)path.bounds(0.0, path.length()); }) == 0);
 }
 
 TEST_CASE("rows: a tool that turns about its tip shares the row evenly", "[rows]") {
@@ -97,15 +98,11 @@ TEST_CASE("rows: a tool that turns about its tip shares the row evenly", "[rows]
   };
   const auto row = tire_mold_row<double>(20, holder(-0.2), holder(-0.1));
   CHECK(row.even_length == Approx(0.1 * 20 * (std::sin(0.2) - std::sin(0.1))));
-  const auto paths = paths_of(row);
-  double sum = 0;
-  for (const auto& path : paths) {
-    sum += path.length();
-    const auto rates = path.rates(path.parameter_end() / 2);
-    CHECK((rates.first - row.way / row.even_length).norm() < 1e-12);
-    CHECK(rates.second.norm() < 1e-12);
-  }
-  CHECK(sum == Approx(row.even_length));
+  const auto path = path_of(row);
+  const auto point = path.point_at(path.length() / 2);
+  CHECK((point.first - row.way / row.even_length).norm() < 1e-12);
+  CHECK(point.second.norm() < 1e-12);
+  CHECK(path.length() == Approx(row.even_length));
   // a table that turns about an axis under the tip moves it by the side offset alone
   const TireMold beside{.tool_length = 20, .side_offset = 30};
   CHECK(tire_mold_row<double>(beside, {0, 0, 0, 0}, {0, 0, 0, 1}).even_length == 0.0);

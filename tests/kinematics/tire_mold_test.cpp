@@ -1,4 +1,4 @@
-#include "cncplan/kinematics/tire_mold.hpp"
+#include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 
 #include <Eigen/LU>
 

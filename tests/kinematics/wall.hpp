@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/kinematics/profile_chain.hpp"
+#include "cncplan/kinematics/tire_mold/profile_chain.hpp"
 
 namespace cncplan::test {
 

@@ -100,6 +100,27 @@ class PeakSearch {
             axis.third * (v * v2) + axis.second * (I(Scalar(3)) * v * a) + axis.first * I(j)};
   }
 
+  // The third derivatives are enclosed; the lower ones lie near their values in the middle, which on a short
+  // piece of a curve says more than their own enclosure does.
+  template <class P>
+  [[nodiscard]] static std::array<BasicJet<I>, static_cast<std::size_t>(n)> enclosed(const P& path,
+                                                                                     Scalar low,
+                                                                                     Scalar high) {
+    std::array<BasicJet<I>, static_cast<std::size_t>(n)> axes = path.enclosure(low, high);
+    const Scalar half = (high - low) / Scalar(2);
+    const auto middle = path.point_at(low + half);
+    const auto near = [half](Scalar value, const I& rate, const I& known) {
+      const I grown{value - half * rate.largest(), value + half * rate.largest()};
+      return grown.high - grown.low < known.high - known.low ? grown : known;
+    };
+    for (int i = 0; i < n; ++i) {
+      BasicJet<I>& axis = axes[static_cast<std::size_t>(i)];
+      axis.second = near(middle.second[i], axis.third, axis.second);
+      axis.first = near(middle.first[i], axis.second, axis.first);
+    }
+    return axes;
+  }
+
   [[nodiscard]] static bool beyond(Scalar bound, Scalar found) {
     constexpr Scalar tiny = Scalar(1e-9);
     return bound > found * (Scalar(1) + tolerance) + tiny;
@@ -115,7 +136,7 @@ class PeakSearch {
     const I a = I::hull(first.acceleration, last.acceleration);
     const auto [low, high] = std::minmax(first.position, last.position);
     const auto axes =
-        path.enclosure(std::clamp(low, Scalar(0), path.length()), std::clamp(high, Scalar(0), path.length()));
+        enclosed(path, std::clamp(low, Scalar(0), path.length()), std::clamp(high, Scalar(0), path.length()));
     if (beyond(v.largest(), peaks_.along.velocity)) return true;
     BasicLimits<Scalar> tool_sq{Scalar(0), Scalar(0), Scalar(0)};
     for (int i = 0; i < n; ++i) {
@@ -150,24 +171,45 @@ template <MachineModel M, BlockModel B>
   return detail::PeakSearch<Trajectory<M, B>>(trajectory).search();
 }
 
-/// The largest jump of any axis' velocity at a joint between two blocks.
+/// What jumps at the joints between blocks.
+template <std::floating_point S, int N>
+struct BasicJointJumps {
+  VectorN<S, N> velocity = VectorN<S, N>::Zero();  ///< of each axis, at most
+  std::size_t accelerations{};  ///< joints that are passed in motion and where some axis' acceleration jumps
+};
+
+/// Looks at every joint; what rounding leaves of a velocity or an acceleration is no jump.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] typename M::Scalar corner_velocity_step(const Trajectory<M, B>& trajectory) {
+[[nodiscard]] BasicJointJumps<typename M::Scalar, M::axis_count> joint_jumps(
+    const Trajectory<M, B>& trajectory) {
   using S = typename M::Scalar;
-  S largest = S(0);
+  constexpr S rounding = S(1e-6);
+  BasicJointJumps<S, M::axis_count> jumps;
   const auto phases = trajectory.phases();
   for (std::size_t i = 1; i < phases.size(); ++i) {
     const auto& [before, block] = phases[i - 1];
     const auto& [after, next] = phases[i];
-    if (block == next) continue;
+    if (block == next || !(after.velocity > S(0))) continue;
     const auto& left = trajectory.program()[block].path;
     const auto& entered = trajectory.program()[next].path;
     if (!(left.length() > S(0) && entered.length() > S(0))) continue;
-    const VectorN<S, M::axis_count> jump =
-        (left.point_at(left.length()).first - entered.point_at(S(0)).first) * after.velocity;
-    largest = std::max(largest, jump.cwiseAbs().maxCoeff());
+    const BasicState<S> along{S(0), after.velocity, after.acceleration, S(0)};
+    const auto end = motion(left.point_at(left.length()), along);
+    const auto start = motion(entered.point_at(S(0)), along);
+    const VectorN<S, M::axis_count> step = (end.velocity - start.velocity).cwiseAbs();
+    jumps.velocity = jumps.velocity.cwiseMax(step);
+    const VectorN<S, M::axis_count> jump = (end.acceleration - start.acceleration).cwiseAbs();
+    if (step.maxCoeff() > rounding ||
+        (jump.array() > rounding * (S(1) + end.acceleration.cwiseAbs().array())).any())
+      ++jumps.accelerations;
   }
-  return largest;
+  return jumps;
+}
+
+/// The largest jump of any axis' velocity at a joint between two blocks.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] typename M::Scalar corner_velocity_step(const Trajectory<M, B>& trajectory) {
+  return joint_jumps(trajectory).velocity.maxCoeff();
 }
 
 }  // namespace cncplan

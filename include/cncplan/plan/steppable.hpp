@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <concepts>
+#include <cstddef>
 #include <span>
+#include <type_traits>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/step/crossing.hpp"
 #include "cncplan/step/traced_path.hpp"
 
@@ -28,6 +31,41 @@ class LengthAsParameter {
   [[nodiscard]] Scalar length_at(Scalar s) const { return s; }
 
  private:
+  const P* path_;
+};
+
+/// A measured curve by its own parameter: no place of it has to be looked for by its length.
+template <Path P>
+class OwnParameter {
+ public:
+  using Scalar = typename P::Scalar;
+  using Vector = typename P::Vector;
+
+  explicit OwnParameter(const P& path) : path_(&path) {}
+
+  [[nodiscard]] Scalar length() const { return path_->length(); }
+  [[nodiscard]] Scalar parameter_end() const { return path_->parameter_end(); }
+  [[nodiscard]] Vector position(Scalar u) const {
+    const auto point = path_->curve().point(u);
+    return Eigen::Map<const Vector>(point.data());
+  }
+  [[nodiscard]] Vector derivative(Scalar u) const {
+    return each(u, [](const auto& jet) { return jet.first; });
+  }
+  [[nodiscard]] Vector second_derivative(Scalar u) const {
+    return each(u, [](const auto& jet) { return jet.second; });
+  }
+  [[nodiscard]] Scalar length_at(Scalar u) const { return path_->length_at(u); }
+
+ private:
+  template <class F>
+  [[nodiscard]] Vector each(Scalar u, F&& part) const {
+    Vector result;
+    const auto point = path_->curve().point(BasicJet<Scalar>(u, Scalar(1), Scalar(0), Scalar(0)));
+    for (int i = 0; i < Vector::RowsAtCompileTime; ++i) result[i] = part(point[static_cast<std::size_t>(i)]);
+    return result;
+  }
+
   const P* path_;
 };
 
@@ -77,6 +115,14 @@ class SteppableSegment {
   }
 
  private:
+  template <class Kind>
+  static constexpr bool is_measured = requires(const Kind& path, Scalar u) {
+    path.curve().point(u);
+    path.length_at(u);
+  };
+  template <class Kind>
+  using ParameterOf = std::conditional_t<is_measured<Kind>, OwnParameter<Kind>, LengthAsParameter<Kind>>;
+
   template <class F>
   decltype(auto) with(F&& f) const {
     return segment_->visit([&](const auto& p) {
@@ -85,8 +131,9 @@ class SteppableSegment {
         return f(p);
       } else {
         constexpr int pieces = 32;
-        const LengthAsParameter<Kind> curve(p);
-        return f(step::TracedPath<LengthAsParameter<Kind>>(curve, pieces));
+        using Curve = ParameterOf<Kind>;
+        const Curve curve(p);
+        return f(step::TracedPath<Curve>(curve, pieces));
       }
     });
   }

@@ -42,26 +42,24 @@ template <Path P>
 }
 
 /// Cuts a path into parts over which the table turns by one radian at most, and calls `add` with the image of
-/// each. `table` is the angle at which the table stands, rad with whole turns; it is moved on. Error:
-/// below_limit with the least radius, for a path that comes nearer to the axis than `smallest_radius` mm.
+/// each. `table` is the angle at which the table stands, rad with whole turns; it is moved on. Error, with
+/// nothing added: below_limit with the least radius, for a path that comes nearer to the axis than
+/// `smallest_radius` mm.
 template <path::Map M, Path P, std::invocable<const TablePath<M, P>&> Add>
 [[nodiscard]] Expected<void> follow_table(const P& programmed, M map, typename P::Scalar smallest_radius,
                                           typename P::Scalar& table, Add&& add) {
   using S = typename P::Scalar;
   const S length = programmed.length();
+  const S least = least_radius(programmed, S(0), length);
+  if (!(least >= smallest_radius))
+    return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(least),
+                                static_cast<double>(smallest_radius)});
   for (S from = S(0); from < length;) {
     const auto start = programmed.position_at(from);
     const S radius = std::hypot(start.x(), start.y());
-    const auto refuse = [&](S least) {
-      return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(least),
-                                  static_cast<double>(smallest_radius)});
-    };
-    if (!(radius >= smallest_radius)) return refuse(radius);
     const S left = length - from, stride = radius / S(2);
     const S to = left <= stride ? length : from + (left < S(2) * stride ? left / S(2) : stride);
     const auto middle = programmed.position_at(from + (to - from) / S(2)), end = programmed.position_at(to);
-    const S least = least_radius(programmed, from, to);
-    if (!(least >= smallest_radius)) return refuse(least);
     map.azimuth = kinematics::BasicAzimuth<S>(middle.x(), middle.y(), table);
     table = map.azimuth.of(end.x(), end.y());
     add(TablePath<M, P>(map, path::Part<P>(programmed, from, to)));

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/plan/joint/radius.hpp"
 #include "cncplan/plan/joint/stretch.hpp"
+#include "cncplan/plan/tire_mold/radius.hpp"
 
 namespace cncplan::plan {
 

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
-#include "cncplan/kinematics/tip_velocity.hpp"
-#include "cncplan/kinematics/tire_mold.hpp"
+#include "cncplan/kinematics/tire_mold/tip_velocity.hpp"
+#include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 
 namespace cncplan::kinematics {
 

@@ -9,7 +9,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
-#include "cncplan/kinematics/profile_piece.hpp"
+#include "cncplan/kinematics/tire_mold/profile_piece.hpp"
 
 namespace cncplan::kinematics {
 
@@ -23,7 +23,7 @@ namespace cncplan::kinematics {
 /// Over a kink the tip stays where it is and the tool turns about it; what is measured there is the travel of
 /// the holder.
 template <std::floating_point S>
-struct BasicSidewallChart {
+struct BasicSidewallMap {
   using Scalar = S;
   static constexpr int axis_count = 4;
 
@@ -32,6 +32,7 @@ struct BasicSidewallChart {
   S tool_length{};  ///< mm
   BasicAzimuth<S> azimuth;
 
+  /// The flat length, mm, over which the axes' directions change by about a radian.
   [[nodiscard]] S reach(const std::array<S, 3>& point) const {
     const S radius = std::hypot(point[0], point[1]);
     return piece.turning == S(0) ? radius : std::min(radius, S(1) / std::abs(piece.turning));
@@ -52,10 +53,13 @@ struct BasicSidewallChart {
     return in_space(point, point[2]);
   }
 
+  /// The point whose way counts as length.
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> measured(const std::array<T, 3>& point) const {
     return in_space(point, piece.is_kink() ? T(tool_length) + point[2] : point[2]);
   }
+
+  friend bool operator==(const BasicSidewallMap&, const BasicSidewallMap&) = default;
 
  private:
   template <class T>
@@ -73,7 +77,7 @@ struct BasicSidewallChart {
   }
 };
 
-using SidewallChart = BasicSidewallChart<double>;
+using SidewallMap = BasicSidewallMap<double>;
 
 /// The whole sidewall. The pieces belong to the caller; they are in order, and there is at least one.
 template <std::floating_point S>
@@ -104,13 +108,13 @@ class BasicSidewall {
     return static_cast<std::size_t>(behind - profile_.begin()) - 1;
   }
 
-  [[nodiscard]] BasicSidewallChart<S> chart(std::size_t piece, const BasicAzimuth<S>& azimuth = {}) const {
+  [[nodiscard]] BasicSidewallMap<S> map(std::size_t piece, const BasicAzimuth<S>& azimuth = {}) const {
     return {profile_[piece], begins(piece), tool_length_, azimuth};
   }
 
-  /// The chart of the kink between a piece and the next; flat radii from `begins(piece + 1)` on are the angle
+  /// The map of the kink between a piece and the next; flat radii from `begins(piece + 1)` on are the angle
   /// turned, 1 rad a mm.
-  [[nodiscard]] BasicSidewallChart<S> kink_chart(std::size_t piece, const BasicAzimuth<S>& azimuth) const {
+  [[nodiscard]] BasicSidewallMap<S> kink_map(std::size_t piece, const BasicAzimuth<S>& azimuth) const {
     return {kink(profile_[piece], profile_[piece + 1]), begins(piece + 1), tool_length_, azimuth};
   }
 
@@ -130,7 +134,7 @@ class BasicSidewall {
     const S radius = std::hypot(point.x(), point.y());
     if (auto ok = on_profile(radius); !ok) return tl::unexpected(ok.error());
     if (!(radius > S(0))) return tl::unexpected(Error{ErrorCode::not_positive, "radius", 0.0, 0.0});
-    const auto q = chart(piece_at(radius)).joints(std::array<S, 3>{point.x(), point.y(), point.z()});
+    const auto q = map(piece_at(radius)).joints(std::array<S, 3>{point.x(), point.y(), point.z()});
     return Joints(q[0], q[1], q[2], q[3]);
   }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cncplan/core/error.hpp"
-#include "cncplan/kinematics/profile_piece.hpp"
+#include "cncplan/kinematics/tire_mold/profile_piece.hpp"
 
 namespace cncplan::kinematics {
 

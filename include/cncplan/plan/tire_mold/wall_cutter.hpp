@@ -1,4 +1,4 @@
-// Guides flat artwork over the pieces and kinks of a sidewall (set-up).
+// Cuts flat artwork at the pieces and kinks of a sidewall (set-up).
 #pragma once
 
 #include <algorithm>
@@ -9,35 +9,34 @@
 #include <optional>
 #include <vector>
 
-#include "cncplan/kinematics/sidewall.hpp"
+#include "cncplan/kinematics/tire_mold/sidewall.hpp"
 #include "cncplan/path/line.hpp"
-#include "cncplan/plan/joint/radius.hpp"
-#include "cncplan/plan/joint/stretch.hpp"
+#include "cncplan/plan/tire_mold/radius.hpp"
+#include "cncplan/plan/tire_mold/wall_part.hpp"
 
 namespace cncplan::plan {
 
-/// Flat segments, end to end, to stretches over the profile's pieces. The rule for kinks: the tool stops with
-/// its tip on the kink, turns about the tip from one normal to the other, and goes on.
+/// Cuts flat segments, end to end, into parts that each lie over one piece of the profile. The rule for
+/// kinks: the tool stops with its tip on the kink, turns about the tip from one normal to the other, and goes
+/// on.
 template <std::floating_point S>
-class BasicSidewallGuide {
+class BasicWallCutter {
  public:
-  using Chart = kinematics::BasicSidewallChart<S>;
-
   /// Normals that jump by less are as good as one: what rounding leaves of a tangent corner.
   static constexpr S smooth_angle = std::max(S(1e-8), 64 * std::numeric_limits<S>::epsilon());
   /// Radii that pass a piece's end by less have not left it, mm.
   static constexpr S margin = std::max(S(1e-9), 4096 * std::numeric_limits<S>::epsilon());
 
   /// Nothing nearer to the artwork's origin than `smallest_radius` (mm, > 0) is mapped.
-  BasicSidewallGuide(const kinematics::BasicSidewall<S>& sidewall, S smallest_radius)
+  BasicWallCutter(const kinematics::BasicSidewall<S>& sidewall, S smallest_radius)
       : sidewall_(sidewall), smallest_radius_(smallest_radius) {}
 
   /// The piece of the profile that the tool is on; none before the first segment.
   [[nodiscard]] std::optional<std::size_t> piece() const { return piece_; }
 
-  /// Appends the stretches of a segment. Errors, with nothing appended: below_limit and above_limit with the
+  /// Appends the parts of a segment. Errors, with nothing appended: below_limit and above_limit with the
   /// radius that leaves the profile or comes too near to the origin.
-  Expected<void> follow(const path::BasicSegment<S>& segment, std::vector<Stretch<Chart>>& out) {
+  Expected<void> cut(const path::BasicSegment<S>& segment, std::vector<BasicWallPart<S>>& out) {
     if (auto ok = check(segment); !ok) return ok;
     if (!piece_) piece_ = sidewall_.piece_at(radius_at(segment, S(0)));
     const S end = segment.parameter_end();
@@ -50,14 +49,14 @@ class BasicSidewallGuide {
         const S limit = sidewall_.begins(border);
         const bool behind = side > 0 ? radius_at(segment, at) >= limit : radius_at(segment, at) <= limit;
         at = behind ? at : radius_crossing(segment, limit, at, turning);
-        if (at > from) out.push_back({segment, sidewall_.chart(*piece_), from, at, false});
+        if (at > from) out.push_back({segment, sidewall_.map(*piece_), from, at, false});
         from = at;
         turn_over(border - 1, side, segment.position(at), out);
         piece_ = side > 0 ? border : border - 1;
       }
       at = turning;
     }
-    if (end > from) out.push_back({segment, sidewall_.chart(*piece_), from, end, false});
+    if (end > from) out.push_back({segment, sidewall_.map(*piece_), from, end, false});
     return {};
   }
 
@@ -90,7 +89,7 @@ class BasicSidewallGuide {
 
   /// The kink between a piece and the next, outwards (side 1) or inwards, above a flat point.
   void turn_over(std::size_t before, int side, const BasicVector3<S>& point,
-                 std::vector<Stretch<Chart>>& out) const {
+                 std::vector<BasicWallPart<S>>& out) const {
     const auto& profile = sidewall_.profile();
     const S angle = std::abs(kinematics::kink_angle(profile[before], profile[before + 1]));
     if (angle < smooth_angle) return;
@@ -102,7 +101,7 @@ class BasicSidewallGuide {
     const S inner = begins, outer = begins + angle;
     const path::BasicSegment<S> way =
         side > 0 ? path::BasicLine<S>(at(inner), at(outer)) : path::BasicLine<S>(at(outer), at(inner));
-    out.push_back({way, sidewall_.kink_chart(before, {}), S(0), way.parameter_end(), true});
+    out.push_back({way, sidewall_.kink_map(before, {}), S(0), way.parameter_end(), true});
   }
 
   kinematics::BasicSidewall<S> sidewall_;
@@ -110,6 +109,6 @@ class BasicSidewallGuide {
   std::optional<std::size_t> piece_;
 };
 
-using SidewallGuide = BasicSidewallGuide<double>;
+using WallCutter = BasicWallCutter<double>;
 
 }  // namespace cncplan::plan
