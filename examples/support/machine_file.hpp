@@ -50,6 +50,10 @@ struct Machine {
   /// An axis' position, speed ... in mm or degrees.
   [[nodiscard]] double shown(std::size_t axis, double joint) const { return joint / axes[axis].unit(); }
 
+  /// An axis of the library; mm, rad, s.
+  [[nodiscard]] cncplan::Axis axis(std::size_t i) const;
+  /// The step signals of the axes.
+  [[nodiscard]] std::vector<cncplan::step::Trace> traces() const;
   /// Of the first N axes; mm, rad, s.
   template <int N>
   [[nodiscard]] cncplan::BasicJointLimits<double, N> joint_limits() const {

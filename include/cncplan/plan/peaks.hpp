@@ -130,24 +130,45 @@ template <MachineModel M, BlockModel B>
   return detail::PeakSearch<Trajectory<M, B>>(trajectory).search();
 }
 
-/// The largest jump of any axis' velocity at a joint between two blocks.
+/// What jumps at the joints between blocks.
+template <std::floating_point S, int N>
+struct BasicJointJumps {
+  VectorN<S, N> velocity = VectorN<S, N>::Zero();  ///< of each axis, at most
+  std::size_t accelerations{};  ///< joints that are passed in motion and where some axis' acceleration jumps
+};
+
+/// Looks at every joint; what rounding leaves of a velocity or an acceleration is no jump.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] typename M::Scalar corner_velocity_step(const Trajectory<M, B>& trajectory) {
+[[nodiscard]] BasicJointJumps<typename M::Scalar, M::axis_count> joint_jumps(
+    const Trajectory<M, B>& trajectory) {
   using S = typename M::Scalar;
-  S largest = S(0);
+  constexpr S rounding = S(1e-6);
+  BasicJointJumps<S, M::axis_count> jumps;
   const auto phases = trajectory.phases();
   for (std::size_t i = 1; i < phases.size(); ++i) {
     const auto& [before, block] = phases[i - 1];
     const auto& [after, next] = phases[i];
-    if (block == next) continue;
+    if (block == next || !(after.velocity > S(0))) continue;
     const auto& left = trajectory.program()[block].path;
     const auto& entered = trajectory.program()[next].path;
     if (!(left.length() > S(0) && entered.length() > S(0))) continue;
-    const auto jump =
-        left.point_at(left.length()).first * after.velocity - entered.point_at(S(0)).first * after.velocity;
-    largest = std::max(largest, jump.cwiseAbs().maxCoeff());
+    const BasicState<S> along{S(0), after.velocity, after.acceleration, S(0)};
+    const auto end = motion(left.point_at(left.length()), along);
+    const auto start = motion(entered.point_at(S(0)), along);
+    const VectorN<S, M::axis_count> step = (end.velocity - start.velocity).cwiseAbs();
+    jumps.velocity = jumps.velocity.cwiseMax(step);
+    const auto jump = (end.acceleration - start.acceleration).cwiseAbs();
+    if (step.maxCoeff() > rounding ||
+        (jump.array() > rounding * (S(1) + end.acceleration.cwiseAbs().array())).any())
+      ++jumps.accelerations;
   }
-  return largest;
+  return jumps;
+}
+
+/// The largest jump of any axis' velocity at a joint between two blocks.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] typename M::Scalar corner_velocity_step(const Trajectory<M, B>& trajectory) {
+  return joint_jumps(trajectory).velocity.maxCoeff();
 }
 
 }  // namespace cncplan
