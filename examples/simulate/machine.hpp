@@ -1,5 +1,8 @@
-// What the machine asks of a program's motions.
+// The kinds of machine that programs run on, made from a machine file and the limits of the command line.
 #pragma once
+
+#include <array>
+#include <string>
 
 #include "cncplan/cncplan.hpp"
 #include "support/machine_file.hpp"
@@ -7,10 +10,72 @@
 namespace simulate {
 
 using support::Kinematics;
-using support::Machine;
 using support::MachineAxis;
 
-/// A block's limits on a mill, lowered so that no axis breaks its own.
-[[nodiscard]] cncplan::Limits limits_along(const Machine& machine, const cncplan::plan::Block& block);
+/// Up to three axes X Y Z, or up to six with others beside them; those that are not there stand still.
+template <int N>
+struct Mill : cncplan::Machine<N> {
+  using Block = cncplan::Block<N>;
+};
+
+/// Two slides and a rotary table, programmed in X Y Z. Tool positions are the table's, its axis at X0 Y0.
+struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarChart> {
+  using Block =
+      cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarChart, cncplan::path::Segment<3>>>;
+  double smallest_radius = 1.0;  ///< mm; nothing nearer to the table's axis is driven
+};
+
+/// A row of the four-axis machine, by the way of the tool's tip.
+struct RowCurve {
+  using Scalar = double;
+  using Vector = cncplan::VectorN<double, 4>;
+
+  cncplan::kinematics::TireMoldRow row;
+
+  [[nodiscard]] double parameter_end() const { return 1.0; }
+  template <class T>
+  [[nodiscard]] auto point(const T& u) const {
+    return row.joints(std::array<T, 3>{u, T(0), T(0)});
+  }
+  template <class T>
+  [[nodiscard]] auto travelled(const T& u) const {
+    return row.measured(std::array<T, 3>{u, T(0), T(0)});
+  }
+};
+
+/// Two slides, a tilting spindle and a rotary table, whose programs name these axes.
+struct Rows : cncplan::Machine<4> {
+  using Row = cncplan::path::Measured<RowCurve, 16>;
+  using Block = cncplan::Block<4, Row>;
+  double tool_length = 0.0;  ///< mm
+};
+
+/// The tool's place at a set point.
+template <class M>
+[[nodiscard]] cncplan::Vector3 tool_at(const M& machine, const cncplan::SetPoint<M::axis_count>& point) {
+  if constexpr (std::is_same_v<M, Rows>) {
+    const auto& q = point.position;
+    const auto [x, y, z] = cncplan::kinematics::TireMold{.tool_length = machine.tool_length}.tip(
+        std::array{q[0], q[1], q[2], q[3]});
+    return {x, y, z};
+  } else {
+    return point.tool;
+  }
+}
+
+/// The machine of a file under limits along the path, mm, rad and s.
+template <class M>
+[[nodiscard]] M machine_of(const support::Machine& file, const cncplan::Limits& limits) {
+  M machine;
+  machine.limits = limits;
+  machine.rapid_rate = file.rapid_rate.value_or(0.0);
+  if (std::isfinite(file.feed_limit)) machine.feed_limit = file.feed_limit;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    if (i < file.axes.size())
+      machine.axes[i] = file.axis(i);
+    else  // the mill's third axis cannot move; others have no words
+      machine.axes[i] = i < 3 ? cncplan::Axis{.letter = "XYZ"[i], .low = 0.0, .high = 0.0} : cncplan::Axis{};
+  return machine;
+}
 
 }  // namespace simulate

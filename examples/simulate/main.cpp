@@ -12,6 +12,8 @@
 
 #include "options.hpp"
 #include "plots.hpp"
+#include "problems.hpp"
+#include "read_program.hpp"
 #include "report.hpp"
 #include "run.hpp"
 #include "support/failure.hpp"
@@ -59,24 +61,17 @@ class Progress {
 };
 
 // Refuses what would not come to its end: a period or a number of steps that is a slip of the keyboard.
-template <class P>
-void check_size(const Route<P>& route, const Plan& plan, const Options& options, const Machine& machine) {
+void check_size(const Measures& measures, const Options& options, const support::Machine& machine) {
   constexpr double most = 1e10;
-  const double samples = plan.duration / options.period;
+  const double samples = measures.duration / options.period;
   if (!(samples <= most))
     throw Failure(Exit::bad_input, fmt::format("the program takes {:.6g} s, which is {:.3g} samples at a "
                                                "period of {:.6g} s: more than {:.0e}",
-                                               plan.duration, samples, options.period, most));
+                                               measures.duration, samples, options.period, most));
   if (!options.makes_steps()) return;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const MachineAxis& axis = machine.axes[i];
-    double travelled = plan.length;
-    if (axis.rotary) {
-      travelled = 0.0;
-      const auto k = static_cast<Eigen::Index>(i);
-      for (const auto& [path, block] : route)
-        travelled += std::abs(path.position(path.parameter_end())[k] - path.position(0.0)[k]) / axis.unit();
-    }
+    const double travelled = axis.rotary ? measures.travel[static_cast<Eigen::Index>(i)] : measures.length;
     if (!(travelled * axis.drive.steps_per_unit <= most))
       throw Failure(
           Exit::bad_input,
@@ -86,116 +81,102 @@ void check_size(const Route<P>& route, const Plan& plan, const Options& options,
 }
 
 // What the options ask for and the machine cannot do.
-void check_options(const Options& options, const Machine& machine) {
+void check_options(const Options& options, const support::Machine& machine) {
   const auto refuse = [](const char* why) { throw Failure(Exit::bad_input, why); };
   if (options.check && (options.motions || options.blocks || options.samples || options.steps ||
                         options.plot || options.events))
     refuse("--check plans nothing: it goes without outputs and events");
-  const bool mill = machine.kinematics == Kinematics::cartesian;
-  if (options.corner_time && mill) refuse("--corner-time is for machines with a rotary table");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
     refuse("--tool-length is for machines with a tilting axis");
   const bool as_planned = options.law == Law::seven && options.planning == Planning::span &&
                           options.interpolator == Interpolator::exact;
   if (options.events && !as_planned)
     refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
-  if (options.interpolator == Interpolator::taylor && !mill)
-    refuse("--interpolator taylor is for machines without a rotary table");
+  if (options.interpolator == Interpolator::taylor &&
+      (machine.kinematics != Kinematics::cartesian || machine.axes.size() > 3))
+    refuse("--interpolator taylor is for machines of X, Y and Z");
 }
 
 // At most so many points are drawn.
 constexpr std::size_t drawn_points = 20000;
 
-template <class P>
-int run(const Options& options, const Machine& machine, const Program& program, const Route<P>& route) {
-  Measures measures;
-  const Plan plan = make_plan(program, route, options, machine, measures);
-  check_size(route, plan, options, machine);
-  if (options.plot) support::make_folder(*options.plot);
-
-  support::OutputFiles files;
-  if (std::ostream* out = files.open(options.motions)) write_motions(*out, program);
-  if (std::ostream* out = files.open(options.blocks)) {
-    std::vector<std::size_t> blocks;
-    for (const Piece<P>& piece : route) blocks.push_back(piece.block);
-    write_blocks(*out, program, plan, blocks);
-  }
-  std::ostream* const samples = files.open(options.samples);
-  std::ostream* const steps = files.open(options.steps);
-  if (samples != nullptr) write_samples_header(*samples, machine);
-
-  Progress progress(!options.quiet, plan.duration * (options.makes_steps() ? 2.0 : 1.0));
-  std::vector<Sample> drawn;
-  const auto every = static_cast<std::size_t>(plan.duration / options.period) / drawn_points + 1;
-  make_samples(program, route, plan, options, measures, [&](const Sample& sample) {
-    if (samples != nullptr) write_sample(*samples, program, machine, sample);
-    if (options.plot && (measures.samples % every == 0 || !(sample.time < plan.duration)))
-      drawn.push_back(sample);
-    progress.reach(sample.time);
-  });
-  measure_axes(route, plan, machine, measures);
-
-  const auto step = [&](const std::function<void(const cncplan::step::Edge&)>& take) {
-    make_steps(program, route, plan, options, machine, measures, [&](const cncplan::step::Edge& edge) {
-      take(edge);
-      progress.reach(plan.duration + edge.time);
-    });
-  };
-  if (steps != nullptr) {
-    auto vcd = cncplan::step::vcd_writer(*steps, support::traces_of(machine));
-    step([&](const cncplan::step::Edge& edge) {
-      if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
-    });
-    vcd.finish();
-  } else if (options.makes_steps()) {
-    step([](const cncplan::step::Edge&) {});
-  }
-
-  files.finish();
-  if (options.plot) draw(*options.plot, options.quiet, machine, drawn);
-  files.commit();
-  progress.finish();
-  if (options.json)
-    support::print(json_summary(program, plan, options, machine, measures));
-  else if (!options.quiet)
-    support::print(table_summary(program, plan, machine, measures));
-  return static_cast<int>(Exit::done);
-}
-
 // Most problems of a program that are told: of one that was to be run, and of one that is checked.
 constexpr std::size_t told_problems = 20;
 constexpr std::size_t checked_problems = 100;
 
-// Says all that is wrong with a program, and by kind; plans nothing.
-int check(const Options& options, const Machine& machine) {
-  Problems problems(options.program, checked_problems);
-  const Program program = read_program(options, machine, problems);
-  if (problems.found().empty() && machine.kinematics == Kinematics::polar)
-    (void)polar_route(program, machine);
-  if (options.json)
-    support::print(kinds_json(problems, program.lines, program.warnings));
-  else if (!options.quiet)
-    support::print(kinds_table(problems));
+template <class M>
+int run(const Options& options, const support::Machine& file, const M& machine) {
+  Problems problems(options.program, options.check ? checked_problems : told_problems);
+  const auto program = read_program(options, file, machine, problems);
+  if (options.check) {  // says all that is wrong, and by kind; plans nothing
+    if (options.json)
+      support::print(kinds_json(problems, program.lines, program.warnings));
+    else if (!options.quiet)
+      support::print(kinds_table(problems));
+  }
   problems.refuse();
+  if (options.check) return static_cast<int>(Exit::done);
+
+  Run<M> run(options, file, machine, program);
+  const Measures& measures = run.measures();
+  check_size(measures, options, file);
+  if (options.plot) support::make_folder(*options.plot);
+
+  support::OutputFiles files;
+  if (std::ostream* out = files.open(options.motions)) write_motions(*out, program);
+  if (std::ostream* out = files.open(options.blocks)) write_blocks(*out, program, measures);
+  std::ostream* const samples = files.open(options.samples);
+  std::ostream* const steps = files.open(options.steps);
+  if (samples != nullptr) write_samples_header(*samples, file);
+
+  Progress progress(!options.quiet, measures.duration * (options.makes_steps() ? 2.0 : 1.0));
+  std::vector<Sample> drawn;
+  const auto every = static_cast<std::size_t>(measures.duration / options.period) / drawn_points + 1;
+  run.sample([&](const Sample& sample) {
+    if (samples != nullptr) write_sample(*samples, file, sample);
+    if (options.plot && (measures.samples % every == 0 || !(sample.time < measures.duration)))
+      drawn.push_back(sample);
+    progress.reach(sample.time);
+  });
+
+  if (steps != nullptr) {
+    auto vcd = cncplan::step::vcd_writer(*steps, file.traces());
+    run.step([&](const cncplan::step::Edge& edge) {
+      if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
+      progress.reach(measures.duration + edge.time);
+    });
+    vcd.finish();
+  } else if (options.makes_steps()) {
+    run.step([&](const cncplan::step::Edge& edge) { progress.reach(measures.duration + edge.time); });
+  }
+
+  files.finish();
+  if (options.plot) draw(*options.plot, options.quiet, file, drawn);
+  files.commit();
+  progress.finish();
+  if (options.json)
+    support::print(json_summary(program, options, file, measures));
+  else if (!options.quiet)
+    support::print(table_summary(program, file, measures));
   return static_cast<int>(Exit::done);
 }
 
 int run(const Options& options) {
-  Machine machine;
-  if (options.machine) machine = support::read_machine(*options.machine);
-  check_options(options, machine);
-  if (options.check) return check(options, machine);
-  Problems problems(options.program, told_problems);
-  const Program program = read_program(options, machine, problems);
-  problems.refuse();
-  switch (machine.kinematics) {
-    case Kinematics::tire_mold:
-      return run(options, machine, program, row_route(program));
-    case Kinematics::polar:
-      return run(options, machine, program, polar_route(program, machine));
-    default:
-      return run(options, machine, program, mill_route(program));
+  support::Machine file;
+  if (options.machine) file = support::read_machine(*options.machine);
+  check_options(options, file);
+  if (file.kinematics == Kinematics::tire_mold) {
+    auto machine = machine_of<Rows>(file, options.limits);
+    machine.tool_length = options.tool_length.value_or(0.0);
+    return run(options, file, machine);
   }
+  if (file.kinematics == Kinematics::polar) {
+    auto machine = machine_of<Table>(file, options.limits);
+    machine.smallest_radius = file.smallest_radius.value_or(machine.smallest_radius);
+    return run(options, file, machine);
+  }
+  if (file.axes.size() > 3) return run(options, file, machine_of<Mill<6>>(file, options.limits));
+  return run(options, file, machine_of<Mill<3>>(file, options.limits));
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
 #include "options.hpp"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
+
+#include "support/failure.hpp"
 
 namespace simulate {
 
@@ -22,11 +26,34 @@ void add_choice(CLI::App& app, const std::string& name, E& value, const std::map
       ->default_str(standing->first);
 }
 
+// Corners within a tolerance, or by the policies of the exact path.
+void settle_corners(Options& options, const std::optional<std::string>& junction,
+                    const std::optional<double>& tolerance) {
+  const bool published = options.law == Law::five || options.planning == Planning::block ||
+                         options.interpolator != Interpolator::exact;
+  if (published && tolerance.value_or(0.0) > 0.0)
+    throw support::Failure(support::Exit::bad_input,
+                           "--tolerance above 0 does not go with --profile five, --plan block or another "
+                           "--interpolator than exact");
+  constexpr double standard = 0.01;
+  options.junction = junction_choice(junction.value_or(fmt::format("deviation={}", standard)));
+  const double wanted = tolerance.value_or(junction || published ? 0.0 : standard);
+  if (!(wanted > 0.0)) return;
+  options.tolerance = wanted;
+  if (!junction) options.junction.policies.clear();
+  options.junction.policies.push_back(cncplan::junction::Deviation{wanted});
+  if (tolerance)
+    fmt::print(
+        stderr,
+        "warning: --tolerance: the path is kept exactly, corners are as fast as rounded ones would be\n");
+}
+
 }  // namespace
 
 std::optional<Options> parse_options(int argc, char** argv) {
   Options options;
-  std::string junction = "deviation=0.01";
+  std::optional<std::string> junction;
+  std::optional<double> tolerance;
   CLI::App app(
       "Plans a G-code program under speed, acceleration and jerk limits, samples it, and turns it into step "
       "and direction edges at their exact times.",
@@ -39,9 +66,9 @@ std::optional<Options> parse_options(int argc, char** argv) {
       ->check(support::positive());
   app.add_option("--jmax", options.limits.jerk, "jerk limit, mm/s^3")->check(support::positive());
   support::add_period(app, options);
-  app.add_option("--junction", junction,
-                 "table, table-absolute, stop, tangent=MM/S, deviation=MM, acceleration-step=MM/S^2; several "
-                 "joined by +");
+  app.add_option("--rotary-tolerance", options.rotary_tolerance,
+                 "how far rotary axes may leave their path at corners, degrees")
+      ->check(support::not_negative());
   add_choice(app, "--profile", options.law, {{"five", Law::five}, {"seven", Law::seven}},
              "five: KK22's phases; seven: acceleration held at its limit");
   add_choice(app, "--plan", options.planning, {{"span", Planning::span}, {"block", Planning::block}},
@@ -52,10 +79,14 @@ std::optional<Options> parse_options(int argc, char** argv) {
               {"constant", Interpolator::constant}},
              "how samples are made");
   app.option_defaults()->always_capture_default(false);
-  app.add_option("--corner-time", options.corner_time,
-                 "with a rotary table: s within which a corner may change what an axis does at its limits; 0 "
-                 "stops at corners; 0.001 if not given")
+  app.add_option(
+         "--tolerance", tolerance,
+         "mm that the tool may be away from the path where it moves smoothly, 0.01 if not given; 0: the "
+         "exact path, corners by --junction")
       ->check(support::not_negative());
+  app.add_option("--junction", junction,
+                 "corners of the exact path: table, table-absolute, stop, tangent=MM/S, deviation=MM, "
+                 "acceleration-step=MM/S^2; several joined by +; deviation=0.01 if not given");
   app.add_option("--tool-length", options.tool_length,
                  "with a tilting axis: from there to the tool's tip, mm; 0 if not given")
       ->check(support::not_negative());
@@ -69,7 +100,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_flag("--count-steps", options.count_steps,
                "make and count step edges where neither --steps nor --machine asks for them");
   if (!support::parse(app, argc, argv)) return std::nullopt;
-  options.junction = junction_choice(junction);
+  settle_corners(options, junction, tolerance);
   support::refuse_shared_files({{"PROGRAM", options.program},
                                 {"--machine", options.machine},
                                 {"--events", options.events},

@@ -4,7 +4,8 @@
 
 namespace simulate {
 
-void draw(const std::string& folder, bool quiet, const Machine& machine, const std::vector<Sample>& samples) {
+void draw(const std::string& folder, bool quiet, const support::Machine& machine,
+          const std::vector<Sample>& samples) {
   auto plot = support::Gnuplot::start(folder, quiet);
   if (!plot) return;
   (*plot)("$samples << EOD\n");

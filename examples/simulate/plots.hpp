@@ -4,13 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "run.hpp"
+#include "measures.hpp"
+#include "support/machine_file.hpp"
 
 namespace simulate {
 
 /// Draws path.svg and profile.svg into `folder`, and axes.svg where the machine limits all of its axes. Says
 /// so on standard error where there is no gnuplot. `quiet`: without gnuplot's warnings. Throws `Failure`
 /// where gnuplot fails or a picture cannot be written.
-void draw(const std::string& folder, bool quiet, const Machine& machine, const std::vector<Sample>& samples);
+void draw(const std::string& folder, bool quiet, const support::Machine& machine,
+          const std::vector<Sample>& samples);
 
 }  // namespace simulate

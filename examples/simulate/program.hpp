@@ -1,4 +1,4 @@
-// A G-code file as blocks that can be planned, with what the outputs say of each motion.
+// What a program was in its text: for outputs and messages.
 #pragma once
 
 #include <cstddef>
@@ -6,41 +6,39 @@
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
-#include "machine.hpp"
-#include "options.hpp"
-#include "problems.hpp"
 
 namespace simulate {
 
-using cncplan::kinematics::TireMoldRow;
-
-/// What a motion was in the text.
+/// A motion.
 struct Origin {
   int line{};
   int column{};
+  cncplan::junction::Kind kind{};
   cncplan::Plane plane{};
-  cncplan::Vector3 offset;  ///< machine = work + offset
-  double feed{};            ///< mm/s as programmed; of a rapid the rapid rate
-  double length{};          ///< mm along the path
+  cncplan::Vector3 offset = cncplan::Vector3::Zero();  ///< machine = work + offset
+  cncplan::path::Segment<3> path{};                    ///< of the tool; of a row, straight between its ends
+  double feed{};                                       ///< mm/s as programmed; of a rapid the rapid rate
+  double length{};                                     ///< mm along the path
 };
 
-/// There is always a block: a program without motion is one of length zero. Of a machine with a rotary table,
-/// machine coordinates are those of the table, its axis at X0 Y0.
-struct Program {
+struct ProgramText {
   std::string file;
-  std::vector<cncplan::plan::Block> blocks;  ///< where rows are, straight between their ends
-  std::vector<TireMoldRow> rows;             ///< of the four-axis machine, one a block; else none
-  std::vector<Origin> origins;               ///< one a block
+  std::vector<Origin> motions;         ///< the first one is the start: no way
+  std::vector<std::size_t> motion_of;  ///< of each block; one that rests has the motion before it
   std::size_t lines = 0;
   std::size_t warnings = 0;
 
   /// FILE:LINE:COLUMN of a block.
-  [[nodiscard]] std::string place(std::size_t block) const;
+  [[nodiscard]] std::string place(std::size_t block) const {
+    const Origin& motion = motions[motion_of[block]];
+    return file + ":" + std::to_string(motion.line) + ":" + std::to_string(motion.column);
+  }
 };
 
-/// Reads a program; warnings go to standard error. Text that is not understood and motions that cannot be
-/// made or leave the machine's travel are problems: the program cannot be run where there is one. Throws
-/// `Failure` for a file that cannot be read.
-[[nodiscard]] Program read_program(const Options& options, const Machine& machine, Problems& problems);
+/// There is always a block: a program without motion is one of length zero.
+template <class M>
+struct Program : ProgramText {
+  std::vector<typename M::Block> blocks;
+};
 
 }  // namespace simulate

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace simulate {
@@ -10,23 +11,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Counts {
-  std::size_t motions = 0;
-  std::size_t arcs = 0;
-};
-
-Counts count(const Program& program) {
-  Counts counts;
-  for (const Origin& origin : program.origins)
-    if (origin.length > 0.0) ++counts.motions;
-  for (const auto& block : program.blocks)
-    if (block.segment.arc() != nullptr) ++counts.arcs;
-  return counts;
+std::size_t count_motions(const ProgramText& program) {
+  return static_cast<std::size_t>(std::count_if(program.motions.begin(), program.motions.end(),
+                                                [](const Origin& motion) { return motion.length > 0.0; }));
+}
+std::size_t count_arcs(const ProgramText& program) {
+  return static_cast<std::size_t>(
+      std::count_if(program.motions.begin(), program.motions.end(),
+                    [](const Origin& motion) { return motion.path.arc() != nullptr; }));
 }
 
 // An object with one member per axis.
 template <class F>
-Json per_axis(const Machine& machine, F&& value) {
+Json per_axis(const support::Machine& machine, F&& value) {
   Json object = Json::object();
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     object[std::string(1, machine.axes[i].letter)] = value(i);
@@ -35,15 +32,14 @@ Json per_axis(const Machine& machine, F&& value) {
 
 }  // namespace
 
-std::string json_summary(const Program& program, const Plan& plan, const Options& options,
-                         const Machine& machine, const Measures& m) {
-  const auto [motions, arcs] = count(program);
+std::string json_summary(const ProgramText& program, const Options& options, const support::Machine& machine,
+                         const Measures& m) {
   Json json;
   json["lines"] = program.lines;
-  json["motions"] = motions;
-  json["arcs"] = arcs;
-  json["length_mm"] = plan.length;
-  json["time_s"] = plan.duration;
+  json["motions"] = count_motions(program);
+  json["arcs"] = count_arcs(program);
+  json["length_mm"] = m.length;
+  json["time_s"] = m.duration;
   json["samples"] = m.samples;
   json["peak"] = {
       {"velocity", m.peak.velocity}, {"acceleration", m.peak.acceleration}, {"jerk", m.peak.jerk}};
@@ -53,6 +49,12 @@ std::string json_summary(const Program& program, const Plan& plan, const Options
       per_axis(machine, [&](std::size_t i) { return m.axis_acceleration[static_cast<int>(i)]; });
   json["axis_peak"]["jerk"] =
       per_axis(machine, [&](std::size_t i) { return m.axis_jerk[static_cast<int>(i)]; });
+  json["tool_peak"] = {{"velocity", m.tool_peak.velocity},
+                       {"acceleration", m.tool_peak.acceleration},
+                       {"jerk", m.tool_peak.jerk}};
+  json["tolerance_mm"] = std::max(options.tolerance, 0.0);
+  json["deviation_mm"] = 0.0;  // the path is kept exactly
+  json["acceleration_jumps"] = m.acceleration_jumps;
   json["corner_velocity_step"] = m.corner_velocity_step;
   json["end_error_mm"] = m.end_error;
   json["contour_error_mm"] = m.contour_error;
@@ -72,22 +74,21 @@ std::string json_summary(const Program& program, const Plan& plan, const Options
                     {"acceleration", options.limits.acceleration},
                     {"jerk", options.limits.jerk},
                     {"period", options.period}};
-  json["completed"] = plan.completed;
+  json["completed"] = m.completed;
   json["warnings"] = program.warnings;
   return json.dump(2) + "\n";
 }
 
-std::string table_summary(const Program& program, const Plan& plan, const Machine& machine,
-                          const Measures& m) {
-  const auto [motions, arcs] = count(program);
+std::string table_summary(const ProgramText& program, const support::Machine& machine, const Measures& m) {
   std::string text;
   const auto row = [&text](std::string_view name, const std::string& value) {
     text += fmt::format("{:<28}{}\n", name, value);
   };
-  row("lines, motions, arcs", fmt::format("{}, {}, {}", program.lines, motions, arcs));
-  row("path length", fmt::format("{:.4f} mm", plan.length));
-  row("time", fmt::format("{:.4f} s, {} samples{}", plan.duration, m.samples,
-                          plan.completed ? "" : ", not to the end"));
+  row("lines, motions, arcs",
+      fmt::format("{}, {}, {}", program.lines, count_motions(program), count_arcs(program)));
+  row("path length", fmt::format("{:.4f} mm", m.length));
+  row("time",
+      fmt::format("{:.4f} s, {} samples{}", m.duration, m.samples, m.completed ? "" : ", not to the end"));
   row("peak along the path", fmt::format("{:.4g} mm/s, {:.4g} mm/s^2, {:.4g} mm/s^3", m.peak.velocity,
                                          m.peak.acceleration, m.peak.jerk));
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));

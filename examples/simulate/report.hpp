@@ -3,13 +3,15 @@
 
 #include <string>
 
-#include "run.hpp"
+#include "measures.hpp"
+#include "options.hpp"
+#include "support/machine_file.hpp"
 
 namespace simulate {
 
-[[nodiscard]] std::string json_summary(const Program& program, const Plan& plan, const Options& options,
-                                       const Machine& machine, const Measures& measures);
-[[nodiscard]] std::string table_summary(const Program& program, const Plan& plan, const Machine& machine,
+[[nodiscard]] std::string json_summary(const ProgramText& program, const Options& options,
+                                       const support::Machine& machine, const Measures& measures);
+[[nodiscard]] std::string table_summary(const ProgramText& program, const support::Machine& machine,
                                         const Measures& measures);
 
 }  // namespace simulate

@@ -1,78 +1,245 @@
 // A program planned, sampled and stepped, and what was measured on the way.
 #pragma once
 
-#include <cstddef>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
+#include "contour.hpp"
+#include "events.hpp"
 #include "machine.hpp"
+#include "measures.hpp"
 #include "options.hpp"
 #include "program.hpp"
-#include "route.hpp"
-#include "support/plan.hpp"
-#include "support/stepping.hpp"
+#include "stopwatch.hpp"
+#include "support/failure.hpp"
 
 namespace simulate {
 
-using support::Plan;
+/// Which rule of a drive is broken, and what helps.
+[[nodiscard]] inline std::string drive_message(const cncplan::step::Violation& broken, char letter) {
+  const std::string_view unit = broken.error.field == "step rate" ? "steps/s" : "s";
+  return fmt::format(
+      "error: axis {} at {:.9f} s: {} of {:.6g} {} {} of {:.6g} {}; slower corners or a lower speed give the "
+      "drive more time",
+      letter, broken.time, broken.error.field, broken.error.value, unit, message(broken.error.code),
+      broken.error.bound, unit);
+}
 
-/// One value for each axis of the route; without heap.
-using PerAxis = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, cncplan::gcode::max_axes, 1>;
+/// A program on its machine, from plan to pulses.
+template <class M>
+class Run {
+ public:
+  using Block = typename M::Block;
+  using Trajectory = cncplan::Trajectory<M, Block>;
 
-/// One row of the samples. Axes in mm and rad.
-struct Sample {
-  double time{};
-  std::size_t block{};        ///< of the program
-  cncplan::Vector3 position;  ///< of the tool, machine coordinates
-  PerAxis axes;
-  PerAxis velocity;
-  PerAxis acceleration;
-  cncplan::State along;
+  /// Plans. Throws `Failure` for what cannot be planned.
+  Run(const Options& options, const support::Machine& file, const M& machine, const Program<M>& program)
+      : options_(options), file_(file), program_(program), trajectory_(plan(machine)) {
+    measure();
+  }
+
+  [[nodiscard]] const Measures& measures() const { return measures_; }
+
+  /// Hands every sample to `take`, in order.
+  void sample(const std::function<void(const Sample&)>& take) {
+    std::optional<TaylorFollower<Trajectory>> follow;
+    if constexpr (std::is_same_v<M, Mill<3>>)
+      if (options_.interpolator == Interpolator::taylor) follow.emplace(trajectory_);
+    PathDistance distance;
+    Sample row;
+    const auto all = trajectory_.samples(options_.period);
+    for (auto it = all.begin(); it != all.end(); ++it) {
+      {
+        const Stopwatch watch(measures_.interpolate_seconds);
+        const auto point = *it;
+        const std::size_t motion = program_.motion_of[point.block];
+        row = {point.time,
+               &program_.motions[motion],
+               tool_at(trajectory_.machine(), point),
+               point.position,
+               point.velocity,
+               point.acceleration,
+               point.along};
+        if constexpr (std::is_same_v<M, Mill<3>>)
+          if (follow && point.time < trajectory_.duration()) row.position = (*follow)(point);
+        if (!std::is_same_v<M, Rows>)  // a row is what the axes do: there is nothing else to follow
+          row.within = point.along.position - motion_start_[motion];
+      }
+      if (!std::is_same_v<M, Rows>)
+        measures_.contour_error = std::max(measures_.contour_error, distance(row));
+      ++measures_.samples;
+      take(row);
+    }
+    measures_.end_error = (row.position - program_.motions.back().path.end()).norm();
+  }
+
+  /// Turns the plan into edges at their exact times, hands them to `take` in order, those of an inverted
+  /// drive turned round. Throws `Failure` for a plan that breaks a rule of a drive.
+  void step(const std::function<void(const cncplan::step::Edge&)>& take) {
+    const Stopwatch watch(measures_.steps_seconds);
+    const auto reports = cncplan::follow_steps(trajectory_, options_.period, [&](const auto& edge) {
+      const bool inverted = file_.axes[static_cast<std::size_t>(edge.axis)].drive.inverted;
+      take({edge.time, edge.axis, inverted ? -edge.direction : edge.direction});
+    });
+    if (!reports)
+      throw support::Failure(
+          support::Exit::bad_input,
+          fmt::format("{}: {}", program_.place(trajectory_.at(reports.error().time).block),
+                      drive_message(reports.error(),
+                                    file_.axes[static_cast<std::size_t>(reports.error().axis)].letter)));
+    for (std::size_t i = 0; i < file_.axes.size(); ++i) {
+      auto& report = measures_.steps.emplace_back((*reports)[i]);
+      for (double* value : {&report.position, &report.rms_error, &report.max_error})
+        *value = file_.shown(i, *value);
+      if (file_.axes[i].drive.inverted) report.net_steps = -report.net_steps;
+    }
+  }
+
+ private:
+  using Cells = cncplan::plan::BasicCells<double>;
+
+  Trajectory plan(const M& machine) {
+    namespace plan = cncplan::plan;
+    const Stopwatch watch(measures_.plan_seconds);
+    const double to_rad = cncplan::gcode::radians_per_degree;
+    const plan::JointRules<double, JunctionChoice> rules{options_.junction, options_.tolerance,
+                                                         options_.rotary_tolerance * to_rad};
+    std::vector<Event> events;
+    std::vector<Block> blocks = program_.blocks;
+    if (options_.events) {  // limits are made for the highest feed
+      events = read_events(*options_.events);
+      for (Block& block : blocks) block.feed *= highest_feed(events);
+    }
+    const bool whole =
+        options_.planning == Planning::block || options_.interpolator == Interpolator::constant;
+    const std::span<const Block> all(blocks);
+    const auto cells = whole ? plan::make_cells(all, machine, rules, cncplan::published::WholeBlocks{})
+                             : plan::make_cells(all, machine, rules);
+    if (!cells) {
+      auto error = plan::error_in(blocks, cells.error());
+      error.file = program_.file;
+      throw support::Failure(support::Exit::bad_input, cncplan::to_text(error));
+    }
+    count_limited(*cells, machine);
+    if (options_.events) return Trajectory(machine, program_.blocks, played(*cells, machine, events));
+    const auto spans = spans_of(cells->caps);
+    return Trajectory(machine, program_.blocks,
+                      plan::block_phases(std::span<const plan::Span>(spans), *cells));
+  }
+
+  std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps) const {
+    namespace plan = cncplan::plan;
+    namespace published = cncplan::published;
+    std::vector<plan::Span> spans;
+    if (options_.interpolator == Interpolator::constant) {
+      for (std::size_t i = 0; i < caps.size(); ++i) {
+        spans.push_back({i, 1, published::constant_speed(caps[i].length, caps[i].limits.velocity)});
+        if (caps[i].pause > 0.0) spans.push_back(plan::pause_span(i + 1, caps[i].pause));
+      }
+      return spans;
+    }
+    const auto law = options_.law == Law::five ? cncplan::profile::five_phase_solver<double>
+                                               : cncplan::profile::seven_phase_solver<double>;
+    const std::span<const plan::BlockCaps> all(caps);
+    const auto refuse = [](const auto& planned) {
+      if (!planned)
+        throw support::Failure(support::Exit::bad_input, fmt::format("planning: {} {}", planned.error().field,
+                                                                     message(planned.error().code)));
+    };
+    if (options_.planning == Planning::block) {
+      std::vector<double> speeds(caps.size() + 1);
+      refuse(published::plan_blocks(all, law, std::span(speeds), std::back_inserter(spans)));
+    } else {
+      std::vector<plan::Gate> gates(caps.size() + 1);
+      refuse(plan::plan_spans(all, law, std::span(gates), std::back_inserter(spans)));
+    }
+    return spans;
+  }
+
+  // The program played: nothing is known of the events before they come, but how far the feed goes.
+  auto played(const Cells& cells, const M& machine, const std::vector<Event>& events) const {
+    const auto feed_of = [&](const Block& block) {
+      if (block.rapid) return rapid_speed(machine);
+      return std::isfinite(block.feed) ? block.feed : feed_speed(machine);
+    };
+    std::vector<cncplan::plan::TimedRequest> requests;
+    for (const Event& event : events)
+      requests.push_back({event.time, [&event](cncplan::plan::Player& player) { ask(player, event); }});
+    auto phases =
+        cncplan::plan::play(std::span<const Block>(program_.blocks), cells,
+                            std::span<const cncplan::plan::TimedRequest>(requests), options_.period, feed_of);
+    if (!phases)
+      throw support::Failure(
+          support::Exit::bad_input,
+          fmt::format("with its events the program takes more than {:.0e} periods of {:.6g} s",
+                      phases.error().bound, options_.period));
+    return *phases;
+  }
+
+  // Joints between motions that are slower than the feeds on both sides.
+  void count_limited(const Cells& cells, const M& machine) {
+    const auto wanted = [&](std::size_t block) {
+      const Block& b = program_.blocks[block];
+      return cncplan::plan::wanted_speed(b, machine, cncplan::length_of(b.path, machine));
+    };
+    for (std::size_t i = 1; i < cells.caps.size(); ++i) {
+      const std::size_t before = cells.blocks[i - 1], after = cells.blocks[i];
+      if (program_.motion_of[before] != program_.motion_of[after] &&
+          cells.caps[i].entry < std::min(wanted(before), wanted(after)))
+        ++measures_.junctions_limited;
+    }
+  }
+
+  void measure() {
+    const auto axes = static_cast<Eigen::Index>(file_.axes.size());
+    const auto shown = [&](const auto& values) {
+      PerAxis result(axes);
+      for (Eigen::Index k = 0; k < axes; ++k) result[k] = file_.shown(static_cast<std::size_t>(k), values[k]);
+      return result;
+    };
+    const auto peaks = cncplan::peaks(trajectory_);
+    const auto jumps = cncplan::joint_jumps(trajectory_);
+    measures_.duration = trajectory_.duration();
+    measures_.length = trajectory_.length();
+    measures_.completed = trajectory_.completed();
+    measures_.peak = peaks.along;
+    measures_.tool_peak = peaks.tool;
+    measures_.axis_velocity = shown(peaks.velocity);
+    measures_.axis_acceleration = shown(peaks.acceleration);
+    measures_.axis_jerk = shown(peaks.jerk);
+    measures_.corner_velocity_step = shown(jumps.velocity).maxCoeff();
+    measures_.acceleration_jumps = jumps.accelerations;
+    measures_.travel = PerAxis::Zero(axes);
+    motion_start_.assign(program_.motions.size(), 0.0);
+    for (std::size_t i = program_.blocks.size(); i-- > 0;) {
+      const auto& path = program_.blocks[i].path;
+      motion_start_[program_.motion_of[i]] = trajectory_.start_length(i);
+      if (path.length() > 0.0)
+        measures_.travel += shown((path.position_at(path.length()) - path.position_at(0.0)).cwiseAbs());
+    }
+    measures_.motions.resize(program_.motions.size());
+    for (const auto& block : trajectory_.blocks()) {
+      MotionTiming& motion = measures_.motions[program_.motion_of[block.block]];
+      if (!(motion.duration > 0.0)) motion.entry = block.entry;
+      motion.peak = std::max(motion.peak, block.peak);
+      motion.exit = options_.interpolator == Interpolator::constant ? block.entry : block.exit;
+      motion.duration += block.duration;
+    }
+  }
+
+  const Options& options_;
+  const support::Machine& file_;
+  const Program<M>& program_;
+  Measures measures_;
+  Trajectory trajectory_;
+  std::vector<double> motion_start_;  // mm at which each motion begins
 };
-
-/// What the summary reports. Axes in mm and degrees.
-struct Measures {
-  std::size_t samples = 0;
-  cncplan::State peak;
-  PerAxis axis_velocity;
-  PerAxis axis_acceleration;
-  PerAxis axis_jerk;
-  double corner_velocity_step = 0.0;
-  double end_error = 0.0;
-  double contour_error = 0.0;
-  std::size_t junctions_limited = 0;
-  support::StepReports steps;  ///< none where no steps are made
-  double plan_seconds = 0.0;
-  double interpolate_seconds = 0.0;
-  double steps_seconds = 0.0;
-};
-
-/// Each of these is there for the paths of route.hpp.
-template <class P>
-[[nodiscard]] Plan make_plan(const Program& program, const Route<P>& route, const Options& options,
-                             const Machine& machine, Measures& measures);
-
-/// Slows pieces and junctions where an axis with backlash turns round, so that its drive has the time to make
-/// up for it.
-template <class P>
-void slow_reversals(const Route<P>& route, const Machine& machine,
-                    std::vector<cncplan::plan::BlockCaps>& caps);
-
-/// Calls `take` with every sample, in order.
-template <class P>
-void make_samples(const Program& program, const Route<P>& route, const Plan& plan, const Options& options,
-                  Measures& measures, const std::function<void(const Sample&)>& take);
-
-/// Measures what the exact path asks of the axes.
-template <class P>
-void measure_axes(const Route<P>& route, const Plan& plan, const Machine& machine, Measures& measures);
-
-/// Turns the plan into edges at their exact times, hands them to `take` in order, and holds the stepped
-/// positions against the planned ones at every period.
-template <class P>
-void make_steps(const Program& program, const Route<P>& route, const Plan& plan, const Options& options,
-                const Machine& machine, Measures& measures,
-                const std::function<void(const cncplan::step::Edge&)>& take);
 
 }  // namespace simulate

@@ -28,61 +28,57 @@ void put(std::ostream& out, Numbers... numbers) {
   ((it = fmt::format_to(it, ",{:.17g}", numbers + 0.0)), ...);
 }
 
+// Axis columns: of machines with others than X Y Z.
+std::size_t first_shown(const support::Machine& machine) {
+  return machine.kinematics == support::Kinematics::cartesian ? std::min<std::size_t>(3, machine.axes.size())
+                                                              : 0;
+}
+
 }  // namespace
 
-void write_motions(std::ostream& out, const Program& program) {
+void write_motions(std::ostream& out, const ProgramText& program) {
   out << "line,kind,plane,x0,y0,z0,x1,y1,z1,cx,cy,cz,radius,sweep,length,feed\n";
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    const plan::Block& block = program.blocks[i];
-    const Origin& origin = program.origins[i];
-    if (!(origin.length > 0.0)) continue;
-    const Vector3 start = block.segment.start() - origin.offset;
-    const Vector3 end = block.segment.end() - origin.offset;
-    out << origin.line << ',' << name(block.kind) << ',' << g_code(origin.plane);
+  for (const Origin& motion : program.motions) {
+    if (!(motion.length > 0.0)) continue;
+    const Vector3 start = motion.path.start() - motion.offset;
+    const Vector3 end = motion.path.end() - motion.offset;
+    out << motion.line << ',' << name(motion.kind) << ',' << g_code(motion.plane);
     put(out, start.x(), start.y(), start.z(), end.x(), end.y(), end.z());
-    if (const path::Arc* arc = block.segment.arc()) {
-      const Vector3 center = arc->center() - origin.offset;
+    if (const path::Arc* arc = motion.path.arc()) {
+      const Vector3 center = arc->center() - motion.offset;
       put(out, center.x(), center.y(), center.z(), arc->start_radius(), arc->sweep());
     } else {
       out << ",,,,,";
     }
-    put(out, origin.length, origin.feed);
+    put(out, motion.length, motion.feed);
     out << '\n';
   }
 }
 
-void write_blocks(std::ostream& out, const Program& program, const Plan& plan,
-                  const std::vector<std::size_t>& blocks) {
+void write_blocks(std::ostream& out, const ProgramText& program, const Measures& measures) {
   out << "line,length,v_in,v_peak,v_out,duration\n";
-  for (std::size_t first = 0, end = 0; first < blocks.size(); first = end) {
-    const Origin& origin = program.origins[blocks[first]];
-    double peak = 0.0, duration = 0.0;
-    for (; end < blocks.size() && blocks[end] == blocks[first]; ++end) {
-      peak = std::max(peak, plan.timings[end].peak_velocity);
-      duration += plan.timings[end].duration;
-    }
-    if (!(origin.length > 0.0)) continue;
-    out << origin.line;
-    put(out, origin.length, plan.timings[first].entry.velocity, peak, plan.timings[end - 1].exit.velocity,
-        duration);
+  for (std::size_t i = 0; i < program.motions.size(); ++i) {
+    const auto& [entry, peak, exit, duration] = measures.motions[i];
+    if (!(program.motions[i].length > 0.0)) continue;
+    out << program.motions[i].line;
+    put(out, program.motions[i].length, entry, peak, exit, duration);
     out << '\n';
   }
 }
 
-void write_samples_header(std::ostream& out, const Machine& machine) {
+void write_samples_header(std::ostream& out, const support::Machine& machine) {
   out << "t,x,y,z";
-  if (machine.kinematics != Kinematics::cartesian)
-    for (const MachineAxis& axis : machine.axes) out << ',' << axis.letter;
+  for (std::size_t i = first_shown(machine); i < machine.axes.size(); ++i)
+    out << ',' << machine.axes[i].letter;
   out << ",s,v,a,j\n";
 }
 
-void write_sample(std::ostream& out, const Program& program, const Machine& machine, const Sample& sample) {
-  const Vector3 point = sample.position - program.origins[sample.block].offset;
+void write_sample(std::ostream& out, const support::Machine& machine, const Sample& sample) {
+  const Vector3 point = sample.position - sample.motion->offset;
   fmt::format_to(std::ostreambuf_iterator<char>(out), "{:.17g}", sample.time);
   put(out, point.x(), point.y(), point.z());
-  if (machine.kinematics != Kinematics::cartesian)
-    for (std::size_t i = 0; i < machine.axes.size(); ++i)
-      put(out, machine.shown(i, sample.axes[static_cast<Eigen::Index>(i)]));
+  for (std::size_t i = first_shown(machine); i < machine.axes.size(); ++i)
+    put(out, machine.shown(i, sample.axes[static_cast<Eigen::Index>(i)]));
   put(out, sample.along.position, sample.along.velocity, sample.along.acceleration, sample.along.jerk);
   out << '\n';
 }

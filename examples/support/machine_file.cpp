@@ -199,7 +199,7 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
   }
 }
 
-// Which machine the kinds of its axes make, and what its programs name.
+// Which machine its axes make, and what its programs name.
 void settle_kinematics(const Section& top, Machine& machine) {
   const auto refuse = [&](const char* why) {
     throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {}", top.file(), why));
@@ -210,23 +210,26 @@ void settle_kinematics(const Section& top, Machine& machine) {
     letters += axis.letter;
     kinds += axis.rotary ? 'R' : 'L';
   }
-  if (kinds == "LLRR") {
+  const bool mill = letters == "XY" || (letters.starts_with("XYZ") && letters.size() <= gcode::max_axes &&
+                                        letters.find_first_not_of("ABCUVW", 3) == std::string::npos);
+  if (mill && kinds.substr(0, 3).find('R') == std::string::npos) {
+    machine.kinematics = Kinematics::cartesian;
+  } else if (kinds == "LLRR") {
     machine.kinematics = Kinematics::tire_mold;
   } else if (kinds == "LLR") {
     machine.kinematics = Kinematics::polar;
     machine.dialect.axes = gcode::Dialect{}.axes;
-  } else if (kinds != "LLL" && kinds != "LL") {
+  } else {
     refuse(
-        "the axes must be X, Y, Z, in this order, or X, Y; or two slides, maybe a tilting axis, and a rotary "
-        "table");
-  } else if (letters != "XYZ" && letters != "XY") {
-    refuse("the axes must be X, Y, Z, in this order, or X, Y");
+        "the axes must be X, Y, Z, in this order, and up to three of A, B, C, U, V, W behind them, or X, Y; "
+        "or "
+        "two slides, maybe a tilting axis, and a rotary table");
   }
-  const bool polar = machine.kinematics == Kinematics::polar;
   if (machine.smallest_radius && machine.kinematics == Kinematics::cartesian)
     refuse("smallest_radius is for machines with a rotary table");
   if (const toml::node* node = top.find("table_center")) {
-    if (!polar) top.refuse(*node, "table_center is for machines of two slides and a rotary table");
+    if (machine.kinematics != Kinematics::polar)
+      top.refuse(*node, "table_center is for machines of two slides and a rotary table");
     const auto place = top.numbers(*node, "table_center", 2);
     machine.table_center = {place[0] * machine.unit, place[1] * machine.unit};
   }

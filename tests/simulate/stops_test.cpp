@@ -43,15 +43,18 @@ TEST_CASE("straight on runs through, stops of the program do not") {
   }
 }
 
-TEST_CASE("G61 and G61.1 stop at the end of each move, G64 returns to the policy") {
+TEST_CASE("G61 stops where the path turns, G61.1 behind each move, G64 returns to the policy") {
   for (const std::string mode : {"G61", "G61.1"}) {
     const test::Folder folder;
-    const auto run = folder.run_text(mode + "\nG1 X10\nX20\nG64\nX30\nX40\nX50\n",
+    const auto run = folder.run_text(mode + "\nG1 X10\nX20 Y0.1\nG64\nX30 Y0.2\nX40 Y0.3\nX50 Y0.4\n",
                                      "--quiet --blocks b.csv --junction deviation=0.1");
     REQUIRE(run.exit == 0);
     const auto out = test::Table(folder / "b.csv")["v_out"];
     CHECK(out[0] == 0.0);
-    CHECK(out[1] == 0.0);
+    if (mode == "G61")
+      CHECK(out[1] == Approx(30.0));
+    else
+      CHECK(out[1] == 0.0);
     CHECK(out[2] == Approx(30.0));
     CHECK(out[3] == Approx(30.0));
     CHECK(out[4] == 0.0);

@@ -173,7 +173,9 @@ class BlockBuilder {
     if (auto ok = check_axes(motion); !ok) return tl::unexpected(ok.error());
     const auto programmed = programmed_path(motion);
     if (!programmed) return tl::unexpected(programmed.error());
-    Block result{.exact_stop = motion.exact_stop,
+    const bool exact_path = motion.path_mode == gcode::PathMode::exact_path;
+    Block result{.exact_stop = motion.exact_stop && !exact_path,
+                 .exact_path = exact_path,
                  .rapid = motion.kind == gcode::MotionKind::rapid,
                  .line = motion.line,
                  .column = motion.column};

@@ -13,10 +13,12 @@
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/junction/geometry.hpp"
+#include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/limits_along.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/tool.hpp"
+#include "cncplan/plan/turnings.hpp"
 
 namespace cncplan::plan {
 
@@ -43,42 +45,44 @@ struct PartLimits {
   BasicLimits<S> limits;
 };
 
-/// Cuts a block where that makes it faster: a part is halved as long as the halves at their own speeds would
-/// take 2 % less time than the whole at its one, to 1/256 of the block at most. `add` is called with each.
-template <MachineModel M, BlockModel B, class Add>
-void cut_by_limits(const B& block, const M& machine, typename M::Scalar speed, typename M::Scalar tool_speed,
-                   Add&& add) {
-  using S = typename M::Scalar;
-  constexpr int deepest = 8;
-  constexpr S worth_it = S(0.98);
-  struct Part {
-    S from, to;
-    BasicLimits<S> limits;
-    int depth;
-  };
-  const S length = block.path.length();
-  const auto limits = [&](S from, S to) {
-    return limits_along(block.path.bounds(from, to), machine, speed, tool_speed, length);
-  };
-  std::array<Part, static_cast<std::size_t>(deepest + 1)> open;
-  std::size_t count = 0;
-  open[count++] = {S(0), length, limits(S(0), length), 0};
-  while (count > 0) {
-    const Part part = open[--count];
-    const S middle = part.from + (part.to - part.from) / S(2);
-    if (part.depth < deepest && part.limits.velocity < speed) {
-      const Part first{part.from, middle, limits(part.from, middle), part.depth + 1};
-      const Part second{middle, part.to, limits(middle, part.to), part.depth + 1};
-      const S halves = S(0.5) / first.limits.velocity + S(0.5) / second.limits.velocity;
-      if (!(halves >= worth_it / part.limits.velocity)) {
-        open[count++] = second;
-        open[count++] = first;
-        continue;
+/// Cuts a part of a block's path where that makes it faster: it is halved as long as the halves at their own
+/// speeds would take 2 % less time than the whole at its one, to 1/256 of it at most. `add` is called with
+/// each.
+struct CutByLimits {
+  template <MachineModel M, BlockModel B, class Add>
+  void operator()(const B& block, const M& machine, typename M::Scalar start, typename M::Scalar end,
+                  typename M::Scalar speed, typename M::Scalar tool_speed, Add&& add) const {
+    using S = typename M::Scalar;
+    constexpr int deepest = 8;
+    constexpr S worth_it = S(0.98);
+    struct Part {
+      S from, to;
+      BasicLimits<S> limits;
+      int depth;
+    };
+    const auto limits = [&](S from, S to) {
+      return limits_along(block.path.bounds(from, to), machine, speed, tool_speed, block.path.length());
+    };
+    std::array<Part, static_cast<std::size_t>(deepest + 1)> open;
+    std::size_t count = 0;
+    open[count++] = {start, end, limits(start, end), 0};
+    while (count > 0) {
+      const Part part = open[--count];
+      const S middle = part.from + (part.to - part.from) / S(2);
+      if (part.depth < deepest && part.limits.velocity < speed) {
+        const Part first{part.from, middle, limits(part.from, middle), part.depth + 1};
+        const Part second{middle, part.to, limits(middle, part.to), part.depth + 1};
+        const S halves = S(0.5) / first.limits.velocity + S(0.5) / second.limits.velocity;
+        if (!(halves >= worth_it / part.limits.velocity)) {
+          open[count++] = second;
+          open[count++] = first;
+          continue;
+        }
       }
+      add(PartLimits<S>{part.to - part.from, part.limits});
     }
-    add(PartLimits<S>{part.to - part.from, part.limits});
   }
-}
+};
 
 /// How a joint between two blocks looks to the axes and to the tool.
 template <std::floating_point S, int N>
@@ -164,8 +168,6 @@ struct BlockFault {
   std::size_t block{};
 };
 
-namespace detail {
-
 /// The speed that a program asks of a block: mm/s, or rad/s where the tool stands still.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] typename M::Scalar wanted_speed(const B& block, const M& machine, LengthOf counted) {
@@ -196,6 +198,8 @@ template <MachineModel M, Path P>
   return {};
 }
 
+namespace detail {
+
 /// Nothing, or the first axis that would have to jump from the end of a block to the start of the next one,
 /// by more than 1e-6 mm or rad.
 template <MachineModel M>
@@ -225,7 +229,9 @@ template <MachineModel M, BlockModel B, class Policy>
       {tool_side<M>(before, true, tool), tool_side<M>(after, false, tool), machine.limits}};
   joint.tool.limits.velocity =
       std::min(wanted_speed(before, machine, LengthOf::tool), wanted_speed(after, machine, LengthOf::tool));
-  const S speed_sq = rules.policy.speed_sq(joint.tool);
+  S speed_sq = rules.policy.speed_sq(joint.tool);
+  if (before.exact_path)
+    speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<S>{}.speed_sq(joint.tool));
   const S speed = speed_sq > S(0) ? std::sqrt(speed_sq) : S(0);
   if (rules.tolerance < S(0)) return speed;
   return std::min(speed, axis_corner_speed(joint, machine, rules.tolerance, rules.rotary_tolerance));
@@ -233,50 +239,72 @@ template <MachineModel M, BlockModel B, class Policy>
 
 }  // namespace detail
 
-/// Cuts a program into cells. Errors: those of `validate` for the limits of a block; below_limit and
-/// above_limit where an axis would leave its travel; unreachable where the machine has no position for a
-/// place; discontinuous where a block begins elsewhere than the one before it ends.
-template <MachineModel M, BlockModel B, class Policy>
+/// Cuts a program into cells, `cut` each block. A joint within one motion has no rules of its own; where an
+/// axis with backlash turns round, the speed leaves its motors time for that. Errors: those of `validate` for
+/// the limits of a block; below_limit and above_limit where an axis would leave its travel; unreachable where
+/// the machine has no position for a place; discontinuous where a block begins elsewhere than the one before
+/// it ends.
+template <MachineModel M, BlockModel B, class Policy, class Cut = CutByLimits>
 [[nodiscard]] Expected<BasicCells<typename M::Scalar>, BlockFault> make_cells(
-    std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules) {
+    std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
+    const Cut& cut = {}) {
   using S = typename M::Scalar;
   using Vector = VectorN<S, M::axis_count>;
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
+  constexpr S infinity = std::numeric_limits<S>::infinity();
   BasicCells<S> cells;
   const std::array<int, 3> tool = tool_axes(machine);
   const B* before = nullptr;  // the block that moved last, where the motion does not stop behind it
   LengthOf before_counted{};
   std::optional<Vector> end;  // of the block before
+  Turnings<M> turnings(machine);
+  const auto rest = [&](std::size_t block, S seconds) {
+    if (!cells.caps.empty()) cells.caps.back().pause += seconds;
+    cells.pauses.push_back({cells.caps.size(), block, seconds});
+  };
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const B& block = blocks[i];
     const auto refuse = [&](const Error& error) { return tl::unexpected(BlockFault{error, i}); };
     if (auto ok = detail::joined(end, block.path.position_at(S(0)), machine); !ok) return refuse(ok.error());
     end = block.path.position_at(block.path.length());
-    if (auto ok = detail::within_travel(block.path, machine); !ok) return refuse(ok.error());
+    if (auto ok = within_travel(block.path, machine); !ok) return refuse(ok.error());
     if (block.path.length() > S(0)) {
       const LengthOf counted = length_of(block.path, machine);
       S entry = S(0);
       if (before != nullptr && counted == before_counted)
-        entry = detail::joint_speed(*before, block, machine, rules, tool);
-      Expected<void> valid;
-      cut_by_limits(block, machine, detail::wanted_speed(block, machine, counted),
-                    block.rapid ? rapid_speed(machine) : machine.limits.velocity,
-                    [&](const PartLimits<S>& part) {
-                      if (const auto ok = validate(part.limits); !ok && valid)
-                        valid = tl::unexpected(ok.error());
-                      cells.caps.push_back({part.length, entry, part.limits, S(0)});
-                      cells.blocks.push_back(i);
-                      entry = std::numeric_limits<S>::infinity();
-                    });
-      if (!valid) return refuse(valid.error());
+        entry = before->goes_on ? infinity : detail::joint_speed(*before, block, machine, rules, tool);
+      std::optional<Error> wrong;
+      S at = S(0);
+      const auto& turns = turnings.next(block.path);
+      auto turning = turns.begin();
+      const auto add = [&](const PartLimits<S>& part) {
+        if (const auto ok = validate(part.limits); !ok && !wrong) wrong = ok.error();
+        for (; turning != turns.end() && !(turning->at > at); ++turning) {
+          entry = std::min(entry, turning->speed(part.limits));
+          if (entry > S(0) || cells.caps.empty()) continue;
+          if (const S more = turning->pause(part.limits) - cells.caps.back().pause; more > S(0))
+            rest(cells.blocks.back(), more);
+        }
+        cells.caps.push_back({part.length, entry, part.limits, S(0)});
+        cells.blocks.push_back(i);
+        entry = infinity;
+      };
+      const S speed = wanted_speed(block, machine, counted);
+      const S tool_speed = block.rapid ? rapid_speed(machine) : machine.limits.velocity;
+      while (at < block.path.length()) {
+        auto next = turning;
+        while (next != turns.end() && !(next->at > at)) ++next;
+        const S to = next != turns.end() ? std::min(next->at, block.path.length()) : block.path.length();
+        cut(block, machine, at, to, speed, tool_speed, add);
+        at = to;
+      }
+      if (wrong) return refuse(*wrong);
       before = &block;
       before_counted = counted;
     }
     if (!block.exact_stop && !(block.pause > S(0))) continue;
     before = nullptr;
-    if (!(block.pause > S(0))) continue;
-    if (!cells.caps.empty()) cells.caps.back().pause += block.pause;
-    cells.pauses.push_back({cells.caps.size(), i, block.pause});
+    if (block.pause > S(0)) rest(i, block.pause);
   }
   return cells;
 }

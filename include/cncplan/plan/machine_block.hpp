@@ -19,6 +19,8 @@ struct BasicBlock {
   S feed = std::numeric_limits<S>::infinity();  ///< of feed moves, mm/s (rad/s where only rotary axes move)
   S pause{};                                    ///< s at rest behind it
   bool exact_stop{};                            ///< at rest at its end
+  bool exact_path{};                            ///< at rest at its end if the tool's way turns there (G61)
+  bool goes_on{};                               ///< the next block is cut from the same motion
   bool rapid{};                                 ///< at the rapid rate, whatever the feed
   int line{};                                   ///< of the program; 0 where there is none
   int column{};

@@ -1,6 +1,7 @@
 // How fast an axis may turn round, so that its drive has time for it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -19,17 +20,15 @@ using ReversalRule = BasicReversalRule<double>;
 
 /// The highest speed along a path, mm/s, at a place where an axis turns round. `rate` and `bend` are the
 /// axis' first and second derivative by length behind it (1 and 1/mm, times rad/mm for a rotary axis),
-/// `acceleration` is the limit along the path. Within t the axis goes |rate| (v t + A t^2 / 2) + |bend| v^2
-/// t^2 / 2, to second order. 0 where even a stop is too fast: that needs a pause.
+/// `acceleration` is the limit along the path. Within t the way is x = v t + A t^2 / 2 at most, and the axis
+/// goes |rate| x + |bend| x^2 / 2, to second order of x. 0 where even a stop is too fast: that needs a pause.
 template <std::floating_point S>
 [[nodiscard]] S reversal_speed(S rate, S bend, S acceleration, const BasicReversalRule<S>& rule) {
-  const S t = rule.time;
-  const S left = rule.distance - std::abs(rate) * acceleration * t * t / S(2);
-  if (!(left > S(0))) return S(0);
-  const S linear = std::abs(rate) * t;
-  const S square = std::abs(bend) * t * t / S(2);
-  const S most = linear + std::sqrt(linear * linear + S(4) * square * left);
-  return most > S(0) ? S(2) * left / most : std::numeric_limits<S>::infinity();
+  const S linear = std::abs(rate), square = S(2) * std::abs(bend);
+  const S sum = linear + std::sqrt(linear * linear + square * rule.distance);
+  if (!(sum > S(0))) return std::numeric_limits<S>::infinity();
+  const S way = S(2) * rule.distance / sum;
+  return std::max(way / rule.time - acceleration * rule.time / S(2), S(0));
 }
 
 }  // namespace cncplan::plan

@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "cncplan/step/backlash.hpp"
 #include "cncplan/step/clock.hpp"
 #include "cncplan/step/crossing.hpp"
+#include "cncplan/step/drive.hpp"
 
 namespace cncplan {
 
@@ -32,25 +35,93 @@ struct BasicMotorEdge {
 
 using MotorEdge = BasicMotorEdge<double>;
 
+namespace detail {
+
+/// The edges of one motor over a whole trajectory, in order of time; none for backlash.
+template <class T>
+class MotorSteps {
+ public:
+  using Scalar = typename T::Scalar;
+
+  MotorSteps(const T& trajectory, int axis, const step::BasicDrive<Scalar>& drive)
+      : trajectory_(&trajectory),
+        axis_(axis),
+        scale_(drive.steps_per_unit),
+        hysteresis_(step::hysteresis(drive)) {
+    if (!trajectory.program().empty())
+      count_ = step::count_at(trajectory.program().front().path.position_at(Scalar(0))[axis] * scale_);
+  }
+
+  [[nodiscard]] std::optional<step::BasicEdge<Scalar>> next() {
+    while (cursor_ || open_block()) {
+      if (auto edge = cursor_->next()) {
+        // rounding may put a first edge a bit before the last one of the block before
+        edge->time = time_ = std::max(edge->time, time_);
+        direction_ = edge->direction;
+        return edge;
+      }
+      count_ = cursor_->count();
+      cursor_.reset();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  using Segment = plan::SteppableSegment<typename T::Block::Path>;
+  using Clock = step::PhaseClock<Scalar>;
+
+  // Goes on to the next block that moves; false behind the last.
+  bool open_block() {
+    const auto phases = trajectory_->phases();
+    while (phase_ < phases.size()) {
+      const std::size_t block = phases[phase_].block;
+      of_block_.clear();
+      for (; phase_ < phases.size() && phases[phase_].block == block; ++phase_)
+        of_block_.push_back(phases[phase_].phase);
+      const auto& path = trajectory_->program()[block].path;
+      if (!(path.length() > Scalar(0))) continue;
+      segment_ = Segment(path);
+      // where curves meet, the start of one is the end of the one before but for rounding
+      const bool goes_on = phase_ < phases.size() && path.line() == nullptr && path.arc() == nullptr;
+      cursor_.emplace(segment_, Clock(std::span<const BasicPhase<Scalar>>(of_block_)), axis_, scale_, count_,
+                      goes_on, step::Reversal<Scalar>{direction_, hysteresis_});
+      return true;
+    }
+    return false;
+  }
+
+  const T* trajectory_;
+  int axis_;
+  Scalar scale_;
+  Scalar hysteresis_;
+  std::int64_t count_{};
+  int direction_ = 0;
+  Scalar time_ = Scalar(0);
+  std::size_t phase_ = 0;
+  std::vector<BasicPhase<Scalar>> of_block_;
+  Segment segment_;
+  std::optional<step::StepCursor<Segment, Clock>> cursor_;
+};
+
+}  // namespace detail
+
 /// The edges of all motors of a trajectory's machine, those that take up backlash included. A range that is
-/// walked once; the trajectory must outlive it.
+/// walked once; the trajectory must outlive it. Of a program that was stopped on its way, it ends with that.
 template <class T>
 class StepEdges {
  public:
   using Scalar = typename T::Scalar;
   using Edge = BasicMotorEdge<Scalar>;
 
-  explicit StepEdges(const T& trajectory) : trajectory_(&trajectory) {
-    const auto program = trajectory.program();
+  explicit StepEdges(const T& trajectory)
+      : duration_(trajectory.duration()), stopped_(!trajectory.completed()) {
+    constexpr Scalar any_time = -std::numeric_limits<Scalar>::infinity();
     for (int axis = 0; axis < T::MachineType::axis_count; ++axis)
       for (const auto& drive : trajectory.machine().axes[static_cast<std::size_t>(axis)].motors) {
-        Motor motor;
-        motor.axis = axis;
-        motor.drive = drive;
-        if (!program.empty())
-          motor.count =
-              step::count_at(program.front().path.position_at(Scalar(0))[axis] * drive.steps_per_unit);
-        motors_.push_back(std::move(motor));
+        steps_.push_back(std::make_unique<Steps>(trajectory, axis, drive));
+        motors_.push_back(
+            {axis, Compensated(Source{steps_.back().get()}, step::backlash_steps(drive), any_time)});
+        motors_.back().pending = motors_.back().source.next();
       }
   }
 
@@ -82,81 +153,38 @@ class StepEdges {
 
   /// The next edge, until there is none.
   [[nodiscard]] std::optional<Edge> next() {
-    for (;;) {
-      Motor* first = nullptr;
-      for (Motor& motor : motors_)
-        if (motor.pending && (first == nullptr || motor.pending->time < first->pending->time)) first = &motor;
-      if (first != nullptr) {
-        const auto edge = *std::exchange(first->pending, first->source->next());
-        time_ = std::max(time_, edge.time);
-        return Edge{time_, static_cast<std::size_t>(first - motors_.data()), first->axis, edge.direction};
-      }
-      if (!open_block()) return std::nullopt;
-    }
-  }
-
-  /// Steps of a motor up to where the walk stands, those for backlash not counted.
-  [[nodiscard]] std::int64_t count(std::size_t motor) const {
-    return motors_[motor].source ? motors_[motor].source->source().count() : motors_[motor].count;
+    Motor* first = nullptr;
+    for (Motor& motor : motors_)
+      if (motor.pending && (first == nullptr || motor.pending->time < first->pending->time)) first = &motor;
+    if (first == nullptr || (stopped_ && !(first->pending->time < duration_))) return std::nullopt;
+    const auto edge = *std::exchange(first->pending, first->source.next());
+    return Edge{edge.time, static_cast<std::size_t>(first - motors_.data()), first->axis, edge.direction};
   }
   [[nodiscard]] std::size_t motor_count() const { return motors_.size(); }
 
  private:
-  using Segment = plan::SteppableSegment<typename T::Block::Path>;
-  using Clock = step::PhaseClock<Scalar>;
-  using Source = step::BacklashCompensation<step::StepCursor<Segment, Clock>>;
+  using Steps = detail::MotorSteps<T>;
+
+  // Steps that stay where they are: what a cursor points to must not move.
+  struct Source {
+    using Scalar = typename T::Scalar;
+
+    Steps* steps;
+
+    [[nodiscard]] std::optional<step::BasicEdge<Scalar>> next() { return steps->next(); }
+  };
+  using Compensated = step::BacklashCompensation<Source>;
 
   struct Motor {
     int axis{};
-    step::BasicDrive<Scalar> drive;
-    std::int64_t count{};
-    step::BacklashState<Scalar> slack{};
-    std::optional<Source> source;
-    std::optional<step::BasicEdge<Scalar>> pending;
+    Compensated source;
+    std::optional<step::BasicEdge<Scalar>> pending{};
   };
 
-  // Goes on to the next block that moves; false behind the last.
-  bool open_block() {
-    const auto phases = trajectory_->phases();
-    for (Motor& motor : motors_)
-      if (motor.source) {
-        motor.count = motor.source->source().count();
-        motor.slack = motor.source->state();
-        motor.source.reset();
-      }
-    while (phase_ < phases.size()) {
-      const std::size_t block = phases[phase_].block;
-      of_block_.clear();
-      for (; phase_ < phases.size() && phases[phase_].block == block; ++phase_)
-        of_block_.push_back(phases[phase_].phase);
-      const auto& path = trajectory_->program()[block].path;
-      if (!(path.length() > Scalar(0))) continue;
-      open(path, phase_ < phases.size());
-      return true;
-    }
-    return false;
-  }
-
-  // `goes_on`: a path follows. Where curves meet, its start is this one's end but for rounding.
-  void open(const typename T::Block::Path& path, bool goes_on) {
-    segment_ = Segment(path);
-    const bool rounded = path.line() == nullptr && path.arc() == nullptr;
-    for (Motor& motor : motors_) {
-      const Clock clock{std::span<const BasicPhase<Scalar>>(of_block_)};
-      motor.source.emplace(
-          step::StepCursor<Segment, Clock>(segment_, clock, motor.axis, motor.drive.steps_per_unit,
-                                           motor.count, goes_on && rounded),
-          step::backlash_steps(motor.drive), of_block_.front().time, motor.slack);
-      motor.pending = motor.source->next();
-    }
-  }
-
-  const T* trajectory_;
+  std::vector<std::unique_ptr<Steps>> steps_;
   std::vector<Motor> motors_;
-  std::vector<BasicPhase<Scalar>> of_block_;
-  Segment segment_;
-  std::size_t phase_ = 0;
-  Scalar time_ = -std::numeric_limits<Scalar>::infinity();
+  Scalar duration_;
+  bool stopped_;
 };
 
 }  // namespace cncplan

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -78,6 +79,15 @@ class Trajectory {
   /// s, from rest to rest.
   [[nodiscard]] Scalar duration() const {
     return phases_.empty() ? Scalar(0) : phases_.back().phase.time + phases_.back().phase.duration;
+  }
+  /// Whether it goes to the end of its blocks: phases may come from a run that was stopped.
+  [[nodiscard]] bool completed() const {
+    const auto moves = [](const B& block) { return block.path.length() > Scalar(0); };
+    const auto last = std::find_if(blocks_.rbegin(), blocks_.rend(), moves);
+    if (last == blocks_.rend()) return true;
+    if (phases_.empty() || phases_.back().block < static_cast<std::size_t>(blocks_.rend() - last) - 1)
+      return false;
+    return !moves(blocks_[phases_.back().block]) || is_whole(end_of(phases_.back()), last->path.length());
   }
   /// mm that the feed counts; what only rotary axes do does not count.
   [[nodiscard]] Scalar length() const { return starts_.back(); }
@@ -177,6 +187,12 @@ class Trajectory {
   [[nodiscard]] bool counts(const B& block) const {
     return block.path.length() > Scalar(0) && length_of(block.path, machine_) != LengthOf::rotary_axes;
   }
+  static Scalar end_of(const Phase& phase) { return phase.phase.at(phase.phase.duration).position; }
+  // But for rounding the end of a block.
+  static bool is_whole(Scalar position, Scalar length) {
+    constexpr Scalar rounding = Scalar(1e6) * std::numeric_limits<Scalar>::epsilon();
+    return position >= length - rounding * (Scalar(1) + length);
+  }
   static bool rests(const BasicPhase<Scalar>& phase) {
     return phase.velocity == Scalar(0) && phase.acceleration == Scalar(0) && phase.jerk == Scalar(0);
   }
@@ -194,7 +210,10 @@ class Trajectory {
     const B& block = blocks_[number];
     const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
     BasicState<Scalar> along = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
-    if (ended) along = {block.path.length(), Scalar(0), Scalar(0), Scalar(0)};
+    if (ended) {  // at rest; a program may be stopped before a block's end
+      const Scalar length = block.path.length();
+      along = {is_whole(along.position, length) ? length : along.position, Scalar(0), Scalar(0), Scalar(0)};
+    }
     along.position = std::min(along.position, block.path.length());
     return evaluate(number, along, time);
   }

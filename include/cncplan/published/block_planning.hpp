@@ -5,14 +5,39 @@
 #include <concepts>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <span>
 
 #include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/curve_limits.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"
 
 namespace cncplan::published {
+
+/// The limits of whole blocks, for `plan::make_cells`: the tool's by `CapSpeed`, along the path alone; each
+/// axis keeps its own all the same.
+struct WholeBlocks {
+  template <MachineModel M, BlockModel B, class Add>
+  void operator()(const B& block, const M& machine, typename M::Scalar start, typename M::Scalar end,
+                  typename M::Scalar speed, typename M::Scalar tool_speed, Add&& add) const {
+    using S = typename M::Scalar;
+    constexpr S infinity = std::numeric_limits<S>::infinity();
+    const auto bounds = block.path.bounds(start, end);
+    BasicLimits<S> tool = machine.limits;
+    tool.velocity = bounds.tool.first > S(0) ? std::min(speed, tool_speed / bounds.tool.first) : speed;
+    tool = plan::CapSpeed{}(
+        plan::BasicBend<S>{bounds.tool.second_across, bounds.tool.third_across, end - start}, tool);
+    M axes = machine;
+    axes.limits = {infinity, infinity, infinity};
+    const BasicLimits<S> own = plan::limits_along(bounds, axes, tool.velocity, infinity);
+    add(plan::PartLimits<S>{end - start,
+                            {std::min(tool.velocity, own.velocity),
+                             std::min(tool.acceleration, own.acceleration), std::min(tool.jerk, own.jerk)}});
+  }
+};
 
 /// The speed at each junction, such that every pair of speeds can be driven within its block and no junction
 /// could be faster while the others stay: a backward and a forward pass. (A junction alone could be faster

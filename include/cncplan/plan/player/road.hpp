@@ -64,8 +64,8 @@ class BasicRoad {
   /// Whether the motion rests behind a block.
   [[nodiscard]] bool stops_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return b.caps.pause > S(0) || asked.single_step || (asked.optional_stops && b.optional_stop) ||
-           pauses_before(block + 1, b.line);
+    return b.caps.pause > S(0) || (asked.single_step && !b.goes_on) ||
+           (asked.optional_stops && b.optional_stop) || pauses_before(block + 1, b.line);
   }
 
   /// Whether a pause at its line is to be made before a block, which lies behind one of the given line.

@@ -1,0 +1,59 @@
+// What a run shows: samples, and what the summary reports.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "cncplan/cncplan.hpp"
+#include "program.hpp"
+
+namespace simulate {
+
+/// One value for each axis; without heap.
+using PerAxis = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, cncplan::gcode::max_axes, 1>;
+
+/// One row of the samples. Axes in mm and rad.
+struct Sample {
+  double time{};
+  const Origin* motion{};
+  cncplan::Vector3 position = cncplan::Vector3::Zero();  ///< of the tool, machine coordinates
+  PerAxis axes;
+  PerAxis velocity;
+  PerAxis acceleration;
+  cncplan::State along;
+  double within{};  ///< mm from the motion's start
+};
+
+/// Speeds of a motion, and s from when it first moves to when it last does.
+struct MotionTiming {
+  double entry{};
+  double peak{};
+  double exit{};
+  double duration{};
+};
+
+/// Axes in mm and degrees.
+struct Measures {
+  double duration = 0.0;
+  double length = 0.0;
+  bool completed = true;
+  std::vector<MotionTiming> motions;
+  PerAxis travel;  ///< way of each axis, between the ends of blocks
+  std::size_t samples = 0;
+  cncplan::Limits peak;
+  cncplan::Limits tool_peak;
+  PerAxis axis_velocity;
+  PerAxis axis_acceleration;
+  PerAxis axis_jerk;
+  double corner_velocity_step = 0.0;
+  std::size_t acceleration_jumps = 0;
+  double end_error = 0.0;
+  double contour_error = 0.0;
+  std::size_t junctions_limited = 0;
+  std::vector<cncplan::step::AxisReport> steps;  ///< none where no steps are made
+  double plan_seconds = 0.0;
+  double interpolate_seconds = 0.0;
+  double steps_seconds = 0.0;
+};
+
+}  // namespace simulate
