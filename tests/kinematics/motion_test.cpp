@@ -126,7 +126,7 @@ TEST_CASE("axes keep their limits over wall, kink and corners", "[motion]") {
   if (binding == 1) CHECK(acceleration > 0.9);
   if (binding == 2) CHECK(velocity > 0.9);
   // what the search finds is no less than the differences, and within the limits
-  const auto peaks = peaks(*trajectory);
+  const auto peaks = cncplan::peaks(*trajectory);
   for (int i = 0; i < 4; ++i) {
     const Axis& axis = machine.axes[static_cast<std::size_t>(i)];
     CHECK(peaks.velocity[i] <= axis.velocity * (1 + 1e-9));

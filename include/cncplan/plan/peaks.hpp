@@ -23,9 +23,11 @@ struct BasicPeaks {
 
 namespace detail {
 
-/// Looks for peaks in one phase after the other. A stretch of a phase whose intervals are no higher than what
-/// has been found is passed over; any other is halved. Behind a map, the tool's peaks are those of the places
-/// that the search for the axes' looks at.
+/// Looks for peaks in one phase after the other. A stretch of a phase whose bounds are no higher than what
+/// has been found is passed over; any other is halved. The bound of a jerk is that of the interval;
+/// accelerations and velocities are no farther from those in the middle than the bounds of their rates let
+/// them go, which is sharp where they are at their highest. Behind a map, the tool's peaks are those of the
+/// places that the search for the axes' looks at.
 template <class T>
 class PeakSearch {
  public:
@@ -44,42 +46,52 @@ class PeakSearch {
   }
 
  private:
-  // What is found is right to this part of itself.
-  static constexpr Scalar tolerance = Scalar(1e-5);
+  // A bound counts as no higher than what was found if it is so but for this part. Velocities and
+  // accelerations are bounded sharply; jerks are not, and their peaks lie mostly at the ends of phases.
+  static constexpr Scalar tolerance = Scalar(1e-7);
+  static constexpr Scalar jerk_tolerance = Scalar(1e-4);
 
   template <class P>
   void search(const P& path, const BasicPhase<Scalar>& phase) {
-    constexpr int deepest = 16;
+    constexpr int deepest = 11;
     struct Stretch {
       Scalar from, to;
       int depth;
     };
     std::array<Stretch, static_cast<std::size_t>(deepest + 1)> open;
     std::size_t count = 0;
-    look(path, phase, Scalar(0));
-    look(path, phase, phase.duration);
+    (void)look(path, phase, Scalar(0));
+    (void)look(path, phase, phase.duration);
     open[count++] = {Scalar(0), phase.duration, 0};
     while (count > 0) {
-      const Stretch stretch = open[--count];
-      if (!may_exceed(path, phase, stretch.from, stretch.to) || stretch.depth == deepest) continue;
-      const Scalar middle = stretch.from + (stretch.to - stretch.from) / Scalar(2);
-      look(path, phase, middle);
-      open[count++] = {middle, stretch.to, stretch.depth + 1};
-      open[count++] = {stretch.from, middle, stretch.depth + 1};
+      const auto [from, to, depth] = open[--count];
+      const Scalar middle = from + (to - from) / Scalar(2);
+      const Look seen = look(path, phase, middle);
+      if (depth == deepest || !may_exceed(path, phase, from, to, seen)) continue;
+      open[count++] = {middle, to, depth + 1};
+      open[count++] = {from, middle, depth + 1};
     }
   }
 
+  // The axes' motion at an instant, and the tool's.
+  struct Look {
+    AxisMotion<VectorN<Scalar, n>> axes;
+    AxisMotion<BasicVector3<Scalar>> tool;
+  };
+
   template <class P>
-  void look(const P& path, const BasicPhase<Scalar>& phase, Scalar tau) {
+  Look look(const P& path, const BasicPhase<Scalar>& phase, Scalar tau) {
     BasicState<Scalar> along = phase.at(tau);
     along.position = std::clamp(along.position, Scalar(0), path.length());
-    const auto axes = motion(path.point_at(along.position), along);
-    const auto tool = motion(tool_point(path, along.position, tool_axes_), along);
+    const Look seen{motion(path.point_at(along.position), along),
+                    motion(tool_point(path, along.position, tool_axes_), along)};
+    const auto& [axes, tool] = seen;
     peaks_.velocity = peaks_.velocity.cwiseMax(axes.velocity.cwiseAbs());
     peaks_.acceleration = peaks_.acceleration.cwiseMax(axes.acceleration.cwiseAbs());
     peaks_.jerk = peaks_.jerk.cwiseMax(axes.jerk.cwiseAbs());
     grow(peaks_.tool, tool.velocity.norm(), tool.acceleration.norm(), tool.jerk.norm());
     grow(peaks_.along, std::abs(along.velocity), std::abs(along.acceleration), std::abs(along.jerk));
+    return seen;
   }
 
   static void grow(BasicLimits<Scalar>& peak, Scalar velocity, Scalar acceleration, Scalar jerk) {
@@ -100,61 +112,50 @@ class PeakSearch {
             axis.third * (v * v2) + axis.second * (I(Scalar(3)) * v * a) + axis.first * I(j)};
   }
 
-  // The third derivatives are enclosed; the lower ones lie near their values in the middle, which on a short
-  // piece of a curve says more than their own enclosure does.
-  template <class P>
-  [[nodiscard]] static std::array<BasicJet<I>, static_cast<std::size_t>(n)> enclosed(const P& path,
-                                                                                     Scalar low,
-                                                                                     Scalar high) {
-    std::array<BasicJet<I>, static_cast<std::size_t>(n)> axes = path.enclosure(low, high);
-    const Scalar half = (high - low) / Scalar(2);
-    const auto middle = path.point_at(low + half);
-    const auto near = [half](Scalar value, const I& rate, const I& known) {
-      const I grown{value - half * rate.largest(), value + half * rate.largest()};
-      return grown.high - grown.low < known.high - known.low ? grown : known;
-    };
-    for (int i = 0; i < n; ++i) {
-      BasicJet<I>& axis = axes[static_cast<std::size_t>(i)];
-      axis.second = near(middle.second[i], axis.third, axis.second);
-      axis.first = near(middle.first[i], axis.second, axis.first);
-    }
-    return axes;
-  }
-
-  [[nodiscard]] static bool beyond(Scalar bound, Scalar found) {
+  [[nodiscard]] static bool beyond(Scalar bound, Scalar found, Scalar part = tolerance) {
     constexpr Scalar tiny = Scalar(1e-9);
-    return bound > found * (Scalar(1) + tolerance) + tiny;
+    return bound > found * (Scalar(1) + part) + tiny;
   }
 
   template <class P>
-  [[nodiscard]] bool may_exceed(const P& path, const BasicPhase<Scalar>& phase, Scalar from,
-                                Scalar to) const {
+  [[nodiscard]] bool may_exceed(const P& path, const BasicPhase<Scalar>& phase, Scalar from, Scalar to,
+                                const Look& middle) const {
     const BasicState<Scalar> first = phase.at(from), last = phase.at(to);
     I v = I::hull(first.velocity, last.velocity);
     const Scalar top = phase.jerk != Scalar(0) ? -phase.acceleration / phase.jerk : from;
     if (top > from && top < to) v = I::hull(v.low, v.high, phase.at(top).velocity);
+    if (beyond(v.largest(), peaks_.along.velocity)) return true;
     const I a = I::hull(first.acceleration, last.acceleration);
     const auto [low, high] = std::minmax(first.position, last.position);
     const auto axes =
-        enclosed(path, std::clamp(low, Scalar(0), path.length()), std::clamp(high, Scalar(0), path.length()));
-    if (beyond(v.largest(), peaks_.along.velocity)) return true;
+        path.enclosure(std::clamp(low, Scalar(0), path.length()), std::clamp(high, Scalar(0), path.length()));
+    const Scalar half = (to - from) / Scalar(2);
     BasicLimits<Scalar> tool_sq{Scalar(0), Scalar(0), Scalar(0)};
     for (int i = 0; i < n; ++i) {
-      const auto [velocity, acceleration, jerk] =
-          enclose(axes[static_cast<std::size_t>(i)], v, a, phase.jerk);
-      if (beyond(velocity.largest(), peaks_.velocity[i]) ||
-          beyond(acceleration.largest(), peaks_.acceleration[i]) || beyond(jerk.largest(), peaks_.jerk[i]))
+      const Motion bound = enclose(axes[static_cast<std::size_t>(i)], v, a, phase.jerk);
+      const Scalar jerk = bound.jerk.largest();
+      const Scalar acceleration =
+          std::min(bound.acceleration.largest(), std::abs(middle.axes.acceleration[i]) + half * jerk);
+      const Scalar velocity =
+          std::min(bound.velocity.largest(), std::abs(middle.axes.velocity[i]) + half * acceleration);
+      if (beyond(velocity, peaks_.velocity[i]) || beyond(acceleration, peaks_.acceleration[i]) ||
+          beyond(jerk, peaks_.jerk[i], jerk_tolerance))
         return true;
       if (MappedModel<typename T::MachineType> ||
           std::find(tool_axes_.begin(), tool_axes_.end(), i) == tool_axes_.end())
         continue;
-      tool_sq.velocity += square(velocity).high;
-      tool_sq.acceleration += square(acceleration).high;
-      tool_sq.jerk += square(jerk).high;
+      tool_sq.velocity += velocity * velocity;
+      tool_sq.acceleration += acceleration * acceleration;
+      tool_sq.jerk += jerk * jerk;
     }
-    return beyond(std::sqrt(tool_sq.velocity), peaks_.tool.velocity) ||
-           beyond(std::sqrt(tool_sq.acceleration), peaks_.tool.acceleration) ||
-           beyond(std::sqrt(tool_sq.jerk), peaks_.tool.jerk);
+    if constexpr (MappedModel<typename T::MachineType>) return false;
+    const Scalar jerk = std::sqrt(tool_sq.jerk);
+    const Scalar acceleration =
+        std::min(std::sqrt(tool_sq.acceleration), middle.tool.acceleration.norm() + half * jerk);
+    const Scalar velocity =
+        std::min(std::sqrt(tool_sq.velocity), middle.tool.velocity.norm() + half * acceleration);
+    return beyond(velocity, peaks_.tool.velocity) || beyond(acceleration, peaks_.tool.acceleration) ||
+           beyond(jerk, peaks_.tool.jerk, jerk_tolerance);
   }
 
   const T& trajectory_;
@@ -164,8 +165,8 @@ class PeakSearch {
 
 }  // namespace detail
 
-/// The largest magnitudes of a trajectory, right to 1e-5 of themselves where intervals are sharp (lines
-/// and arcs): sampled ones could miss a peak.
+/// The largest magnitudes of a trajectory: sampled ones could miss a peak. Velocities and accelerations are
+/// right to 1e-7 of themselves and jerks to 1e-4 where intervals are sharp (lines and arcs).
 template <MachineModel M, BlockModel B>
 [[nodiscard]] BasicPeaks<typename M::Scalar, M::axis_count> peaks(const Trajectory<M, B>& trajectory) {
   return detail::PeakSearch<Trajectory<M, B>>(trajectory).search();
