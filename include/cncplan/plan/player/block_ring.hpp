@@ -20,9 +20,9 @@ struct BasicPlayedBlock {
   BasicBlockCaps<S> caps;
   S feed{};              ///< mm/s
   bool rapid{};          ///< obeys the rapid override
-  bool goes_on{};        ///< the next block belongs to the same motion: single steps do not end behind it
   bool optional_stop{};  ///< the motion stops behind it where that is switched on (M1)
   int line{};            ///< of the program, for pauses
+  bool goes_on{};        ///< the next block belongs to the same motion: single steps do not end behind it
 
   friend bool operator==(const BasicPlayedBlock&, const BasicPlayedBlock&) = default;
 };

@@ -122,8 +122,8 @@ template <BlockModel B, std::invocable<const B&> Feed>
     played.push_back({.caps = cells.caps[i],
                       .feed = feed_of(block),
                       .rapid = block.rapid,
-                      .goes_on = more && (cells.blocks[i + 1] == cells.blocks[i] || block.goes_on),
-                      .line = block.line});
+                      .line = block.line,
+                      .goes_on = more && (cells.blocks[i + 1] == cells.blocks[i] || block.goes_on)});
   }
   std::vector<PlayedBlock> memory(window + 1);
   std::vector<BlockCaps> ahead(window);
