@@ -154,8 +154,7 @@ class Executor {
     if (player_.finished()) reached = std::max(reached, ready - 1);
     last_.time = time_.since(Scalar(0));
     tell_words(reached);
-    const bool runs = player_.oldest() < player_.end();
-    feed_.release(runs ? std::min(told_, player_[player_.oldest()].block) : told_);
+    release();
     return last_;
   }
 
@@ -195,6 +194,15 @@ class Executor {
     else
       last_.tool = in_space(axes.position, tool_);
     last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
+  }
+
+  // Lets blocks go that are too far behind: those ahead are to have their share of the room, whatever blocks
+  // without a cell lie between.
+  void release() {
+    if (player_.oldest() == player_.end()) return feed_.release(told_);
+    const std::int64_t furthest = static_cast<std::int64_t>(last_.block) - static_cast<std::int64_t>(capacity);
+    while (player_[player_.oldest()].block < furthest && player_.forget_oldest()) {}
+    feed_.release(std::min(told_, player_[player_.oldest()].block));
   }
 
   // Words of blocks up to one; what the set point has no room for comes with the next one.

@@ -76,12 +76,13 @@ class BlockRing {
     const std::int64_t end = pushed_.load(std::memory_order_acquire);
     return std::exchange(end_, end) != end;
   }
-  /// Lets the blocks before a number go, the last one never.
-  void release(std::int64_t number) {
+  /// Lets the blocks before a number go, the last one never; whether there were any.
+  bool release(std::int64_t number) {
     const std::int64_t oldest = std::min(number, end_ - 1);
-    if (oldest <= oldest_) return;
+    if (oldest <= oldest_) return false;
     oldest_ = oldest;
     released_.store(oldest, std::memory_order_release);
+    return true;
   }
   [[nodiscard]] std::int64_t oldest() const { return oldest_; }
   [[nodiscard]] std::int64_t end() const { return end_; }

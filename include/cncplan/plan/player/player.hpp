@@ -81,6 +81,11 @@ class BasicPlayer {
   /// The oldest block that is kept; the one behind the last that a tick has seen.
   [[nodiscard]] std::int64_t oldest() const { return road_.ring.oldest(); }
   [[nodiscard]] std::int64_t end() const { return road_.ring.end(); }
+  /// Lets the oldest block go, if the machine is behind it; whether it was.
+  bool forget_oldest() {
+    if (road_.ring.oldest() >= at_.block) return false;
+    return road_.ring.release(road_.ring.oldest() + 1);
+  }
 
   /// Comes to rest as soon as the limits allow; `resume` goes on from there.
   void hold() { ask(road_.asked.held, true); }
@@ -234,8 +239,10 @@ class BasicPlayer {
 
   [[nodiscard]] bool leg_over() const { return !idle_ && !(leg_.left() > S(0)); }
 
-  // Where it is now. The block goes along, the leg's start then lies before it.
+  // Where it is now. The block goes along, the leg's start then lies before it. At rest a block of no length
+  // is not passed by.
   BasicSpot<S> locate() {
+    if (idle_) return at_;
     const S position = leg_.state().position;
     const BasicSpot<S> at = road_.advance(at_, position);
     if (at.block != at_.block) at_ = {at.block, at.along - position};
