@@ -23,11 +23,11 @@ struct ExecutorFaults {
   double acceleration{};  ///< likewise
   double jerk{};          ///< likewise
   double way{};           ///< of an axis over a tick above what its velocity limit allows, mm or rad
-  double rate{};          ///< of an axis, velocity against the difference of positions, over its bound by jerk
-  double change{};        ///< of an axis, difference of accelerations over a tick above the jerk limit, relative
-  double place{};         ///< mm or rad, distance from the block that the set point names
-  double dwell{};         ///< s that a dwell was too short; where nothing was asked, too long
-  double end{};           ///< mm or rad from the end of the last block
+  double rate{};    ///< of an axis, velocity against the difference of positions, over its bound by jerk
+  double change{};  ///< of an axis, difference of accelerations over a tick above the jerk limit, relative
+  double place{};   ///< mm or rad, distance from the block that the set point names
+  double dwell{};   ///< s that a dwell was too short; where nothing was asked, too long
+  double end{};     ///< mm or rad from the end of the last block
   bool words_wrong{};
   bool finished{};
   bool failed{};
@@ -38,8 +38,8 @@ struct ExecutorFaults {
 
 /// What is done to a run.
 struct Disturbance {
-  int mean_gap = 20;    ///< ticks between requests
-  long restless = 0;    ///< ticks for which there are any
+  int mean_gap = 20;  ///< ticks between requests
+  long restless = 0;  ///< ticks for which there are any
   double period = 1e-3;
   double rounding = 1e-9;  ///< relative, of what is compared
 };
@@ -173,12 +173,13 @@ class TickCheck {
     for (int i = 0; i < n; ++i) {
       const auto& axis = machine_.axes[static_cast<std::size_t>(i)];
       const double way = static_cast<double>(now.position[i]) - static_cast<double>(before_.position[i]);
-      grow(faults.way, std::abs(way) - static_cast<double>(axis.velocity) * period * (1 + how_.rounding) -
-                           4 * rounding);
+      grow(faults.way,
+           std::abs(way) - static_cast<double>(axis.velocity) * period * (1 + how_.rounding) - 4 * rounding);
       if (!inside || !std::isfinite(axis.jerk)) continue;
       const double jerk = static_cast<double>(axis.jerk);
       const double mean = static_cast<double>(now.velocity[i] + before_.velocity[i]) / 2;
-      grow(faults.rate, (std::abs(way - period * mean) - 4 * rounding) / (jerk * period * period * period / 4) - 1);
+      grow(faults.rate,
+           (std::abs(way - period * mean) - 4 * rounding) / (jerk * period * period * period / 4) - 1);
       const double change = static_cast<double>(now.acceleration[i] - before_.acceleration[i]);
       grow(faults.change, std::abs(change) / (jerk * period) - 1);
     }
@@ -217,7 +218,8 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
     check.take(executor.tick(static_cast<S>(how.period)));
     if (!executor.finished()) continue;
     check.faults.finished = true;
-    check.faults.duration = static_cast<double>(tick + 1) * how.period - static_cast<double>(executor.rested());
+    check.faults.duration =
+        static_cast<double>(tick + 1) * how.period - static_cast<double>(executor.rested());
     break;
   }
   check.faults.failed = executor.error().has_value();
@@ -242,8 +244,8 @@ std::vector<ProgramBlock<M>> blocks_of(const std::vector<std::string>& lines, co
   return blocks;
 }
 
-/// Lines of a program of lines, arcs and helices, rapids, dwells, stops, words and moves to where the tool is.
-/// X and Y stay within `reach` of a centre; `letters` are further axes, which move now and then.
+/// Lines of a program of lines, arcs and helices, rapids, dwells, stops, words and moves to where the tool
+/// is. X and Y stay within `reach` of a centre; `letters` are further axes, which move now and then.
 inline std::vector<std::string> random_lines(Random& random, int count, const std::array<double, 3>& center,
                                              double reach, const std::string& letters) {
   char text[200];
@@ -291,7 +293,8 @@ inline std::vector<std::string> random_lines(Random& random, int count, const st
     } else if (kind == 17) {
       add(random.coin() ? "M8" : "M3 S%d", random.integer(1, 9) * 1000);
     } else if (kind == 18) {
-      add("%s", std::array{"M0", "M1", "T2 M6", "G61", "G64"}[static_cast<std::size_t>(random.integer(0, 4))]);
+      add("%s",
+          std::array{"M0", "M1", "T2 M6", "G61", "G64"}[static_cast<std::size_t>(random.integer(0, 4))]);
     } else if (random.coin()) {
       add("G1 X%.6f F%.0f", x, random.log_uniform(100, 5000));
     } else {

@@ -101,7 +101,8 @@ class BasicRoad {
     from.along += distance;
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
       const S length = ring.length(from.block);
-      if (from.along < (stops_behind(from.block) ? length + road_rounding<S> : length)) break;
+      const bool stops = stops_behind(from.block) || !(junction_cap(from.block + direction) > S(0));
+      if (from.along < (stops ? length + road_rounding<S> : length)) break;
       from.along -= length;
       from.block += direction;
     }
