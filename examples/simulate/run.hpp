@@ -120,7 +120,7 @@ class Run {
     const bool whole =
         options_.planning == Planning::block || options_.interpolator == Interpolator::constant;
     const std::span<const Block> all(blocks);
-    const auto cells = whole ? plan::make_cells(all, machine, rules, cncplan::published::WholeBlocks{})
+    const auto cells = whole ? plan::make_cells<cncplan::published::WholeBlocks>(all, machine, rules)
                              : plan::make_cells(all, machine, rules);
     if (!cells) {
       auto error = plan::error_in(blocks, cells.error());

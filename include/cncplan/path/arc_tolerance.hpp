@@ -26,6 +26,19 @@ struct ArcTolerance {
   S smallest_radius = S(0.00127);                     ///< of an arc given by its centre
   S coincidence = S(1e-9);  ///< start and end closer than this are one point: a full circle by centre
 
+  /// The same numbers in another type.
+  template <std::floating_point T>
+  [[nodiscard]] constexpr ArcTolerance<T> cast() const {
+    return {T(short_radius),
+            T(short_radius_relative),
+            T(semicircle),
+            T(radius_mismatch),
+            T(radius_mismatch_relative),
+            T(radius_mismatch_largest),
+            T(smallest_radius),
+            T(coincidence)};
+  }
+
   friend bool operator==(const ArcTolerance&, const ArcTolerance&) = default;
 };
 

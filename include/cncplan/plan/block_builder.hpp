@@ -84,7 +84,7 @@ class BlockBuilder {
   using Scalar = typename M::Scalar;
 
   BlockBuilder(const M& machine, const gcode::Dialect& dialect, const path::ArcTolerance<double>& arcs = {})
-      : machine_(machine), arcs_(arcs) {
+      : machine_(machine), arcs_(arcs.cast<Scalar>()) {
     const auto index_of = [&](char letter) {
       const auto found = std::find_if(dialect.axes.begin(), dialect.axes.end(),
                                       [&](const gcode::Axis& axis) { return axis.letter == letter; });
@@ -269,7 +269,7 @@ class BlockBuilder {
   }
 
   M machine_;
-  path::ArcTolerance<double> arcs_;
+  path::ArcTolerance<Scalar> arcs_;
   std::size_t word_count_ = 0;
   std::array<AxisKind, gcode::max_axes> kinds_{};
   std::array<int, coordinates> words_{};   // which word each coordinate is; -1 for none

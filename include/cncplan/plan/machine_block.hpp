@@ -4,11 +4,13 @@
 #include <concepts>
 #include <limits>
 
+#include "cncplan/gcode/word.hpp"
 #include "cncplan/path/segment.hpp"
 
 namespace cncplan {
 
-/// Where the axes go, how fast they may, and how the motion ends. A block of length zero is a place to stop.
+/// Where the axes go, how fast they may, and how the motion ends. A block of length zero is a place to stop,
+/// or where it does not stop, a place where a word is told.
 template <std::floating_point S, int N, class... Curves>
 struct BasicBlock {
   using Scalar = S;
@@ -24,6 +26,7 @@ struct BasicBlock {
   bool rapid{};                                 ///< at the rapid rate, whatever the feed
   int line{};                                   ///< of the program; 0 where there is none
   int column{};
+  gcode::Word word{};  ///< told where the block begins; no letter: none
 
   friend bool operator==(const BasicBlock&, const BasicBlock&) = default;
 };

@@ -4,10 +4,15 @@
 #include <concepts>
 #include <cstddef>
 
+#include "cncplan/core/fixed_list.hpp"
 #include "cncplan/core/state.hpp"
 #include "cncplan/core/vector.hpp"
+#include "cncplan/gcode/word.hpp"
 
 namespace cncplan {
+
+/// Words that are reached at one instant.
+using ReachedWords = FixedList<gcode::Word, 8>;
 
 /// The axes and the tool at one instant; mm, rad and s.
 template <std::floating_point S, int N>
@@ -23,6 +28,7 @@ struct BasicSetPoint {
   Vector jerk = Vector::Zero();
   BasicVector3<S> tool = BasicVector3<S>::Zero();  ///< X Y Z
   BasicState<S> along{};  ///< programmed length since the start, and its time derivatives
+  ReachedWords words{};   ///< of an executor: reached since the set point before, each told once, in order
 };
 
 template <int N>

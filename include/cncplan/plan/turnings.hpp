@@ -1,4 +1,4 @@
-// Where axes with backlash turn round, on a program's way from block to block (set-up).
+// Where axes with backlash turn round, on a program's way from block to block.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <vector>
 
 #include "cncplan/core/limits.hpp"
 #include "cncplan/plan/machine.hpp"
@@ -45,42 +44,68 @@ class Turnings {
   using Turning = BasicTurning<Scalar>;
 
   explicit Turnings(const M& machine) {
-    for (std::size_t i = 0; i < rules_.size(); ++i)
+    for (std::size_t i = 0; i < axes_.size(); ++i)
       for (const step::BasicDrive<Scalar>& drive : machine.axes[i].motors) {
         const Scalar time = step::backlash_time(drive);
-        if (time > rules_[i].time) rules_[i] = {time, step::hysteresis(drive) / drive.steps_per_unit};
+        if (time > axes_[i].rule.time) axes_[i].rule = {time, step::hysteresis(drive) / drive.steps_per_unit};
       }
   }
 
-  /// The turnings of the next block's path, in order.
-  template <class Segment>
-  [[nodiscard]] const std::vector<Turning>& next(const Segment& path) {
-    found_.clear();
-    for (std::size_t i = 0; i < rules_.size(); ++i)
-      if (rules_[i].time > Scalar(0)) follow(path, static_cast<int>(i));
-    std::sort(found_.begin(), found_.end(), [](const Turning& a, const Turning& b) { return a.at < b.at; });
-    return found_;
+  /// Begins with the next path; it is to stay until its turnings are taken.
+  template <Path P>
+  void begin(const P& path) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      axes_[i].from = Scalar(0);
+      axes_[i].next = never;
+      if (axes_[i].rule.time > Scalar(0)) look_on(path, i);
+    }
+  }
+
+  /// Where the next one is, infinite where there is none.
+  [[nodiscard]] Scalar next() const { return axes_[nearest()].next; }
+
+  /// Takes it from the path.
+  template <Path P>
+  [[nodiscard]] Turning take(const P& path) {
+    const std::size_t i = nearest();
+    const Scalar at = axes_[i].next;
+    const auto k = static_cast<int>(i);
+    const auto point = path.point_at(at);
+    look_on(path, i);
+    return {at, at > Scalar(0) ? Scalar(0) : point.first[k], point.second[k], axes_[i].rule};
   }
 
  private:
+  static constexpr Scalar never = std::numeric_limits<Scalar>::infinity();
+
+  struct Axis {
+    BasicReversalRule<Scalar> rule{};
+    int went{};     // +1 or -1, at last
+    Scalar from{};  // parameter up to which it has been followed
+    Scalar next{never};
+  };
+
+  [[nodiscard]] std::size_t nearest() const {
+    const auto sooner = [](const Axis& a, const Axis& b) { return a.next < b.next; };
+    return static_cast<std::size_t>(std::min_element(axes_.begin(), axes_.end(), sooner) - axes_.begin());
+  }
+
   template <class Segment>
-  void follow(const Segment& path, int axis) {
+  void look_on(const Segment& path, std::size_t i) {
+    Axis& axis = axes_[i];
+    const int k = static_cast<int>(i);
     const SteppableSegment<Segment> steppable(path);
     const Scalar end = steppable.parameter_end();
-    const auto k = static_cast<std::size_t>(axis);
-    for (Scalar from = Scalar(0); from < end;) {
-      const Scalar next = steppable.next_turning(axis, from);
-      const Scalar to = next > from ? std::min(next, end) : end;
-      if (const int goes = sense(steppable.position(to)[axis] - steppable.position(from)[axis]); goes != 0) {
-        if (goes == -went_[k]) {
-          const Scalar at = from > Scalar(0) ? steppable.length_at(from) : Scalar(0);
-          const auto point = path.point_at(at);
-          found_.push_back(
-              {at, at > Scalar(0) ? Scalar(0) : point.first[axis], point.second[axis], rules_[k]});
-        }
-        went_[k] = goes;
+    axis.next = never;
+    while (axis.from < end && axis.next == never) {
+      const Scalar turn = steppable.next_turning(k, axis.from);
+      const Scalar to = turn > axis.from ? std::min(turn, end) : end;
+      if (const int goes = sense(steppable.position(to)[k] - steppable.position(axis.from)[k]); goes != 0) {
+        if (goes == -axis.went)
+          axis.next = axis.from > Scalar(0) ? steppable.length_at(axis.from) : Scalar(0);
+        axis.went = goes;
       }
-      from = to;
+      axis.from = to;
     }
   }
 
@@ -90,9 +115,7 @@ class Turnings {
     return travel > rounding ? 1 : travel < -rounding ? -1 : 0;
   }
 
-  std::array<BasicReversalRule<Scalar>, static_cast<std::size_t>(M::axis_count)> rules_{};
-  std::array<int, static_cast<std::size_t>(M::axis_count)> went_{};
-  std::vector<Turning> found_;
+  std::array<Axis, static_cast<std::size_t>(M::axis_count)> axes_{};
 };
 
 }  // namespace cncplan::plan

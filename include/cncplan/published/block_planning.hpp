@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/cells.hpp"
@@ -17,26 +19,35 @@
 
 namespace cncplan::published {
 
-/// The limits of whole blocks, for `plan::make_cells`: the tool's by `CapSpeed`, along the path alone; each
-/// axis keeps its own all the same.
-struct WholeBlocks {
-  template <MachineModel M, BlockModel B, class Add>
-  void operator()(const B& block, const M& machine, typename M::Scalar start, typename M::Scalar end,
-                  typename M::Scalar speed, typename M::Scalar tool_speed, Add&& add) const {
-    using S = typename M::Scalar;
-    constexpr S infinity = std::numeric_limits<S>::infinity();
-    const auto bounds = block.path.bounds(start, end);
-    BasicLimits<S> tool = machine.limits;
-    tool.velocity = bounds.tool.first > S(0) ? std::min(speed, tool_speed / bounds.tool.first) : speed;
+/// The limits of whole pieces of blocks, for `plan::make_cells`: the tool's by `CapSpeed`, along the path
+/// alone; each axis keeps its own all the same.
+template <MachineModel M, BlockModel B>
+class WholeBlocks {
+ public:
+  using Scalar = typename M::Scalar;
+  using Part = plan::BasicPartLimits<Scalar>;
+
+  void begin(const B& block, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
+    constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+    const auto bounds = block.path.bounds(from, to);
+    BasicLimits<Scalar> tool = machine.limits;
+    tool.velocity = bounds.tool.first > Scalar(0) ? std::min(speed, tool_speed / bounds.tool.first) : speed;
     tool = plan::CapSpeed{}(
-        plan::BasicBend<S>{bounds.tool.second_across, bounds.tool.third_across, end - start}, tool);
+        plan::BasicBend<Scalar>{bounds.tool.second_across, bounds.tool.third_across, to - from}, tool);
     M axes = machine;
     axes.limits = {infinity, infinity, infinity};
-    const BasicLimits<S> own = plan::limits_along(bounds, axes, tool.velocity, infinity);
-    add(plan::PartLimits<S>{end - start,
-                            {std::min(tool.velocity, own.velocity),
-                             std::min(tool.acceleration, own.acceleration), std::min(tool.jerk, own.jerk)}});
+    const BasicLimits<Scalar> own = plan::limits_along(bounds, axes, tool.velocity, infinity);
+    part_ = Part{from,
+                 to,
+                 {std::min(tool.velocity, own.velocity), std::min(tool.acceleration, own.acceleration),
+                  std::min(tool.jerk, own.jerk)}};
   }
+
+  [[nodiscard]] bool done() const { return !part_; }
+  [[nodiscard]] Part next(const M&) { return *std::exchange(part_, std::nullopt); }
+
+ private:
+  std::optional<Part> part_;
 };
 
 /// The speed at each junction, such that every pair of speeds can be driven within its block and no junction

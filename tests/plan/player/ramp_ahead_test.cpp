@@ -28,6 +28,7 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
       const double cap = random.integer(0, 2) == 0 ? random.uniform(0, 30) : 1e3;
       road.ring.push({{random.log_uniform(0.05, 5), cap, of_block, 0.0}, 30.0});
     }
+    road.ring.take();
     const Limits& here = road.ring[0].caps.limits;
     const double a = random.uniform(-1, 1) * here.acceleration;
     const double v = random.uniform(0, here.velocity) + (a < 0 ? a * a / (2 * here.jerk) : 0.0);
@@ -62,6 +63,7 @@ TEST_CASE("a ramp that crests above both its speeds is held to a junction there"
   plan::BasicRoad<double> road(memory);
   road.ring.push({{0.2, 0.0, limits, 0.0}, 30.0});
   road.ring.push({{5.0, 1e3, {10.3, 1000.0, 10000.0}, 0.0}, 30.0});
+  road.ring.take();
   // 10 mm/s and rising: over 11 before it can come down to 10.2
   CHECK_FALSE(plan::ramp_ahead(road, {0, 0.0}, {0, 10.0, 150.0, 0}, 10.2));
 }

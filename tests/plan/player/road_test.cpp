@@ -15,6 +15,7 @@ struct Street {
   explicit Street(int count) : memory(16), road(memory) {
     for (int i = 0; i < count; ++i)
       road.ring.push({{1.0 + i, 10.0 + i, limits, 0.0}, 20.0, i == 2, i == 3, i + 1});
+    road.ring.take();
   }
   std::vector<plan::PlayedBlock> memory;
   plan::BasicRoad<double> road;
@@ -92,6 +93,7 @@ TEST_CASE("zones join blocks of equal limits") {
   const Limits low{10.0, 500.0, 5000.0};
   for (const Limits& of_block : {limits, limits, low, low, limits})
     road.ring.push({{0.1, 30.0, of_block, 0.0}, 30.0});
+  road.ring.take();
   std::vector<plan::BlockCaps> out(8);
   REQUIRE(road.zones({0, 0.05}, 30.0, out) == 3);
   CHECK(out[0].length == Approx(0.15));
@@ -106,6 +108,7 @@ TEST_CASE("where there is no room for all zones the last is as weak as all the r
   plan::BasicRoad<double> road(memory);
   for (const double share : {1.0, 0.9, 0.5, 0.8})
     road.ring.push({{0.1, 30.0, {30.0, 1000.0 * share, 10000.0 / share}, 0.0}, 30.0});
+  road.ring.take();
   std::vector<plan::BlockCaps> out(2);
   REQUIRE(road.zones({0, 0.0}, 30.0, out) == 2);
   CHECK(out[0].limits.acceleration == 1000.0);
@@ -117,6 +120,7 @@ TEST_CASE("in float a spot is a junction but for rounding too") {
   std::vector<plan::BasicPlayedBlock<float>> memory(8);
   plan::BasicRoad<float> road(memory);
   for (int i = 0; i < 8; ++i) road.ring.push({{12.7F, 30.0F, {30.0F, 1e3F, 1e4F}, 0.0F}, 30.0F});
+  road.ring.take();
   using Spot = plan::BasicSpot<float>;
   for (int blocks = 1; blocks < 8; ++blocks) {
     CAPTURE(blocks);

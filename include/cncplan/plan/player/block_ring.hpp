@@ -1,28 +1,37 @@
-// The blocks of a machine that runs, in a ring, and places on them.
+// The blocks of a machine that runs, in a ring between the thread that makes them and the one that ticks.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "cncplan/plan/caps.hpp"
 
 namespace cncplan::plan {
 
-/// A block as real-time control needs it. The velocity in `caps.limits` is what its shape and its axes bear;
-/// the feed is what the program asks for, and what the override acts on. Domain, which is not checked: a
+/// A block as real-time control needs it, a cell of one that `Executor` was given. The limits in `caps` hold
+/// for speeds up to the feed; its velocity is what shape and axes bear. Domain, which is not checked: a
 /// finite length >= 0, limits that `validate` accepts and whose jerk is finite, entry and pause finite, >= 0.
 /// A block of no length waits where it stands: the motion rests before it, as its entry says, and behind it.
 /// A feed that is not positive, or NaN, is never run: the motion rests before it.
 template <std::floating_point S>
 struct BasicPlayedBlock {
   BasicBlockCaps<S> caps;
-  S feed{};              ///< mm/s
+  S feed{};              ///< mm/s, what the override acts on
   bool rapid{};          ///< obeys the rapid override
   bool optional_stop{};  ///< the motion stops behind it where that is switched on (M1)
   int line{};            ///< of the program, for pauses
-  bool goes_on{};        ///< the next block belongs to the same motion: single steps do not end behind it
+  bool goes_on{};        ///< the next one is of the same block of the program: no single step ends here
+  bool program_stop{};   ///< the motion stops behind it where that is switched on (M0)
+  /// Limits up to twice the feed: velocity not below, acceleration and jerk not above those of `caps`. A
+  /// velocity of 0: those of `caps`.
+  BasicLimits<S> above{S(0), S(0), S(0)};
+  std::int64_t block{};  ///< number of the block of the program that it is a cell of
+  S from{};              ///< mm from the start of that block to its own
 
   friend bool operator==(const BasicPlayedBlock&, const BasicPlayedBlock&) = default;
 };
@@ -39,7 +48,9 @@ struct BasicSpot {
   friend bool operator==(const BasicSpot&, const BasicSpot&) = default;
 };
 
-/// Blocks by their number in the program, the newest ones; older ones are overwritten when room is needed.
+/// Blocks by their number in the program. One thread pushes, another looks and releases; neither waits. A
+/// block stays as it is from `push` until it is released. (The two counters are those of `Queue`, except that
+/// what was taken stays until it is released.)
 template <std::floating_point S>
 class BlockRing {
  public:
@@ -47,6 +58,32 @@ class BlockRing {
 
   explicit BlockRing(std::span<Block> memory) : memory_(memory) {}
 
+  /// For the thread that pushes: false, and nothing done, when there is no room.
+  bool push(const Block& block) {
+    const std::int64_t number = pushed_.load(std::memory_order_relaxed);
+    if (number - released_.load(std::memory_order_acquire) >= capacity()) return false;
+    memory_[static_cast<std::size_t>(number % capacity())] = block;
+    pushed_.store(number + 1, std::memory_order_release);
+    return true;
+  }
+
+  /// How many blocks there have been, for either thread.
+  [[nodiscard]] std::int64_t pushed() const { return pushed_.load(std::memory_order_acquire); }
+
+  // For the thread that looks.
+  /// Takes notice of what was pushed; whether there is anything new.
+  bool take() {
+    const std::int64_t end = pushed_.load(std::memory_order_acquire);
+    return std::exchange(end_, end) != end;
+  }
+  /// Lets the blocks before a number go, the last one never; whether there were any.
+  bool release(std::int64_t number) {
+    const std::int64_t oldest = std::min(number, end_ - 1);
+    if (oldest <= oldest_) return false;
+    oldest_ = oldest;
+    released_.store(oldest, std::memory_order_release);
+    return true;
+  }
   [[nodiscard]] std::int64_t oldest() const { return oldest_; }
   [[nodiscard]] std::int64_t end() const { return end_; }
   [[nodiscard]] std::int64_t capacity() const { return static_cast<std::int64_t>(memory_.size()); }
@@ -56,18 +93,19 @@ class BlockRing {
     return memory_[static_cast<std::size_t>(number % capacity())];
   }
 
-  void push(const Block& block) {
-    if (end_ - oldest_ == capacity()) ++oldest_;
-    memory_[static_cast<std::size_t>(end_++ % capacity())] = block;
+  /// Forgets all blocks; the next one has this number. Not while anything is pushed.
+  void restart(std::int64_t number) {
+    oldest_ = end_ = number;
+    released_.store(number, std::memory_order_release);
+    pushed_.store(number, std::memory_order_release);
   }
-
-  /// Forgets all blocks; the next one has this number.
-  void restart(std::int64_t number) { oldest_ = end_ = number; }
 
  private:
   std::span<Block> memory_;
   std::int64_t oldest_ = 0;
   std::int64_t end_ = 0;
+  std::atomic<std::int64_t> pushed_{0};
+  std::atomic<std::int64_t> released_{0};
 };
 
 }  // namespace cncplan::plan

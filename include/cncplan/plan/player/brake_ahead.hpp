@@ -27,7 +27,7 @@ inline constexpr S junction_tolerance = S(1) + road_rounding<S>;
 template <std::floating_point S>
 [[nodiscard]] S fastest_ahead(const BasicRoad<S>& road, const BasicSpot<S>& at, const BasicState<S>& now) {
   const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-  return std::max(now.velocity, profile::settled_speed(state, road.ring[at.block].caps.limits));
+  return std::max(now.velocity, profile::settled_speed(state, road.limits(at.block)));
 }
 
 /// The motion towards rest from a spot, under the limits of each block, up to where they change. Nothing
@@ -59,7 +59,7 @@ template <std::floating_point S>
 [[nodiscard]] bool keeps_junctions(const BasicRoad<S>& road, const BasicLeg<S>& leg, const BasicSpot<S>& from,
                                    const BasicState<S>& start) {
   const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
-  const S fastest = start.velocity + rising * rising / (S(2) * road.ring[from.block].caps.limits.jerk);
+  const S fastest = start.velocity + rising * rising / (S(2) * road.limits(from.block).jerk);
   S position = road.ring.length(from.block) - from.along;
   for (std::int64_t block = from.block; position < leg.length() - road_rounding<S>;) {
     if (!road.ring.holds(block + road.direction)) return true;

@@ -70,18 +70,21 @@ class BasicPlayer {
     const std::size_t gates = std::min(memory.gates.size(), memory.spare_gates.size());
     memory_.ahead = memory.ahead.first(std::min(memory.ahead.size(), std::max<std::size_t>(gates, 1) - 1));
     const std::int64_t room = road_.ring.capacity() - static_cast<std::int64_t>(memory_.ahead.size());
-    keep_behind_ = std::max(std::min(keep_behind, room), std::int64_t{0});
+    keep_behind_ = std::clamp(keep_behind, std::int64_t{0}, std::max(room, std::int64_t{0}));
   }
 
-  /// Takes the next block of the program. False when there is no room. What a block may be is said there.
-  bool push(const Block& block) {
-    BlockRing<S>& ring = road_.ring;
-    const std::int64_t first_needed = std::max(at_.block - keep_behind_, ring.oldest());
-    if (ring.end() - first_needed >= ring.capacity()) return false;
-    ring.push(block);
-    more_ = true;
-    pending_ = pending_ || idle_;
-    return true;
+  /// Takes the next block of the program. False when there is no room. What a block may be is said there. Of
+  /// all members this one alone may be called by another thread than the one that ticks.
+  bool push(const Block& block) { return road_.ring.push(block); }
+  /// A block that is kept.
+  [[nodiscard]] const Block& operator[](std::int64_t block) const { return road_.ring[block]; }
+  /// The oldest block that is kept; the one behind the last that a tick has seen.
+  [[nodiscard]] std::int64_t oldest() const { return road_.ring.oldest(); }
+  [[nodiscard]] std::int64_t end() const { return road_.ring.end(); }
+  /// Lets the oldest block go, if the machine is behind it; whether it was.
+  bool forget_oldest() {
+    if (road_.ring.oldest() >= at_.block) return false;
+    return road_.ring.release(road_.ring.oldest() + 1);
   }
 
   /// Comes to rest as soon as the limits allow; `resume` goes on from there.
@@ -103,6 +106,7 @@ class BasicPlayer {
     const BasicState<S> now = leg_.state();
     const BasicSpot<S> at = locate();
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
+    road_.above = leg_above_;
     BasicLimits<S> limits = road_.strongest(at, fastest_ahead(road_, at, now));
     limits.velocity = S(1);  // plays no part
     limits.acceleration = std::max({limits.acceleration, acceleration, std::abs(now.acceleration)});
@@ -124,8 +128,9 @@ class BasicPlayer {
 
   /// Stops behind every block (single step): `resume` runs the next one.
   void single_step(bool wanted) { ask(road_.asked.single_step, wanted); }
-  /// Whether blocks with an optional stop stop.
+  /// Whether blocks with an optional stop stop, and those with a program stop; `resume` goes on.
   void optional_stop(bool wanted) { ask(road_.asked.optional_stops, wanted); }
+  void program_stop(bool wanted) { ask(road_.asked.program_stops, wanted); }
   /// Stops before the first block of this line of the program; `resume` goes on. 0: none.
   void pause_at(int line) { ask(road_.asked.pause_line, line); }
 
@@ -148,6 +153,7 @@ class BasicPlayer {
   /// Moves on by `period` seconds. It plans at most 16 times on the way: enough for a tenth of a second and
   /// more; over a longer one the machine may slow down for blocks that it has.
   BasicPlayed<S> tick(S period) {
+    look();
     if (pending_ || (could_better() && leg_.to_turn() <= S(0))) renew();
     S left = period;
     int plans = most_plans;
@@ -176,7 +182,9 @@ class BasicPlayer {
       }
     }
     rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
-    return played();
+    const BasicPlayed<S> now = played();
+    road_.ring.release(at_.block - keep_behind_);
+    return now;
   }
 
   /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
@@ -192,7 +200,7 @@ class BasicPlayer {
 
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && !(waits() > S(0)) && road_.direction > 0 && at_.block >= road_.ring.end();
+    return idle_ && !(waits() > S(0)) && road_.direction > 0 && at_.block >= road_.ring.pushed();
   }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return road_.asked.stopped && idle_; }
@@ -210,6 +218,13 @@ class BasicPlayer {
     pending_ = true;
   }
 
+  // Takes notice of blocks that were pushed.
+  void look() {
+    if (!road_.ring.take()) return;
+    more_ = true;
+    pending_ = pending_ || idle_;
+  }
+
   // Seconds of a dwell that are left.
   [[nodiscard]] S waits() const { return dwell_.until(S(0)); }
   void wait_for(S seconds) {
@@ -224,8 +239,10 @@ class BasicPlayer {
 
   [[nodiscard]] bool leg_over() const { return !idle_ && !(leg_.left() > S(0)); }
 
-  // Where it is now. The block goes along, the leg's start then lies before it.
+  // Where it is now. The block goes along, the leg's start then lies before it. At rest a block of no length
+  // is not passed by.
   BasicSpot<S> locate() {
+    if (idle_) return at_;
     const S position = leg_.state().position;
     const BasicSpot<S> at = road_.advance(at_, position);
     if (at.block != at_.block) at_ = {at.block, at.along - position};
@@ -237,7 +254,8 @@ class BasicPlayer {
     if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = leg_.state();
     BasicSpot<S> at = locate();
-    if (!ring.holds(at.block))  // behind the last
+    if (!ring.holds(at.block) ||
+        (waits() > S(0) && ring.holds(at.block - 1)))  // behind the last, or dwelling
       at = {at.block - road_.direction, ring.length(at.block - road_.direction)};
     const S whole = ring.length(at.block);
     const S travelled = std::min(at.along, whole);
@@ -254,6 +272,7 @@ class BasicPlayer {
   void renew() {
     if (waits() > S(0)) return;
     const bool asked = std::exchange(pending_, false);
+    road_.above = road_.asks_above();
     if (idle_)
       start();
     else
@@ -272,23 +291,39 @@ class BasicPlayer {
     const BasicSpot<S> at = locate();
     if (!road_.ring.holds(at.block)) return false;
     if (road_.must_rest(at.block)) {
+      road_.above = leg_above_;
       const auto leg = brake_ahead(road_, at, now, memory_.ahead);
       if (leg) follow(*leg, at, no_gate);
       return leg.has_value();
     }
-    const S wanted = road_.wanted_speed(at.block);
-    if (now.acceleration == S(0) && now.velocity <= wanted && plan_from(at, now.velocity)) {
+    if (now.acceleration == S(0) && now.velocity <= road_.wanted_speed(at.block) &&
+        plan_from(at, now.velocity)) {
       adopt(at);
       return true;
     }
+    // From below the feed to above it, the lower acceleration limits there hold from the ramp on, or from its
+    // end; from above, up to its end.
+    if (replan(asked, now, at, leg_above_ || road_.asks_above())) return true;
+    return road_.asks_above() && !leg_above_ && replan(asked, now, at, false);
+  }
+
+  // By a ramp under the limits above the feed, or those up to it.
+  bool replan(bool asked, const BasicState<S>& now, const BasicSpot<S>& at, bool ramp_above) {
+    const bool above = road_.asks_above();
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    const S settled = profile::settled_speed(state, road_.ring[at.block].caps.limits);
+    road_.above = above;
+    const S wanted = road_.wanted_speed(at.block);
+    road_.above = ramp_above;
+    const S settled = profile::settled_speed(state, road_.limits(at.block));
     for (const S target : {wanted, settled > negligible_speed<S> ? std::min(settled, wanted) : S(0)}) {
+      road_.above = ramp_above;
       const auto ramp = ramp_ahead(road_, at, now, target);
+      road_.above = above;
       if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
       if (!asked && !betters(*ramp)) continue;
       take_spare();
       follow(BasicLeg<S>(*ramp), at, 0);
+      leg_above_ = ramp_above;
       return true;
     }
     return false;
@@ -297,6 +332,7 @@ class BasicPlayer {
   // Plans from a spot at a speed with zero acceleration, into the spare gates. False if the speed is too high
   // there.
   bool plan_from(const BasicSpot<S>& from, S speed) {
+    road_.above = road_.asks_above();
     const auto [blocks, whole] = road_.ahead(from, speed, memory_.ahead);
     spare_whole_ = whole;
     spare_count_ = 0;
@@ -336,6 +372,7 @@ class BasicPlayer {
   void take_spare() {
     std::swap(memory_.gates, memory_.spare_gates);
     gate_count_ = spare_count_;
+    plan_above_ = road_.asks_above();
     more_ = !spare_whole_;
   }
 
@@ -354,6 +391,7 @@ class BasicPlayer {
     at_ = from;
     leg_ = leg;
     next_gate_ = gate;
+    if (gate != no_gate) leg_above_ = plan_above_;
     leg_settled_ = gate == no_gate || gate == 0 || memory_.gates[gate].settled;
     idle_ = false;
   }
@@ -379,6 +417,7 @@ class BasicPlayer {
     const bool rests = !(end.velocity > negligible_speed<S>);
     const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
     if (next_gate_ == no_gate) {
+      road_.above = leg_above_;
       if (!rests && road_.ring.holds(at_.block))
         return follow(braking_on(road_, at_, end, memory_.ahead), at_, no_gate), false;
       return at_junction && !road_.asked.stopped ? rest_as_planned() : rest(), false;
@@ -403,8 +442,7 @@ class BasicPlayer {
     const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;
     BasicRequests<S>& asked = road_.asked;
     if (block != nullptr && road_.direction > 0) wait_for(block->caps.pause);
-    if (asked.single_step || (asked.optional_stops && block != nullptr && block->optional_stop))
-      asked.held = true;
+    if (block != nullptr ? road_.holds_behind(*block) : asked.single_step) asked.held = true;
     pauses_here();
     rest();
   }
@@ -437,6 +475,8 @@ class BasicPlayer {
   std::size_t next_gate_ = no_gate;
   BasicElapsed<S> dwell_;     // s to its end, below 0
   S rested_{};                // s
+  bool plan_above_ = false;   // the plan is made for more than the feed
+  bool leg_above_ = false;    // the leg is
   bool pending_ = false;      // a request has not been met yet
   bool more_ = false;         // there are blocks that the plan does not know
   bool spare_whole_ = false;  // the plan in the spare gates knows all

@@ -38,7 +38,7 @@ template <std::floating_point S>
                                                                  const BasicSpot<S>& from,
                                                                  const BasicState<S>& now, S target) {
   const profile::BasicStartState<S> start{now.velocity, now.acceleration};
-  BasicLimits<S> limits = road.ring[from.block].caps.limits;
+  BasicLimits<S> limits = road.limits(from.block);
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
     if (std::abs(now.acceleration) > limits.acceleration * (S(1) + road_rounding<S>)) return {};
@@ -55,7 +55,7 @@ template <std::floating_point S>
     S position = S(0);
     S speed = now.velocity;
     for (S until = road.ring.length(at.block) - at.along;; until += road.ring.length(at.block)) {
-      const BasicLimits<S>& there = road.ring[at.block].caps.limits;
+      const BasicLimits<S>& there = road.limits(at.block);
       touched.acceleration = std::min(touched.acceleration, there.acceleration);
       touched.jerk = std::min(touched.jerk, there.jerk);
       // at speed it must not end at a junction, which would go unseen

@@ -28,6 +28,7 @@ struct BasicRequests {
   bool stopped{};  ///< for good
   bool single_step{};
   bool optional_stops{};
+  bool program_stops{};
 };
 
 /// Blocks ahead of a spot, for planning.
@@ -48,12 +49,22 @@ class BasicRoad {
   BlockRing<S> ring;
   BasicRequests<S> asked;
   int direction = 1;
+  bool above = false;              ///< whether the limits above the feed hold, or those up to it
   std::int64_t passed_pause = -1;  ///< the block before which a pause has been made already
+
+  /// The limits of a block.
+  [[nodiscard]] const BasicLimits<S>& limits(std::int64_t block) const {
+    const Block& b = ring[block];
+    return above && b.above.velocity > S(0) ? b.above : b.caps.limits;
+  }
+
+  /// Whether more than the programmed feed is asked for.
+  [[nodiscard]] bool asks_above() const { return asked.feed_share > S(1); }
 
   /// The speed that a block is asked to run at; 0 where it is held.
   [[nodiscard]] S wanted_speed(std::int64_t block) const {
     const Block& b = ring[block];
-    return std::min((b.rapid ? asked.rapid_share : asked.feed_share) * b.feed, b.caps.limits.velocity);
+    return std::min((b.rapid ? asked.rapid_share : asked.feed_share) * b.feed, limits(block).velocity);
   }
 
   /// Whether it has to be at rest in this block of its own accord.
@@ -64,8 +75,13 @@ class BasicRoad {
   /// Whether the motion rests behind a block.
   [[nodiscard]] bool stops_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return b.caps.pause > S(0) || (asked.single_step && !b.goes_on) ||
-           (asked.optional_stops && b.optional_stop) || pauses_before(block + 1, b.line);
+    return b.caps.pause > S(0) || holds_behind(b) || pauses_before(block + 1, b.line);
+  }
+
+  /// Whether it is held behind a block until it is told to go on.
+  [[nodiscard]] bool holds_behind(const Block& b) const {
+    return (asked.single_step && !b.goes_on) || (asked.optional_stops && b.optional_stop) ||
+           (asked.program_stops && b.program_stop);
   }
 
   /// Whether a pause at its line is to be made before a block, which lies behind one of the given line.
@@ -85,7 +101,8 @@ class BasicRoad {
     from.along += distance;
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
       const S length = ring.length(from.block);
-      if (from.along < (stops_behind(from.block) ? length + road_rounding<S> : length)) break;
+      const bool stops = stops_behind(from.block) || !(junction_cap(from.block + direction) > S(0));
+      if (from.along < (stops ? length + road_rounding<S> : length)) break;
       from.along -= length;
       from.block += direction;
     }
@@ -115,6 +132,7 @@ class BasicRoad {
       if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false};
       const bool first = ahead.blocks == 0;
       BasicBlockCaps<S> caps = ring[at.block].caps;
+      caps.limits = limits(at.block);
       caps.length = std::max(caps.length - at.along, S(0));
       caps.limits.velocity = std::max(wanted_speed(at.block), first ? speed : S(0));
       if (!(caps.limits.velocity > S(0))) return ahead;
@@ -159,10 +177,10 @@ class BasicRoad {
   void to_rest(const Spot& from, S speed, Visit&& visit) const {
     Horizon<S> horizon;
     for (Spot at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
-      const BasicLimits<S>& limits = ring[at.block].caps.limits;
+      const BasicLimits<S>& here = limits(at.block);
       const S length = std::max(ring.length(at.block) - at.along, S(0));
-      horizon.take({speed, limits.acceleration, limits.jerk}, length);
-      visit(length, limits);
+      horizon.take({speed, here.acceleration, here.jerk}, length);
+      visit(length, here);
     }
   }
 };

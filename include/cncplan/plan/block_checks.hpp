@@ -1,0 +1,65 @@
+// What a block asks for, and whether the machine can go there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/tool.hpp"
+
+namespace cncplan::plan {
+
+/// The speed that a program asks of a block, or a share of its feed: mm/s, or rad/s where the tool stands
+/// still.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] typename M::Scalar wanted_speed(const B& block, const M& machine, LengthOf counted,
+                                              typename M::Scalar share = 1) {
+  using S = typename M::Scalar;
+  const bool in_space = counted == LengthOf::tool;
+  if (block.rapid) return in_space ? rapid_speed(machine) : std::numeric_limits<S>::infinity();
+  return in_space ? std::min(share * block.feed, feed_speed(machine)) : share * block.feed;
+}
+
+/// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over.
+template <MachineModel M, Path P>
+[[nodiscard]] Expected<void> within_travel(const P& path, const M& machine) {
+  using S = typename M::Scalar;
+  const auto box = path.box();
+  for (int i = 0; i < M::axis_count; ++i) {
+    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    const S rounding = S(64) * std::numeric_limits<S>::epsilon() *
+                       std::max({std::abs(box.low[i]), std::abs(box.high[i]), S(1)});
+    const auto refuse = [&](ErrorCode code, S value, S bound) {
+      return tl::unexpected(
+          Error{code, axis_name(axis.letter), static_cast<double>(value), static_cast<double>(bound)});
+    };
+    if (!std::isfinite(box.low[i]) || !std::isfinite(box.high[i]))
+      return refuse(ErrorCode::unreachable, box.low[i], axis.low);
+    if (!(box.low[i] >= axis.low - rounding)) return refuse(ErrorCode::below_limit, box.low[i], axis.low);
+    if (!(box.high[i] <= axis.high + rounding)) return refuse(ErrorCode::above_limit, box.high[i], axis.high);
+  }
+  return {};
+}
+
+/// Nothing, or the first axis that would have to jump from the end of a block to the start of the next one,
+/// by more than 1e-6 mm or rad.
+template <MachineModel M>
+[[nodiscard]] Expected<void> joined(const std::optional<VectorN<typename M::Scalar, M::axis_count>>& end,
+                                    const VectorN<typename M::Scalar, M::axis_count>& start,
+                                    const M& machine) {
+  using S = typename M::Scalar;
+  if (!end) return {};
+  for (int i = 0; i < M::axis_count; ++i) {
+    const S rounding = std::max(S(1e-6), S(64) * std::numeric_limits<S>::epsilon() * std::abs(start[i]));
+    if (std::abs(start[i] - (*end)[i]) > rounding)
+      return tl::unexpected(Error{ErrorCode::discontinuous,
+                                  axis_name(machine.axes[static_cast<std::size_t>(i)].letter),
+                                  static_cast<double>(start[i]), static_cast<double>((*end)[i])});
+  }
+  return {};
+}
+
+}  // namespace cncplan::plan

@@ -1,0 +1,247 @@
+// Blocks cut into cells, over each of which one set of limits along the path holds.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/junction/stop_at_corners.hpp"
+#include "cncplan/plan/block_checks.hpp"
+#include "cncplan/plan/joint_speed.hpp"
+#include "cncplan/plan/limits_along.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/tool.hpp"
+#include "cncplan/plan/turnings.hpp"
+
+namespace cncplan::plan {
+
+/// The limits of a part of a path, from one length to another.
+template <std::floating_point S>
+struct BasicPartLimits {
+  S from{};
+  S to{};
+  BasicLimits<S> limits;
+};
+
+/// Cuts a piece of a block where that makes it faster: it is halved as long as the halves at their own speeds
+/// would take 2 % less time than the whole at its one, to 1/256 of it at most.
+template <MachineModel M, BlockModel B>
+class CutByLimits {
+ public:
+  using Scalar = typename M::Scalar;
+  using Part = BasicPartLimits<Scalar>;
+
+  /// Begins with a piece of a block that moves; the block is to stay until all parts are cut. `speed` is what
+  /// the program asks for, `tool_speed` the most that the tool may.
+  void begin(const B& block, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
+    block_ = &block;
+    speed_ = speed;
+    tool_speed_ = tool_speed;
+    open_[0] = {{from, to, limits(machine, from, to, speed)}, 0};
+    count_ = 1;
+  }
+
+  [[nodiscard]] bool done() const { return count_ == 0; }
+
+  /// The next part, in order along the path; only before it is done.
+  [[nodiscard]] Part next(const M& machine) {
+    for (;;) {
+      const auto [part, depth] = open_[--count_];
+      if (depth == deepest || !(part.limits.velocity < speed_)) return part;
+      const Scalar middle = part.from + (part.to - part.from) / Scalar(2);
+      const Part first{part.from, middle, limits(machine, part.from, middle, speed_)};
+      const Part second{middle, part.to, limits(machine, middle, part.to, speed_)};
+      const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
+      if (halves >= worth_it / part.limits.velocity) return part;
+      open_[count_++] = {second, depth + 1};
+      open_[count_++] = {first, depth + 1};
+    }
+  }
+
+  /// The limits of a part of the block at any speed.
+  [[nodiscard]] BasicLimits<Scalar> limits(const M& machine, Scalar from, Scalar to, Scalar speed) const {
+    return limits_along(block_->path.bounds(from, to), machine, speed, tool_speed_, block_->path.length());
+  }
+
+ private:
+  static constexpr int deepest = 8;
+  static constexpr Scalar worth_it = Scalar(0.98);
+
+  struct Open {
+    Part part;
+    int depth{};
+  };
+
+  const B* block_ = nullptr;
+  Scalar speed_{};
+  Scalar tool_speed_{};
+  std::array<Open, static_cast<std::size_t>(deepest + 1)> open_{};
+  std::size_t count_ = 0;
+};
+
+/// A cell: a part of a block, and what holds at its start.
+template <std::floating_point S>
+struct BasicCell {
+  BasicPartLimits<S> part;
+  S entry{};  ///< mm/s, the highest speed; infinite between cells of one motion
+  S rest{};   ///< s, which motors with backlash need there where the motion stops, beyond the block's pause
+};
+
+/// Makes the cells of one block after another: of a whole program, or of blocks as they come in. A joint
+/// within one motion has no rules of its own; where an axis with backlash turns round, the speed leaves its
+/// motors time for that.
+template <MachineModel M, BlockModel B, class Policy, class Cut = CutByLimits<M, B>>
+class CellMaker {
+ public:
+  using Scalar = typename M::Scalar;
+  using Cell = BasicCell<Scalar>;
+  using Vector = VectorN<Scalar, M::axis_count>;
+  static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
+
+  CellMaker(const M& machine, const JointRules<Scalar, Policy>& rules)
+      : machine_(machine), rules_(rules), tool_(tool_axes(machine)), turnings_(machine) {}
+
+  /// Begins with the next block, which is to stay until all its cells are made; one of no length has none.
+  /// Errors: below_limit and above_limit where an axis would leave its travel; unreachable where the machine
+  /// has no position for a place; discontinuous where the block begins elsewhere than the one before it ends.
+  [[nodiscard]] Expected<void> begin(const B& block) {
+    const Vector start = block.path.position_at(Scalar(0));
+    if (auto ok = joined(end_, start, machine_); !ok) return ok;
+    if (auto ok = within_travel(block.path, machine_); !ok) return ok;
+    const Scalar length = block.path.length();
+    end_ = length > Scalar(0) ? block.path.position_at(length) : start;
+    paused_ = std::exchange(pause_, Scalar(0));
+    if (length > Scalar(0)) {
+      const LengthOf counted = length_of(block.path, machine_);
+      counted_ = counted;
+      wanted_ = plan::wanted_speed(block, machine_, counted);
+      entry_ = Scalar(0);
+      if (before_ && counted == before_->counted)
+        entry_ = before_->goes_on ? infinity : joint_speed(*before_, side(block, false, counted));
+      before_ = side(block, true, counted);
+      block_ = &block;
+      turnings_.begin(block.path);
+      cut_on(Scalar(0));
+    } else {
+      pause_ = paused_;
+    }
+    pause_ += block.pause;
+    if (block.exact_stop || block.pause > Scalar(0)) before_.reset();
+    return {};
+  }
+
+  /// Whether all cells of the block have been made.
+  [[nodiscard]] bool done() const { return cut_.done(); }
+
+  /// The next cell of the block. Errors: those of `validate` for its limits.
+  [[nodiscard]] Expected<Cell> next() {
+    Cell cell{cut_.next(machine_), entry_, Scalar(0)};
+    const auto& [from, to, limits] = cell.part;
+    if (auto ok = validate(limits); !ok) return tl::unexpected(ok.error());
+    for (; turning_count_ > 0; --turning_count_) {
+      const auto& turning = turning_[turning_count_ - 1];
+      cell.entry = std::min(cell.entry, turning.speed(limits));
+      if (moved_ && !(cell.entry > Scalar(0)))
+        cell.rest = std::max(cell.rest, turning.pause(limits) - paused_);
+    }
+    entry_ = infinity;
+    paused_ = Scalar(0);
+    moved_ = true;
+    if (cut_.done() && to < block_->path.length()) cut_on(to);
+    return cell;
+  }
+
+  /// What the program asks of the block, mm/s; infinite for as fast as may be.
+  [[nodiscard]] Scalar wanted_speed() const { return wanted_; }
+  /// What a share of its feed would be.
+  [[nodiscard]] Scalar wanted_speed(const B& block, Scalar share) const {
+    return plan::wanted_speed(block, machine_, counted_, share);
+  }
+  /// The limits of a part of the block at another speed than that.
+  [[nodiscard]] BasicLimits<Scalar> limits(const BasicPartLimits<Scalar>& part, Scalar speed) const {
+    return cut_.limits(machine_, part.from, part.to, speed);
+  }
+
+  /// Where the last block ended: the next one has to begin there. Nothing before the first.
+  [[nodiscard]] const std::optional<Vector>& end() const { return end_; }
+  /// Forgets all blocks; the next one has to begin at a place, or anywhere.
+  void restart(const std::optional<Vector>& place) {
+    end_ = place;
+    before_.reset();
+    cut_ = {};
+    turnings_ = Turnings<M>(machine_);
+    turning_count_ = 0;
+    moved_ = false;
+    pause_ = paused_ = Scalar(0);
+  }
+
+ private:
+  static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+
+  // One side of a joint.
+  struct Side {
+    PathPoint<Vector> point;
+    junction::BasicSide<Scalar> tool;
+    Scalar wanted{};  // speed of the block
+    LengthOf counted{};
+    bool exact_path{};
+    bool goes_on{};
+  };
+
+  [[nodiscard]] Side side(const B& block, bool at_end, LengthOf counted) const {
+    return {block.path.point_at(at_end ? block.path.length() : Scalar(0)),
+            tool_side<M>(block, at_end, tool_),
+            plan::wanted_speed(block, machine_, LengthOf::tool),
+            counted,
+            block.exact_path,
+            block.goes_on};
+  }
+
+  [[nodiscard]] Scalar joint_speed(const Side& before, const Side& after) const {
+    BasicJoint<Scalar, M::axis_count> joint{
+        before.point, after.point, {before.tool, after.tool, machine_.limits}};
+    joint.tool.limits.velocity = std::min(before.wanted, after.wanted);
+    Scalar speed_sq = rules_.policy.speed_sq(joint.tool);
+    if (before.exact_path)
+      speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<Scalar>{}.speed_sq(joint.tool));
+    const Scalar speed = speed_sq > Scalar(0) ? std::sqrt(speed_sq) : Scalar(0);
+    if (rules_.tolerance < Scalar(0)) return speed;
+    return std::min(speed, axis_corner_speed(joint, machine_, rules_.tolerance, rules_.rotary_tolerance));
+  }
+
+  // Cuts the piece from a length to the next place within the block where an axis turns round.
+  void cut_on(Scalar from) {
+    while (!(turnings_.next() > from)) {
+      const auto turning = turnings_.take(block_->path);
+      if (turning_count_ < turning_.size()) turning_[turning_count_++] = turning;
+    }
+    const Scalar to = std::min(block_->path.length(), turnings_.next());
+    cut_.begin(*block_, machine_, from, to, wanted_,
+               block_->rapid ? rapid_speed(machine_) : machine_.limits.velocity);
+  }
+
+  M machine_;
+  JointRules<Scalar, Policy> rules_;
+  std::array<int, 3> tool_;
+  Turnings<M> turnings_;
+  std::array<BasicTurning<Scalar>, static_cast<std::size_t>(M::axis_count)> turning_{};  // at the next cell
+  std::size_t turning_count_ = 0;
+  Cut cut_;
+  const B* block_ = nullptr;
+  Scalar wanted_{};
+  LengthOf counted_{};
+  Scalar entry_{};
+  std::optional<Side> before_;  // of the block that moved last, where the motion does not stop behind it
+  std::optional<Vector> end_;
+  Scalar pause_{};      // s at rest since the last motion
+  Scalar paused_{};     // the same before this block
+  bool moved_ = false;  // there has been a cell
+};
+
+}  // namespace cncplan::plan

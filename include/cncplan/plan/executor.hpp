@@ -1,0 +1,234 @@
+// Runs blocks as they come in: hold, resume, override, stop, backwards, at any instant, one set point a tick.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "cncplan/plan/block_builder.hpp"
+#include "cncplan/plan/player/cell_feed.hpp"
+#include "cncplan/plan/player/elapsed.hpp"
+#include "cncplan/plan/player/player.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan/set_point.hpp"
+
+namespace cncplan {
+
+/// What holds for all that an executor runs.
+template <std::floating_point S>
+struct BasicExecutorOptions {
+  S tolerance = S(0.01);  ///< mm, >= 0. The path is kept exactly; a corner is passed as fast as one that is
+                          ///< rounded within this could be
+  S rotary_tolerance = S(8.726646259971648e-4);  ///< rad, >= 0: the same for rotary axes; 0.05 degrees
+  bool background = false;  ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+};
+
+using ExecutorOptions = BasicExecutorOptions<double>;
+
+/// Runs a program on a machine: blocks go in, and each tick gives a set point. It is always on a plan that
+/// ends at rest on blocks that it has; a request is met by a new plan from the state of that instant, at the
+/// next tick. Whatever is asked for and however often, the tool and every axis keep their limits inside
+/// blocks; at a joint that is not smooth the velocity jumps, at no more than `plan_blocks` allows.
+///
+/// Look-ahead reaches over `capacity` blocks, and as many are kept behind to run backwards. All memory is
+/// inside. `Block` is that of `BlockReader`, or one with curves of one's own.
+///
+/// Two threads: one calls `push`, `end_of_program` and `plan`, the other one `tick` and all requests; neither
+/// waits. `restart` is for a machine at rest while nothing else is called.
+template <MachineModel M, std::size_t capacity, BlockModel B = ProgramBlock<M>>
+class Executor {
+  static_assert(capacity >= 2, "an executor looks ahead over two blocks at least");
+
+ public:
+  using Scalar = typename M::Scalar;
+  using MachineType = M;
+  using Block = B;
+  using SetPoint = BasicSetPoint<Scalar, M::axis_count>;
+  using Vector = typename SetPoint::Vector;
+  using Options = BasicExecutorOptions<Scalar>;
+
+  /// A machine that `validate` refuses is told by `error`.
+  explicit Executor(const M& machine, const Options& options = {})
+      : machine_(machine),
+        tool_(tool_axes(machine)),
+        background_(options.background),
+        feed_(machine, {{options.tolerance}, options.tolerance, options.rotary_tolerance}),
+        player_({played_, ahead_, gates_, spare_gates_}, static_cast<std::int64_t>(capacity)) {}
+
+  [[nodiscard]] const M& machine() const { return machine_; }
+
+  // Blocks.
+
+  /// Takes the next block of the program. False where there is no room: try again behind the next tick. A
+  /// block that cannot be planned ends the motion where it begins: `error` says why.
+  bool push(const B& block) {
+    if (!feed_.push(block)) return false;
+    end_.store(not_ended, std::memory_order_relaxed);
+    plan();
+    return true;
+  }
+  /// Nothing will follow.
+  void end_of_program() { end_.store(feed_.pushed(), std::memory_order_release); }
+  /// Cuts blocks into cells and finds their limits, at most so many cells; whether there is more to be done
+  /// now or later. `push` and, without `background`, `tick` do this by themselves.
+  bool plan(std::size_t most_cells = std::numeric_limits<std::size_t>::max()) {
+    return feed_.cut(most_cells, [this](const Cell& cell) { return player_.push(cell); });
+  }
+
+  /// Whether the program is over: all blocks have been run and nothing will follow, or it was stopped, or
+  /// came to rest before a block that cannot be planned.
+  [[nodiscard]] bool finished() const {
+    if (player_.stopped()) return true;
+    if (!player_.finished()) return false;
+    if (feed_.failed()) return true;
+    const std::int64_t end = end_.load(std::memory_order_acquire);
+    return end != not_ended && told_ >= end;
+  }
+  /// Why the program ended before its end, with line and column; nothing where all is well.
+  [[nodiscard]] std::optional<ProgramError> error() const {
+    if (!feed_.failed()) return std::nullopt;
+    return ProgramError{feed_.fault()};
+  }
+
+  // Requests. They act at the next tick.
+
+  /// Comes to rest as soon as the limits allow; `resume` goes on from there, and behind every other rest.
+  void feed_hold() { player_.hold(); }
+  void resume() { player_.resume(); }
+  /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is what is no number. Values outside are cut.
+  void feed_override(Scalar share) { player_.feed_override(share); }
+  /// Share of the rapid rate, 0 to 1.
+  void rapid_override(Scalar share) { player_.rapid_override(share); }
+  /// Comes to rest as `feed_hold` does, and the program ends there.
+  void stop() { player_.stop(); }
+  /// Comes to rest with limits along the path of its own, not both infinite, at least those of the blocks on
+  /// the way; then it is held. Limits of axes do not act.
+  void quick_stop(Scalar acceleration, Scalar jerk) { player_.quick_stop(acceleration, jerk); }
+  /// Runs back along the path, as far as blocks are kept, or forwards again. It comes to rest in between.
+  void reverse(bool wanted) { player_.backwards(wanted); }
+  /// Rests behind every block until it is resumed.
+  void single_step(bool wanted) { player_.single_step(wanted); }
+  /// Rests at M1 until it is resumed.
+  void optional_stop(bool wanted) { player_.optional_stop(wanted); }
+  /// Rests at M0 and M60 until it is resumed. Without it they stop the motion, and it goes on.
+  void program_stop(bool wanted) { player_.program_stop(wanted); }
+  /// Rests before the first block of a line until it is resumed. 0: none.
+  void pause_at(int line) { player_.pause_at(line); }
+
+  /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
+  /// block of a line (0: nothing is), and the motion begins where that block passes the place at which the
+  /// axes stand; where it does not pass within 1e-6, the error is discontinuous. False, and nothing done,
+  /// where the machine moves.
+  bool restart(int line, const Vector& position) {
+    if (!restart_player()) return false;
+    feed_.restart(line, position);
+    last_.position = position;
+    return true;
+  }
+  /// The same where the next block begins.
+  bool restart() {
+    if (!restart_player()) return false;
+    feed_.restart(0, std::nullopt);
+    return true;
+  }
+
+  // Time.
+
+  /// Moves on by `period` seconds, > 0.
+  SetPoint tick(Scalar period) {
+    if (!background_) plan(cells_in_tick);
+    const std::int64_t ready = feed_.ready();
+    time_.add(period);
+    const plan::BasicPlayed<Scalar> now = player_.tick(period);
+    std::int64_t reached = -1;
+    if (now.block >= 0) {
+      const Cell& cell = player_[now.block];
+      reached = cell.block;
+      evaluate(cell, now);
+    }
+    if (player_.finished()) reached = std::max(reached, ready - 1);
+    last_.time = time_.since(Scalar(0));
+    tell_words(reached);
+    release();
+    return last_;
+  }
+
+  /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
+  [[nodiscard]] Scalar until_change() const { return player_.until_change(); }
+  /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
+  [[nodiscard]] Scalar rested() const { return player_.rested(); }
+
+ private:
+  using Cell = plan::BasicPlayedBlock<Scalar>;
+  static constexpr std::size_t room = 2 * capacity;
+  static constexpr std::size_t cells_in_tick = 8;
+  static constexpr std::int64_t not_ended = -1;
+
+  bool restart_player() {
+    if (!player_.skip_to(0)) return false;
+    told_ = 0;
+    last_.along = {};
+    end_.store(not_ended, std::memory_order_relaxed);
+    return true;
+  }
+
+  void evaluate(const Cell& cell, const plan::BasicPlayed<Scalar>& now) {
+    const B& block = feed_[cell.block];
+    const Scalar length = block.path.length();
+    const Scalar s = std::clamp(cell.from + now.along, Scalar(0), length);
+    const AxisMotion<Vector> axes =
+        motion(block.path.point_at(s), BasicState<Scalar>{s, now.velocity, now.acceleration, now.jerk});
+    last_.block = static_cast<std::size_t>(cell.block);
+    last_.line = block.line;
+    last_.position = axes.position;
+    last_.velocity = axes.velocity;
+    last_.acceleration = axes.acceleration;
+    last_.jerk = axes.jerk;
+    if constexpr (MappedModel<M>)
+      last_.tool = tool_point(block.path, s, tool_).position;
+    else
+      last_.tool = in_space(axes.position, tool_);
+    last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
+  }
+
+  // Lets blocks go that are too far behind: those ahead are to have their share of the room, whatever blocks
+  // without a cell lie between.
+  void release() {
+    if (player_.oldest() == player_.end()) return feed_.release(told_);
+    const std::int64_t furthest =
+        static_cast<std::int64_t>(last_.block) - static_cast<std::int64_t>(capacity);
+    while (player_[player_.oldest()].block < furthest && player_.forget_oldest()) {
+    }
+    feed_.release(std::min(told_, player_[player_.oldest()].block));
+  }
+
+  // Words of blocks up to one; what the set point has no room for comes with the next one.
+  void tell_words(std::int64_t reached) {
+    last_.words.clear();
+    for (; told_ <= reached; ++told_) {
+      const gcode::Word& word = feed_[told_].word;
+      if (word.letter != '\0' && !last_.words.push_back(word)) return;
+    }
+  }
+
+  M machine_;
+  std::array<int, 3> tool_;
+  bool background_;
+  std::array<Cell, room> played_{};
+  std::array<plan::BasicBlockCaps<Scalar>, capacity> ahead_{};
+  std::array<plan::BasicGate<Scalar>, capacity + 1> gates_{};
+  std::array<plan::BasicGate<Scalar>, capacity + 1> spare_gates_{};
+  plan::CellFeed<M, B, room> feed_;
+  plan::BasicPlayer<Scalar> player_;
+  plan::BasicElapsed<Scalar> time_;
+  SetPoint last_{};
+  std::int64_t told_ = 0;  // blocks whose words have been told
+  std::atomic<std::int64_t> end_{not_ended};
+};
+
+}  // namespace cncplan

@@ -1,0 +1,95 @@
+// How fast the joint between two blocks may be passed: a policy for the tool, the corners of the axes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+
+#include "cncplan/junction/geometry.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/tool.hpp"
+
+namespace cncplan::plan {
+
+/// How a joint between two blocks looks to the axes and to the tool.
+template <std::floating_point S, int N>
+struct BasicJoint {
+  PathPoint<VectorN<S, N>> before, after;
+  junction::BasicGeometry<S> tool;
+};
+
+/// The highest speed at which the axes may change from one block's direction to the next one's, if the joint
+/// were rounded within the tolerances: over a blend of half length l the derivative of an axis changes by d,
+/// so v^2 d / (2 l) is its acceleration; where that has no limit, a blend at the jerk J has v^3 d / l^2 = J.
+/// The tool's deviation of a blend with jump D of its direction is l D
+/// / 4, that of a rotary axis l d / 4 (rad): the shortest l that one of them allows holds. Infinite where no
+/// axis with a limit of acceleration or jerk changes its direction.
+template <MachineModel M>
+[[nodiscard]] typename M::Scalar axis_corner_speed(const BasicJoint<typename M::Scalar, M::axis_count>& joint,
+                                                   const M& machine, typename M::Scalar tolerance,
+                                                   typename M::Scalar rotary_tolerance) {
+  using S = typename M::Scalar;
+  constexpr S none = std::numeric_limits<S>::infinity();
+  constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();
+  S blend = none;
+  const S tool_jump = (joint.tool.after.tangent - joint.tool.before.tangent).norm();
+  if (tool_jump > rounding) blend = S(4) * tolerance / tool_jump;
+  const auto jump_of = [&](int axis) {
+    const S before = joint.before.first[axis], after = joint.after.first[axis];
+    const S jump = std::abs(after - before);
+    return jump > rounding * (std::abs(before) + std::abs(after)) ? jump : S(0);
+  };
+  if constexpr (!MappedModel<M>)
+    for (int i = 0; i < M::axis_count; ++i)
+      if (const S jump = jump_of(i);
+          jump > S(0) && machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary)
+        blend = std::min(blend, S(4) * rotary_tolerance / jump);
+  S speed = none;
+  for (int i = 0; i < M::axis_count; ++i) {
+    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    const S jump = jump_of(i), limit = least_acceleration(axis);
+    if (!(jump > S(0))) continue;
+    if (std::isfinite(limit))
+      speed = std::min(speed, std::sqrt(S(2) * blend * limit / jump));
+    else if (std::isfinite(axis.jerk))
+      speed = std::min(speed, std::cbrt(blend * blend * axis.jerk / jump));
+  }
+  return speed;
+}
+
+/// One side of a joint, as junction policies see it.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const B& block, bool at_end,
+                                                                const std::array<int, 3>& tool) {
+  using S = typename M::Scalar;
+  const auto at = tool_point(block.path, at_end ? block.path.length() : S(0), tool);
+  junction::BasicSide<S> side;
+  side.kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
+  side.tangent = at.first.norm() > S(0) ? BasicVector3<S>(at.first.normalized()) : at.first;
+  side.curvature = at.second;
+  side.chord = tool_point(block.path, block.path.length(), tool).position -
+               tool_point(block.path, S(0), tool).position;
+  if constexpr (std::same_as<typename B::Path::Arc, path::BasicArc<S>>)
+    if (const auto* arc = block.path.arc()) {
+      side.kind = junction::Kind::arc;
+      side.plane = arc->plane();
+      side.turn = arc->turn();
+      const auto [first, second, third] = cncplan::axes(arc->plane());
+      side.closed = side.chord[first] == S(0) && side.chord[second] == S(0);
+    }
+  return side;
+}
+
+/// Rules for joints: a policy for the tool, and for the axes the tolerances within which corners count as
+/// rounded (negative: the policy alone).
+template <std::floating_point S, class Policy>
+struct JointRules {
+  Policy policy;
+  S tolerance{};
+  S rotary_tolerance{};
+};
+
+}  // namespace cncplan::plan
