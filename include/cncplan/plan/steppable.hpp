@@ -29,6 +29,8 @@ class LengthAsParameter {
   [[nodiscard]] Vector derivative(Scalar s) const { return path_->point_at(s).first; }
   [[nodiscard]] Vector second_derivative(Scalar s) const { return path_->point_at(s).second; }
   [[nodiscard]] Scalar length_at(Scalar s) const { return s; }
+  [[nodiscard]] Scalar next_change(Scalar s) const requires requires(const P& path) { path.next_change(s); }
+  { return path_->next_change(s); }
 
  private:
   const P* path_;

@@ -21,8 +21,8 @@ concept MeasuredPath = ParametricPath<P> &&
 
 /// Any curve as a `SteppablePath`, by bounded root finds: splines, machine axes behind kinematics, measured
 /// curves. No turning is missed as long as the second derivative of an axis changes sign at most once in each
-/// of `pieces` >= 1 equal parts of the parameter range (fewer count as 1). The curve must outlive its
-/// tracing.
+/// of `pieces` >= 1 equal parts of the parameter range (fewer count as 1), cut where the curve says that it
+/// changes its form (`next_change`), if it does. The curve must outlive its tracing.
 template <MeasuredPath P>
 class TracedPath {
  public:
@@ -48,13 +48,8 @@ class TracedPath {
     const Scalar end = parameter_end();
     Scalar sense = rate(axis, u);
     if (sense == Scalar(0)) sense = bend(axis, u);
-    Scalar low = u;
-    Scalar number = std::floor(u / width_);
-    for (int left = pieces_; left >= 0 && low < end; --left) {  // one more than there are: u is on one's end
-      number += Scalar(1);
-      Scalar high = std::min(number * width_, end);
-      if (end - high < width_ / Scalar(2)) high = end;
-      if (!(high > low)) continue;
+    for (Scalar low = u; low < end;) {
+      const Scalar high = piece_end(low);
       if (sense == Scalar(0)) sense = rate(axis, high);
       sense = std::copysign(sense == Scalar(0) ? Scalar(0) : Scalar(1), sense);
       if (sense * rate(axis, high) < Scalar(0)) return turning(axis, sense, low, high);
@@ -114,6 +109,18 @@ class TracedPath {
   }
 
  private:
+  // The end of the piece in which a parameter before the end lies, or at which it begins.
+  [[nodiscard]] Scalar piece_end(Scalar u) const {
+    const Scalar end = parameter_end();
+    const Scalar number = std::floor(u / width_);
+    Scalar high = (number + Scalar(1)) * width_;
+    if (!(high > u)) high = (number + Scalar(2)) * width_;
+    if (!(end - high >= width_ / Scalar(2))) high = end;
+    if constexpr (requires { path_->next_change(u); })
+      if (const Scalar change = path_->next_change(u); change > u) high = std::min(high, change);
+    return high;
+  }
+
   [[nodiscard]] Scalar rate(int axis, Scalar u) const { return derivative(u)(axis); }
   [[nodiscard]] Scalar bend(int axis, Scalar u) const { return second_derivative(u)(axis); }
 
