@@ -115,7 +115,7 @@ class TracedPath {
     const Scalar number = std::floor(u / width_);
     Scalar high = (number + Scalar(1)) * width_;
     if (!(high > u)) high = (number + Scalar(2)) * width_;
-    if (!(end - high >= width_ / Scalar(2))) high = end;
+    if (!(high > u && end - high >= width_ / Scalar(2))) high = end;  // of a curve too short for rounding too
     if constexpr (requires { path_->next_change(u); })
       if (const Scalar change = path_->next_change(u); change > u) high = std::min(high, change);
     return high;
