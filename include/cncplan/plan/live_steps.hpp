@@ -121,7 +121,7 @@ class LiveSteps {
       if (!counted_) motor.count = step::count_at(place[motor.axis] * motor.drive.steps_per_unit);
       motor.source.emplace(
           step::StepCursor<Traced, Shift>(*traced_, clock, motor.axis, motor.drive.steps_per_unit,
-                                          motor.count, true, {motor.slack.direction}),
+                                          motor.count, true, {motor.slack.direction, step::hysteresis(motor.drive)}),
           step::backlash_steps(motor.drive), clock.start, motor.slack);
       motor.pending = motor.source->next();
     }
