@@ -119,10 +119,10 @@ class LiveSteps {
     for (Motor& motor : motors()) {
       close(motor);
       if (!counted_) motor.count = step::count_at(place[motor.axis] * motor.drive.steps_per_unit);
-      motor.source.emplace(
-          step::StepCursor<Traced, Shift>(*traced_, clock, motor.axis, motor.drive.steps_per_unit,
-                                          motor.count, true, {motor.slack.direction, step::hysteresis(motor.drive)}),
-          step::backlash_steps(motor.drive), clock.start, motor.slack);
+      motor.source.emplace(step::StepCursor<Traced, Shift>(
+                               *traced_, clock, motor.axis, motor.drive.steps_per_unit, motor.count, true,
+                               {motor.slack.direction, step::hysteresis(motor.drive)}),
+                           step::backlash_steps(motor.drive), clock.start, motor.slack);
       motor.pending = motor.source->next();
     }
     counted_ = true;
