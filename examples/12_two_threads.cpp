@@ -1,10 +1,9 @@
-// A thread that plans and a thread that ticks every millisecond, with a lock-free queue between them; then
-// how late the ticks woke up and how long they took. With --starve the planner falls asleep half way: the
-// machine slows to rest within its limits, and goes on when blocks come again.
+// A thread that makes blocks and a thread that ticks every millisecond, one executor between them; then how
+// late the ticks woke up and how long they took. With --starve no blocks come for a while: the machine slows
+// to rest within its limits, and goes on when they come again.
 //   12_two_threads [--starve]
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -22,35 +21,28 @@ using namespace cncplan;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+constexpr Machine<2> table{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 constexpr auto period = 1ms;
-
-struct Feed {
-  plan::Queue<plan::PlayedBlock, 64> blocks;
-  std::atomic<bool> complete{false};  // nothing more will come
-};
+using Runner = Executor<Machine<2>, 64>;
 
 // The program: round a circle twice in 160 short lines.
 constexpr int block_count = 160;
-plan::Block block(int number) {
+Block<2> block(int number) {
   constexpr double radius = 5.0, turn = 4.0 * std::numbers::pi / block_count;
   const auto corner = [&](int i) {
-    return Vector3(radius * std::cos(i * turn), radius * std::sin(i * turn), 0);
+    return VectorN<double, 2>(radius * std::cos(i * turn), radius * std::sin(i * turn));
   };
-  return {path::Line<3>(corner(number), corner(number + 1)), limits, junction::Kind::line};
+  return {.path = path::Line<2>(corner(number), corner(number + 1)), .line = number + 1};
 }
 
-// Not bound to any time: it runs ahead as far as the queue has room.
-void plan_ahead(Feed& feed, bool starve) {
+// Not bound to any time: it runs ahead as far as the executor has room, and finds the limits of blocks.
+void feed(Runner& executor, bool starve) {
   for (int i = 0; i < block_count; ++i) {
-    if (starve && i == block_count / 2) std::this_thread::sleep_for(1500ms);
-    const auto caps =
-        i == 0 ? plan::caps_from_rest(block(0), plan::ShareLimits{})
-               : plan::caps(block(i - 1), block(i), junction::Deviation{0.01}, plan::ShareLimits{});
-    const plan::PlayedBlock next{.caps = caps, .feed = limits.velocity};
-    while (!feed.blocks.push(next)) std::this_thread::sleep_for(period);
+    if (starve && i == block_count / 2) std::this_thread::sleep_for(3s);
+    while (!executor.push(block(i))) std::this_thread::sleep_for(period);
   }
-  feed.complete.store(true, std::memory_order_release);
+  executor.end_of_program();
+  while (executor.plan()) std::this_thread::sleep_for(period);
 }
 
 // Times in powers of two of a microsecond.
@@ -76,38 +68,30 @@ class Histogram {
 struct Report {
   long ticks = 0;
   long at_rest = 0;           // ticks before the end
-  double jerk = 0.0;          // largest, from the change of acceleration
-  double acceleration = 0.0;  // largest
-  plan::Played end{};
+  double jerk = 0.0;          // largest along the path, from the change of acceleration
+  double acceleration = 0.0;  // largest along the path
+  SetPoint<2> end{};
   Histogram late, took;
 };
 
 // Bound to time: takes what there is, and never waits for it. A controller would give this thread a real-time
 // priority and memory that stays where it is.
-Report tick(Feed& feed) {
-  std::array<plan::PlayedBlock, 128> memory;
-  std::array<plan::BlockCaps, 64> ahead;
-  std::array<plan::Gate, 65> gates, spare_gates;
-  plan::Player player({memory, ahead, gates, spare_gates});
+Report tick(Runner& executor) {
   constexpr double seconds = std::chrono::duration<double>(period).count();
   Report report;
   for (auto due = Clock::now();; due += period) {
     std::this_thread::sleep_until(due);
     const auto woken = Clock::now();
-    const bool complete = feed.complete.load(std::memory_order_acquire);  // before the last look
-    while (const auto* next = feed.blocks.front()) {
-      if (!player.push(*next)) break;
-      feed.blocks.pop();
-    }
-    const plan::Played now = player.tick(seconds);
+    const SetPoint<2> now = executor.tick(seconds);
     report.took.add(Clock::now() - woken);
     report.late.add(woken - due);
-    report.jerk = std::max(report.jerk, std::abs(now.acceleration - report.end.acceleration) / seconds);
-    report.acceleration = std::max(report.acceleration, std::abs(now.acceleration));
+    report.jerk =
+        std::max(report.jerk, std::abs(now.along.acceleration - report.end.along.acceleration) / seconds);
+    report.acceleration = std::max(report.acceleration, std::abs(now.along.acceleration));
     report.end = now;
     ++report.ticks;
-    if (complete && player.finished()) return report;
-    if (now.at_rest) ++report.at_rest;
+    if (executor.finished()) return report;
+    if (executor.rested() > 0) ++report.at_rest;
   }
 }
 
@@ -115,16 +99,17 @@ Report tick(Feed& feed) {
 
 int main(int argc, char** argv) {
   const bool starve = argc > 1 && std::string_view(argv[1]) == "--starve";
-  static Feed feed;
-  std::thread planner(plan_ahead, std::ref(feed), starve);
-  const Report report = tick(feed);
-  planner.join();
+  static Runner executor(table, {.background = true});
+  std::thread feeder(feed, std::ref(executor), starve);
+  const Report report = tick(executor);
+  feeder.join();
   std::printf(
       "%ld ticks, %ld of them at rest on the way; largest acceleration %.1f mm/s^2, jerk %.1f mm/s^3\n",
       report.ticks, report.at_rest, report.acceleration, report.jerk);
   report.late.print("woken late by");
-  report.took.print("queue and tick took");
-  const bool within = report.acceleration <= limits.acceleration && report.jerk <= limits.jerk * (1 + 1e-9);
-  const bool arrived = report.end.block == block_count - 1 && report.end.along > 0.0;
+  report.took.print("ticks took");
+  const bool within =
+      report.acceleration <= table.limits.acceleration && report.jerk <= table.limits.jerk * (1 + 1e-9);
+  const bool arrived = (report.end.position - block(block_count - 1).path.end()).norm() < 1e-9;
   return within && arrived && (!starve || report.at_rest > 0) ? 0 : 1;
 }

@@ -1,77 +1,49 @@
 // A small controller: lines of G-code come in, set points go out at every millisecond; a hold takes effect at
-// once, and so does an override of 150 %. Compiled with -fno-exceptions -fno-rtti; once it runs (the reader's
-// tables are made before main) there is no allocation.
+// once, and so does an override of 150 %. Compiled with -fno-exceptions -fno-rtti; once it runs (reader and
+// executor are made before main) there is no allocation.
 #include <array>
-#include <cncplan/gcode/reader.hpp>
-#include <cncplan/junction/deviation.hpp>
-#include <cncplan/plan/block_maker.hpp>
-#include <cncplan/plan/player/player.hpp>
+#include <cncplan/plan/block_reader.hpp>
+#include <cncplan/plan/executor.hpp>
 #include <cstdio>
+#include <string_view>
 
 using namespace cncplan;
 
 namespace {
 
-constexpr Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
-constexpr std::array<std::string_view, 5> lines{"G21 G90 G17 F1200", "G1 X20", "G3 X25 Y5 R5", "G1 Y15",
+constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}, .rapid_rate = 50};
+constexpr std::array<std::string_view, 5> lines{"G21 G90 G17 F1200", "G1 X20 M8", "G3 X25 Y5 R5", "G1 Y15",
                                                 "M30"};
 
 // All memory that it needs.
-constexpr std::size_t room = 16;
-std::array<plan::Block, room> blocks;
-std::array<plan::PlayedBlock, room> played;
-std::array<plan::BlockCaps, room> ahead;
-std::array<plan::Gate, room + 1> gates, spare_gates;
-gcode::Reader reader;
-plan::BlockMaker maker(limits, 50.0);
-plan::Player player({played, ahead, gates, spare_gates});
-std::size_t pushed = 0;
+BlockReader reader(mill);
+Executor<Machine<3>, 16> executor(mill);
 int ticks = 0;
 
 // The timer's interrupt.
 void tick() {
-  if (ticks == 300) player.hold();
-  if (ticks == 500) player.resume();
-  if (ticks == 700) player.feed_override(1.5);
-  const plan::Played now = player.tick(0.001);
-  if (now.block >= 0 && ticks % 50 == 0) {
-    const path::Segment<3>& path = blocks[static_cast<std::size_t>(now.block) % room].segment;
-    const Vector3 point = path.position_at(now.along);
-    std::printf("%5d ms %9.4f %9.4f mm %8.3f mm/s\n", ticks, point.x(), point.y(), now.velocity);
-  }
+  if (ticks == 300) executor.feed_hold();
+  if (ticks == 500) executor.resume();
+  if (ticks == 700) executor.feed_override(1.5);
+  const SetPoint<3> now = executor.tick(0.001);
+  for (const gcode::Word& word : now.words) std::printf("%5d ms %c%g\n", ticks, word.letter, word.number);
+  if (ticks % 50 == 0)
+    std::printf("%5d ms %9.4f %9.4f mm %8.3f mm/s\n", ticks, now.position[0], now.position[1],
+                now.along.velocity);
   ++ticks;
-}
-
-// Waits for room, while the machine runs. Caps say what the machine bears, whatever the program's feed: so
-// far an override may go. Rapids have an override of their own, up to their rate.
-void run(plan::Block block) {
-  const double feed = block.limits.velocity;
-  const bool rapid = block.kind == junction::Kind::rapid;
-  if (!rapid) block.limits.velocity = limits.velocity;
-  const plan::Block& before = blocks[(pushed + room - 1) % room];
-  const auto caps = pushed == 0 ? plan::caps_from_rest(block, plan::ShareLimits{})
-                                : plan::caps(before, block, junction::Deviation{0.01}, plan::ShareLimits{});
-  while (!player.push({.caps = caps, .feed = feed, .rapid = rapid})) tick();
-  blocks[pushed++ % room] = block;
 }
 
 }  // namespace
 
 int main() {
-  std::array<gcode::Item, gcode::max_items_per_line> items;
   for (const std::string_view line : lines) {
-    const auto read = reader.read_line(line, items.begin());
-    if (!read) return 1;
-    for (auto end = *read;; end = reader.go_on(items.begin())) {
-      for (auto item = items.begin(); item != end; ++item) {
-        const auto block = maker.take(*item);
-        if (!block) return 1;
-        if (*block) run(**block);
-      }
-      if (!reader.busy()) break;  // a canned cycle has more steps
-    }
+    const auto blocks = reader.read_line(line);
+    if (!blocks) return 2;
+    for (const auto& block : *blocks)
+      while (!executor.push(block)) tick();  // waits for room, while the machine runs
   }
-  if (const auto last = maker.finish()) run(*last);
-  while (!player.finished()) tick();
+  executor.end_of_program();
+  while (!executor.finished()) tick();
   std::printf("done after %d ms\n", ticks);
+  return executor.error() ? 1 : 0;
 }

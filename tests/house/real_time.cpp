@@ -19,9 +19,11 @@
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/plan/block_maker.hpp"
+#include "cncplan/plan/block_reader.hpp"
+#include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/live_steps.hpp"
 #include "cncplan/plan/move_to.hpp"
-#include "cncplan/plan/player/player.hpp"
 #include "cncplan/plan/stream_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
@@ -47,7 +49,7 @@ path::Arc helix() {
 }
 
 // Readers are set up before the machine moves; what they read then costs nothing.
-gcode::Reader reader, reader_of_stream, reader_of_player;
+gcode::Reader reader, reader_of_stream;
 
 void read_lines() {
   std::array<gcode::Item, gcode::max_items_per_line> items;
@@ -196,16 +198,35 @@ void stream_a_program() {
   sink = planner.finish(spans.begin()).has_value() ? 1.0 : 0.0;
 }
 
-void play_a_program() {
-  std::array<plan::PlayedBlock, 4> played;
-  std::array<plan::BlockCaps, 4> ahead;
-  std::array<plan::Gate, 5> gates, spare_gates;
-  plan::Player player({played, ahead, gates, spare_gates});
-  make_blocks(reader_of_player, [&](const plan::Block& block, const plan::BlockCaps& caps) {
-    while (!player.push({.caps = caps, .feed = block.limits.velocity})) sink = player.tick(1e-3).along;
-    player.feed_override(0.5);
-  });
-  while (!player.finished()) sink = player.tick(1e-3).velocity;
+constexpr Machine<3> mill{.axes = {{{.letter = 'X',
+                                     .velocity = 50,
+                                     .acceleration = 1000,
+                                     .jerk = 20000,
+                                     .motors = {{.steps_per_unit = 400}}},
+                                    {.letter = 'Y', .velocity = 50, .acceleration = 1000, .jerk = 20000},
+                                    {.letter = 'Z', .velocity = 20, .acceleration = 300, .jerk = 5000}}},
+                          .limits = limits};
+BlockReader mill_reader(mill);
+Executor<Machine<3>, 16> executor(mill);
+
+void run_a_program() {
+  LiveSteps steps(executor);
+  const auto tick = [&] {
+    sink = steps.tick(1e-3).velocity[0];
+    while (const auto edge = steps.next()) sink = edge->time;
+  };
+  for (const std::string_view line :
+       {"G21 G90 F1200 M3 S100", "G1 X10", "G3 X15 Y5 R5", "G4 P0.01", "G1 Y150 X1..5", "X0", "M30"}) {
+    const auto blocks = mill_reader.read_line(line);
+    if (!blocks) continue;
+    for (const auto& block : *blocks)
+      while (!executor.push(block)) tick();
+    executor.feed_override(1.5);
+  }
+  executor.end_of_program();
+  while (!executor.finished()) tick();
+  sink = executor.jog_to({1, 2, 3}) ? 1.0 : 0.0;
+  for (int i = 0; i < 1000; ++i) tick();
 }
 
 struct Job {
@@ -222,7 +243,7 @@ constexpr std::array jobs{
     Job{"state: axes from state to state, a jog, a target beyond the travel", move_axes},
     Job{"interpolate: the samples of a helix", sample_a_block},
     Job{"plan: G-code through look-ahead over a window", stream_a_program},
-    Job{"plan: G-code played, tick by tick", play_a_program},
+    Job{"plan: G-code run, with its steps, and a jog", run_a_program},
     Job{"kinematics: joints of points and of motions, by charts", map_by_charts},
     Job{"step: the edges of a helix, simulated", step_a_block},
     Job{"step: a curve traced, backlash made up, as ticks and bytes", step_a_traced_curve},

@@ -11,8 +11,10 @@
 #include <optional>
 
 #include "cncplan/plan/block_builder.hpp"
+#include "cncplan/plan/player/axis_part.hpp"
 #include "cncplan/plan/player/cell_feed.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
+#include "cncplan/plan/player/jog.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/set_point.hpp"
@@ -51,6 +53,8 @@ class Executor {
   using SetPoint = BasicSetPoint<Scalar, M::axis_count>;
   using Vector = typename SetPoint::Vector;
   using Options = BasicExecutorOptions<Scalar>;
+  /// The axes over a part of a tick, by time.
+  using Part = plan::AxisPart<M, B>;
 
   /// A machine that `validate` refuses is told by `error`.
   explicit Executor(const M& machine, const Options& options = {})
@@ -72,6 +76,8 @@ class Executor {
     plan();
     return true;
   }
+  /// How many blocks have been taken.
+  [[nodiscard]] std::int64_t pushed() const { return feed_.pushed(); }
   /// Nothing will follow.
   void end_of_program() { end_.store(feed_.pushed(), std::memory_order_release); }
   /// Cuts blocks into cells and finds their limits, at most so many cells; whether there is more to be done
@@ -84,7 +90,7 @@ class Executor {
   /// came to rest before a block that cannot be planned.
   [[nodiscard]] bool finished() const {
     if (player_.stopped()) return true;
-    if (!player_.finished()) return false;
+    if (away_ || !player_.finished()) return false;
     if (feed_.failed()) return true;
     const std::int64_t end = end_.load(std::memory_order_acquire);
     return end != not_ended && told_ >= end;
@@ -99,7 +105,10 @@ class Executor {
 
   /// Comes to rest as soon as the limits allow; `resume` goes on from there, and behind every other rest.
   void feed_hold() { player_.hold(); }
-  void resume() { player_.resume(); }
+  void resume() {
+    player_.resume();
+    if (away_) returns_ = true;
+  }
   /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is what is no number. Values outside are cut.
   void feed_override(Scalar share) { player_.feed_override(share); }
   /// Share of the rapid rate, 0 to 1.
@@ -120,20 +129,39 @@ class Executor {
   /// Rests before the first block of a line until it is resumed. 0: none.
   void pause_at(int line) { player_.pause_at(line); }
 
+  // Jogs, while no program moves the axes: it is held, stopped or over, or there is none. A program goes on
+  // once the axes are back on its path.
+
+  /// The axes come to velocities, which they keep until another request or the end of their travel. Each
+  /// keeps its limits; those of the tool do not act. Errors: those of `reach_velocity`; unfinished, with the
+  /// line, while a program moves the axes.
+  Expected<void> jog(const Vector& velocities) {
+    if (auto ok = begin_jog(); !ok) return ok;
+    return jogged(jog_.to_velocities(last_.position, velocities, machine_));
+  }
+  /// The axes go to positions. Errors: those of `move_to`, and as for `jog`.
+  Expected<void> jog_to(const Vector& positions) {
+    if (auto ok = begin_jog(); !ok) return ok;
+    return jogged(jog_.to_positions(last_.position, positions, machine_));
+  }
+  /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
+  Expected<void> return_to_path() {
+    if (!away_ || !find_path()) return {};
+    return jog_to(path_place_);
+  }
+
   /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
   /// block of a line (0: nothing is), and the motion begins where that block passes the place at which the
   /// axes stand; where it does not pass within 1e-6, the error is discontinuous. False, and nothing done,
   /// where the machine moves.
   bool restart(int line, const Vector& position) {
-    if (!restart_player()) return false;
+    if (jog_.moves() || !player_.skip_to(0)) return false;
     feed_.restart(line, position);
-    last_.position = position;
-    return true;
-  }
-  /// The same where the next block begins.
-  bool restart() {
-    if (!restart_player()) return false;
-    feed_.restart(0, std::nullopt);
+    away_ = returns_ = false;
+    told_ = 0;
+    end_.store(not_ended, std::memory_order_relaxed);
+    stand_at(position);
+    last_.along = {};
     return true;
   }
 
@@ -141,10 +169,26 @@ class Executor {
 
   /// Moves on by `period` seconds, > 0.
   SetPoint tick(Scalar period) {
+    return tick(
+        period, [](const Part&) {}, false);
+  }
+
+  /// The same, and tells what the axes do over the tick, part by part; rests are none.
+  template <std::invocable<const Part&> Visit>
+  SetPoint tick(Scalar period, Visit&& visit, bool tell = true) {
     if (!background_) plan(cells_in_tick);
     const std::int64_t ready = feed_.ready();
     time_.add(period);
-    const plan::BasicPlayed<Scalar> now = player_.tick(period);
+    last_.time = time();
+    last_.words.clear();
+    if (away_) return tick_of_jog(period, visit);
+    const plan::BasicPlayed<Scalar> now = player_.tick(
+        period,
+        [&](const plan::BasicPlayedPart<Scalar>& part) {
+          const Cell& cell = player_[part.block];
+          visit(Part(feed_[cell.block], part.phase, cell.from + part.along, part.direction));
+        },
+        tell);
     std::int64_t reached = -1;
     if (now.block >= 0) {
       const Cell& cell = player_[now.block];
@@ -152,12 +196,13 @@ class Executor {
       evaluate(cell, now);
     }
     if (player_.finished()) reached = std::max(reached, ready - 1);
-    last_.time = time_.since(Scalar(0));
     tell_words(reached);
     release();
     return last_;
   }
 
+  /// Seconds that all ticks add up to.
+  [[nodiscard]] Scalar time() const { return time_.since(Scalar(0)); }
   /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
   [[nodiscard]] Scalar until_change() const { return player_.until_change(); }
   /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
@@ -169,12 +214,59 @@ class Executor {
   static constexpr std::size_t cells_in_tick = 8;
   static constexpr std::int64_t not_ended = -1;
 
-  bool restart_player() {
-    if (!player_.skip_to(0)) return false;
-    told_ = 0;
-    last_.along = {};
-    end_.store(not_ended, std::memory_order_relaxed);
+  void stand_at(const Vector& position) {
+    last_.position = position;
+    last_.velocity = last_.acceleration = last_.jerk = Vector::Zero();
+    tell_tool_of_axes();
+  }
+
+  // Away from a path, the tool's place is that of its axes; behind a map nobody knows it.
+  void tell_tool_of_axes() {
+    if constexpr (MappedModel<M>)
+      last_.tool.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+    else
+      last_.tool = in_space(last_.position, tool_);
+  }
+
+  Expected<void> begin_jog() const {
+    if (away_ || player_.rests()) return {};
+    return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
+  }
+  Expected<void> jogged(const Expected<void>& done) {
+    away_ = away_ || done.has_value();
+    return done;
+  }
+
+  // Where the program goes on; false while it has no blocks.
+  bool find_path() {
+    const plan::BasicPlayed<Scalar> now = player_.place();
+    if (now.block < 0) return false;
+    const Cell& cell = player_[now.block];
+    const auto& path = feed_[cell.block].path;
+    path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
     return true;
+  }
+
+  template <class Visit>
+  SetPoint tick_of_jog(Scalar period, Visit& visit) {
+    if (returns_ && !jog_.moves() && !return_to_path()) returns_ = false;
+    if (jog_.moves()) {
+      const bool rests = jog_.advance(period);
+      const AxisMotion<Vector> axes = jog_.at(Scalar(0));
+      last_.position = axes.position;
+      last_.velocity = axes.velocity;
+      last_.acceleration = axes.acceleration;
+      last_.jerk = axes.jerk;
+      tell_tool_of_axes();
+      visit(Part(jog_, period));
+      if (rests) stand_at(axes.position);
+    }
+    constexpr Scalar rounding = std::max(Scalar(1e-9), 64 * std::numeric_limits<Scalar>::epsilon());
+    if (!jog_.moves() && find_path() &&
+        (last_.position - path_place_).cwiseAbs().maxCoeff() <=
+            rounding * (1 + path_place_.cwiseAbs().maxCoeff()))
+      away_ = returns_ = false;
+    return last_;
   }
 
   void evaluate(const Cell& cell, const plan::BasicPlayed<Scalar>& now) {
@@ -209,7 +301,6 @@ class Executor {
 
   // Words of blocks up to one; what the set point has no room for comes with the next one.
   void tell_words(std::int64_t reached) {
-    last_.words.clear();
     for (; told_ <= reached; ++told_) {
       const gcode::Word& word = feed_[told_].word;
       if (word.letter != '\0' && !last_.words.push_back(word)) return;
@@ -226,6 +317,10 @@ class Executor {
   plan::CellFeed<M, B, room> feed_;
   plan::BasicPlayer<Scalar> player_;
   plan::BasicElapsed<Scalar> time_;
+  plan::Jog<M> jog_;
+  Vector path_place_ = Vector::Zero();  // where the program goes on
+  bool away_ = false;                   // the axes are not on the path
+  bool returns_ = false;                // and are to go back to it
   SetPoint last_{};
   std::int64_t told_ = 0;  // blocks whose words have been told
   std::atomic<std::int64_t> end_{not_ended};

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/plan/motor_edge.hpp"
 #include "cncplan/plan/steppable.hpp"
 #include "cncplan/plan/trajectory.hpp"
 #include "cncplan/step/backlash.hpp"
@@ -21,19 +22,6 @@
 #include "cncplan/step/drive.hpp"
 
 namespace cncplan {
-
-/// One step of one motor. Motors are numbered in the order of the axes.
-template <std::floating_point S>
-struct BasicMotorEdge {
-  S time{};  ///< s
-  std::size_t motor{};
-  int axis{};
-  int direction{};  ///< +1 or -1
-
-  friend bool operator==(const BasicMotorEdge&, const BasicMotorEdge&) = default;
-};
-
-using MotorEdge = BasicMotorEdge<double>;
 
 namespace detail {
 

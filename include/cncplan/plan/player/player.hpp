@@ -49,6 +49,15 @@ struct BasicPlayed {
 
 using Played = BasicPlayed<double>;
 
+/// A part of a tick: constant jerk within one block.
+template <std::floating_point S>
+struct BasicPlayedPart {
+  BasicPhase<S> phase;   ///< seconds into the tick; mm travelled from where it begins
+  std::int64_t block{};  ///< number of the block
+  S along{};             ///< mm from the block's start to where the part begins
+  int direction = 1;     ///< -1 towards the block's start
+};
+
 /// Runs along the blocks it is given, always on a plan that ends at rest on the path it has. A request (hold,
 /// override, new blocks) is met by a new plan from the state the machine is in: a ramp to a speed with zero
 /// acceleration, then spans. A plan that could not keep the junctions' caps is not taken: the one before goes
@@ -153,6 +162,16 @@ class BasicPlayer {
   /// Moves on by `period` seconds. It plans at most 16 times on the way: enough for a tenth of a second and
   /// more; over a longer one the machine may slow down for blocks that it has.
   BasicPlayed<S> tick(S period) {
+    return tick(
+        period, [](const BasicPlayedPart<S>&) {}, false);
+  }
+
+  /// The same, and tells the parts that the tick is made of, in order; rests are none.
+  template <std::invocable<const BasicPlayedPart<S>&> Visit>
+  BasicPlayed<S> tick(S period, Visit&& visit, bool tell = true) {
+    const auto advance = [&](S seconds, S left) {
+      tell ? drive(seconds, period - left, visit) : leg_.advance(seconds);
+    };
     look();
     if (pending_ || (could_better() && leg_.to_turn() <= S(0))) renew();
     S left = period;
@@ -167,17 +186,18 @@ class BasicPlayer {
         if (!pending_ || plans-- == 0) break;
         renew();
       } else if (const S turn = leg_.to_turn(); plans > 0 && could_better() && turn > S(0) && turn <= left) {
-        leg_.advance(turn);
+        advance(turn, left);
         left -= turn;
         --plans;
         const BasicSpot<S> at = locate();
         if (plan_from(at, leg_.state().velocity)) adopt(at);
       } else if (left < leg_.left()) {
-        leg_.advance(left);
+        advance(left, left);
         left = S(0);
       } else {
-        left -= leg_.left();
-        leg_.advance(leg_.left());
+        const S over = leg_.left();
+        advance(over, left);
+        left -= over;
         if (next_leg(plans > 0)) --plans;
       }
     }
@@ -202,6 +222,16 @@ class BasicPlayer {
   [[nodiscard]] bool finished() const {
     return idle_ && !(waits() > S(0)) && road_.direction > 0 && at_.block >= road_.ring.pushed();
   }
+  /// Whether it rests and will not go on by itself.
+  [[nodiscard]] bool rests() const {
+    const bool nothing_ahead = road_.direction > 0 && at_.block >= road_.ring.pushed();
+    return idle_ && !(waits() > S(0)) && (road_.asked.held || road_.asked.stopped || nothing_ahead);
+  }
+  /// Where it is, at rest or in motion.
+  [[nodiscard]] BasicPlayed<S> place() {
+    look();
+    return played();
+  }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return road_.asked.stopped && idle_; }
 
@@ -216,6 +246,33 @@ class BasicPlayer {
     if (value == wanted) return;
     value = wanted;
     pending_ = true;
+  }
+
+  // Goes on in the leg, part by part, `passed` seconds into the tick.
+  template <class Visit>
+  void drive(S seconds, S passed, Visit& visit) {
+    while (seconds > S(0)) {
+      const BasicSpot<S> at = road_.snapped(locate());
+      const BlockRing<S>& ring = road_.ring;
+      const BasicState<S> now = leg_.state();
+      const S edge = leg_.to_edge();
+      BasicPlayedPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
+                               now.acceleration, now.jerk},
+                              at.block,
+                              at.along,
+                              road_.direction};
+      if (ring.holds(at.block + road_.direction) && ring.holds(at.block)) {
+        const S until = part.phase.tau_at(ring.length(at.block) - at.along);
+        if (until > S(0)) part.phase.duration = std::min(part.phase.duration, until);
+      }
+      if (ring.holds(at.block)) {
+        if (road_.direction < 0) part.along = ring.length(at.block) - at.along;
+        visit(std::as_const(part));
+      }
+      leg_.advance(part.phase.duration);
+      passed += part.phase.duration;
+      seconds -= part.phase.duration;
+    }
   }
 
   // Takes notice of blocks that were pushed.

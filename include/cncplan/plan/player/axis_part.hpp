@@ -1,0 +1,59 @@
+// The axes over a part of a tick, by time.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+
+#include "cncplan/core/path_point.hpp"
+#include "cncplan/core/phase.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/player/jog.hpp"
+
+namespace cncplan::plan {
+
+/// What moves the axes over a part of a tick: constant jerk along the path of one block, or a jog. Its
+/// parameter, and its length, are seconds from its start. What it points to belongs to the executor, which
+/// changes it at the next tick or request.
+template <MachineModel M, BlockModel B>
+class AxisPart {
+ public:
+  using Scalar = typename M::Scalar;
+  using Vector = VectorN<Scalar, M::axis_count>;
+
+  AxisPart() = default;
+  /// Along a block from `from` on, forwards or backwards.
+  AxisPart(const B& block, const BasicPhase<Scalar>& phase, Scalar from, int direction)
+      : block_(&block), phase_(phase), from_(from), direction_(direction) {}
+  /// By a jog, which is `behind` seconds past the part's start.
+  AxisPart(const Jog<M>& jog, Scalar behind)
+      : jog_(&jog), phase_{Scalar(0), behind, Scalar(0), Scalar(0), Scalar(0), Scalar(0)}, from_(behind) {}
+
+  /// Seconds from the start of the tick.
+  [[nodiscard]] Scalar start() const { return phase_.time; }
+  [[nodiscard]] Scalar length() const { return phase_.duration; }
+  [[nodiscard]] Scalar parameter_end() const { return phase_.duration; }
+  [[nodiscard]] Scalar length_at(Scalar t) const { return t; }
+  [[nodiscard]] Vector position(Scalar t) const { return at(t).position; }
+  [[nodiscard]] Vector derivative(Scalar t) const { return at(t).velocity; }
+  [[nodiscard]] Vector second_derivative(Scalar t) const { return at(t).acceleration; }
+
+ private:
+  [[nodiscard]] AxisMotion<Vector> at(Scalar t) const {
+    if (jog_ != nullptr) return jog_->at(t - from_);
+    const auto sense = static_cast<Scalar>(direction_);
+    BasicState<Scalar> state = phase_.at(t);
+    state.position = std::clamp(from_ + sense * state.position, Scalar(0), block_->path.length());
+    state.velocity *= sense;
+    state.acceleration *= sense;
+    state.jerk *= sense;
+    return motion(block_->path.point_at(state.position), state);
+  }
+
+  const B* block_ = nullptr;
+  const Jog<M>* jog_ = nullptr;
+  BasicPhase<Scalar> phase_{};
+  Scalar from_{};
+  int direction_ = 1;
+};
+
+}  // namespace cncplan::plan

@@ -1,0 +1,356 @@
+// What is asked of an executor, one thing at a time.
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cncplan/plan/executor.hpp"
+#include "cncplan/plan/plan_program.hpp"
+#include "support/catch.hpp"
+#include "support/executor_check.hpp"
+#include "support/no_heap.hpp"
+#include "support/shared.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+constexpr Machine<3> mill{
+    .axes = {{{.letter = 'X', .velocity = 50, .acceleration = 1000, .jerk = 20000, .high = 100},
+              {.letter = 'Y', .velocity = 50, .acceleration = 1000, .jerk = 20000},
+              {.letter = 'Z', .velocity = 20, .acceleration = 300, .jerk = 5000}}},
+    .limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+constexpr double period = 1e-3;
+using Runner = Executor<Machine<3>, 16>;
+using Lines = std::vector<std::string>;
+
+void load(Runner& executor, const Lines& lines) {
+  for (const auto& block : test::blocks_of(lines, mill)) REQUIRE(executor.push(block));
+  executor.end_of_program();
+}
+
+// Ticks until it is over, or for so long; the last set point.
+SetPoint<3> run(Runner& executor, double seconds = 1e3) {
+  SetPoint<3> point;
+  for (int tick = 0; tick < seconds / period && !executor.finished(); ++tick) point = executor.tick(period);
+  return point;
+}
+
+}  // namespace
+
+TEST_CASE("without a program an executor is over once it is told so", "[executor]") {
+  Runner executor(mill);
+  CHECK_FALSE(executor.finished());
+  executor.end_of_program();
+  CHECK(executor.finished());
+  CHECK(executor.tick(period).position.isZero());
+  CHECK_FALSE(executor.error());
+}
+
+TEST_CASE("what was pushed is run to its end though nothing follows", "[executor]") {
+  Runner executor(mill);
+  for (const auto& block : test::blocks_of({"G1 X5 F600"}, mill)) REQUIRE(executor.push(block));
+  const auto point = run(executor, 2.0);
+  CHECK(point.position[0] == 5.0);
+  CHECK_FALSE(executor.finished());
+  executor.end_of_program();
+  CHECK(executor.finished());
+}
+
+TEST_CASE("a block that cannot be planned ends the motion before it, and is told", "[executor]") {
+  Runner executor(mill);
+  auto blocks = test::blocks_of({"G1 X5 F600", "Y5", "X50", "Y0"}, mill);
+  blocks[2].path = path::Line<3>({5, 5, 0}, {150, 5, 0});
+  blocks[2].column = 4;
+  for (int tick = 0; tick < 3; ++tick) executor.tick(period);
+  for (const auto& block : blocks) REQUIRE(executor.push(block));
+  for (int i = 0; i < 100; ++i) REQUIRE(executor.push(blocks[3]));  // dropped: it never is full
+  const auto point = run(executor);
+  CHECK((point.position - Vector3(5, 5, 0)).norm() < 1e-12);
+  REQUIRE(executor.error());
+  CHECK(to_text(*executor.error()) == "3:4: error: axis X is above the limit 100");
+  blocks[2].path = path::Line<3>({5, 5, 0}, {5, 6, 0});
+  REQUIRE(executor.restart(0, point.position));
+  CHECK_FALSE(executor.error());
+  REQUIRE(executor.push(blocks[2]));
+  executor.end_of_program();
+  CHECK(run(executor).position[1] == 6.0);
+}
+
+TEST_CASE("a gap in the path, no feed and a bad machine are errors", "[executor]") {
+  const auto code = [](const Machine<3>& machine, const Block<3>& block) {
+    Runner executor(machine);
+    executor.push({.path = path::Line<3>({0, 0, 0}, {1, 0, 0})});
+    executor.push(block);
+    executor.end_of_program();
+    while (!executor.finished()) executor.tick(period);
+    REQUIRE(executor.error());
+    return executor.error()->error().code;
+  };
+  CHECK(code(mill, {.path = path::Line<3>({2, 0, 0}, {3, 0, 0})}) == ErrorCode::discontinuous);
+  CHECK(code(mill, {.path = path::Line<3>({1, 0, 0}, {3, 0, 0}), .feed = 0.0}) == ErrorCode::not_positive);
+  auto bad = mill;
+  bad.axes[1].jerk = -1;
+  CHECK(code(bad, {.path = path::Line<3>({1, 0, 0}, {3, 0, 0})}) == ErrorCode::not_positive);
+}
+
+TEST_CASE("words are told where they stand, stops at rest", "[executor]") {
+  Runner executor(mill);
+  load(executor, {"G1 X5 F1200", "M3 S1000", "X10", "M0", "X12", "T2 M6", "X14 M8", "M30"});
+  std::string told;
+  bool stops_at_rest = true, in_place = true;
+  while (!executor.finished()) {
+    const auto point = executor.tick(period);
+    for (const auto& word : point.words) {
+      told += word.letter + std::to_string(static_cast<int>(word.number)) + ' ';
+      const bool stops =
+          word.letter == 'T' || (word.letter == 'M' && (word.number == 0 || word.number == 30));
+      if (stops) stops_at_rest = stops_at_rest && point.velocity.norm() < 0.02;
+      if (word.letter == 'S')
+        in_place = point.position[0] >= 5 && point.position[0] < 5.03 && point.velocity[0] > 19;
+    }
+  }
+  CHECK(told == "S1000 M3 M0 T2 M6 M8 M30 ");
+  CHECK(stops_at_rest);
+  CHECK(in_place);
+}
+
+TEST_CASE("more words than a set point has room for come one after another", "[executor]") {
+  Lines lines;
+  for (int i = 0; i < 12; ++i) lines.push_back(i % 2 == 0 ? "M7" : "M9");
+  Runner executor(mill);
+  load(executor, lines);
+  int words = 0, ticks = 0;
+  for (; !executor.finished() && ticks < 10; ++ticks)
+    for (const auto& word : executor.tick(period).words) CHECK(word.number == (words++ % 2 == 0 ? 7 : 9));
+  CHECK(words == 12);
+  CHECK(ticks == 2);
+}
+
+TEST_CASE("M0 and M1 hold where that is switched on, lines and blocks where it is asked", "[executor]") {
+  const Lines lines{"G1 X5 F1200", "M0", "X10", "M1", "X15", "X20"};
+  const auto places = [&](auto ask) {
+    Runner executor(mill);
+    ask(executor);
+    load(executor, lines);
+    std::vector<double> held;
+    for (int i = 0; i < 20 && !executor.finished(); ++i) {
+      held.push_back(run(executor, 2.0).position[0]);
+      executor.resume();
+    }
+    return held;
+  };
+  CHECK(places([](Runner&) {}) == std::vector{20.0});
+  CHECK(places([](Runner& e) { e.program_stop(true); }) == std::vector{5.0, 20.0});
+  CHECK(places([](Runner& e) { e.optional_stop(true); }) == std::vector{10.0, 20.0});
+  CHECK(places([](Runner& e) { e.pause_at(6); }) == std::vector{15.0, 20.0});
+  const auto steps = places([](Runner& e) { e.single_step(true); });
+  for (const double place : {5.0, 10.0, 15.0, 20.0})
+    CHECK(std::count(steps.begin(), steps.end(), place) >= 1);
+}
+
+TEST_CASE("a quick stop is harder than a hold, and goes on when resumed", "[executor]") {
+  const auto way = [](auto stop) {
+    Runner executor(mill);
+    load(executor, {"G1 X50 F1800"});
+    const double from = run(executor, 0.5).position[0];
+    stop(executor);
+    const double rest = run(executor, 0.5).position[0];
+    executor.resume();
+    CHECK(run(executor).position[0] == 50.0);
+    return rest - from;
+  };
+  const double held = way([](Runner& e) { e.feed_hold(); });
+  CHECK(held == Approx(30 * std::sqrt(30.0 / 10000)).epsilon(0.02));  // v sqrt(v / j)
+  CHECK(way([](Runner& e) { e.quick_stop(5000, 1e6); }) < held / 4);
+}
+
+TEST_CASE("a program that was stopped begins anew at a line, from a place on it", "[executor]") {
+  const Lines lines{"F1200", "G1 X10", "M8", "Y10", "G2 X20 Y20 I10", "G1 X30", "M9"};
+  const auto whole = test::blocks_of(lines, mill);
+  for (const double share : {0.0, 0.3, 1.0}) {
+    Runner executor(mill);
+    load(executor, lines);
+    run(executor, 0.4);
+    executor.stop();
+    run(executor);
+    CHECK(executor.finished());
+    const auto& arc = whole[3].path;
+    const Vector3 place = arc.position_at(share * arc.length());
+    REQUIRE(executor.restart(5, place));
+    load(executor, lines);
+    const auto first = executor.tick(period);
+    CHECK((first.position - place).norm() < 1e-4);
+    CHECK(first.words.empty());
+    std::string told;
+    while (!executor.finished())
+      for (const auto& word : executor.tick(period).words)
+        told += std::to_string(static_cast<int>(word.number));
+    CHECK(told == "9");
+    CHECK(executor.tick(period).position[0] == 30.0);
+    CHECK_FALSE(executor.error());
+  }
+  Runner executor(mill);
+  REQUIRE(executor.restart(5, {10, 10, 1}));
+  load(executor, lines);
+  run(executor);
+  REQUIRE(executor.error());
+  CHECK(executor.error()->error().code == ErrorCode::discontinuous);
+}
+
+TEST_CASE("hold, jog away, return, resume", "[executor]") {
+  Runner executor(mill);
+  load(executor, {"G1 X20 F1200", "Y20"});
+  CHECK_FALSE(executor.jog({0, 0, 5}));
+  run(executor, 0.5);
+  CHECK(executor.jog({0, 0, 5}).error().code == ErrorCode::unfinished);
+  executor.feed_hold();
+  const Vector3 held = run(executor, 0.5).position;
+  REQUIRE(executor.jog({0, 0, 5}));
+  auto point = run(executor, 1.0);
+  CHECK(point.velocity[2] == Approx(5));
+  CHECK(point.tool == point.position);
+  REQUIRE(executor.jog({0, 0, 0}));
+  run(executor, 1.0);
+  REQUIRE(executor.jog_to({held[0] + 3, 4, 7}));
+  CHECK(run(executor, 3.0).position == Vector3(held[0] + 3, 4, 7));
+  CHECK(executor.jog_to({101, 0, 0}).error().code == ErrorCode::above_limit);
+  const bool by_hand = GENERATE(false, true);
+  if (by_hand) {
+    REQUIRE(executor.return_to_path());
+    CHECK((run(executor, 2.0).position - held).norm() < 1e-12);
+  }
+  executor.resume();
+  // continuous, and each axis in its limits all the way
+  auto before = executor.tick(period);
+  while (!executor.finished()) {
+    point = executor.tick(period);
+    for (int i = 0; i < 3; ++i) {
+      const auto& axis = mill.axes[static_cast<std::size_t>(i)];
+      CHECK(std::abs(point.position[i] - before.position[i]) <= axis.velocity * period * (1 + 1e-9));
+      if (point.line != before.line) continue;
+      CHECK(std::abs(point.velocity[i] - before.velocity[i]) <= axis.acceleration * period * (1 + 1e-9));
+    }
+    before = point;
+  }
+  CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("axes are jogged before a program, which waits until they are at its start", "[executor]") {
+  Runner executor(mill);
+  REQUIRE(executor.jog_to({1, 2, 3}));
+  CHECK(run(executor, 3.0).position == Vector3(1, 2, 3));
+  load(executor, {"G1 X20 F1200"});
+  CHECK(run(executor, 1.0).position == Vector3(1, 2, 3));
+  executor.resume();
+  CHECK(run(executor).position == Vector3(20, 0, 0));
+  CHECK(executor.finished());
+}
+
+TEST_CASE("nothing is allocated once an executor and a reader are made", "[executor]") {
+  BlockReader reader(mill);
+  const auto executor = std::make_unique<Runner>(mill);
+  std::array<std::string, 6> lines{
+      "G21 G90 F1200 M3 S100", "G1 X20", "G3 X25 Y5 R5", "G4 P0.05", "G1 X0", "M30"};
+  const auto before = test::heap_allocations();
+  for (int program = 0; program < 2; ++program) {
+    for (const std::string& line : lines) {
+      const auto blocks = reader.read_line(line);
+      if (!blocks) break;
+      for (const auto& block : *blocks)
+        while (!executor->push(block)) executor->tick(period);
+    }
+    executor->end_of_program();
+    for (int tick = 0; !executor->finished(); ++tick) {
+      if (tick == 100) executor->feed_override(1.7);
+      if (tick == 200) executor->feed_hold();
+      if (tick == 300) executor->resume();
+      executor->tick(period);
+    }
+    if (!executor->jog_to({1, 1, 1})) break;
+    for (int tick = 0; tick < 2000; ++tick) executor->tick(period);
+    executor->restart(0, {1, 1, 1});
+  }
+  CHECK(test::heap_allocations() == before);
+}
+
+TEST_CASE("programs of others take as long as their plans", "[executor]") {
+  const auto shared = test::shared();
+  if (!shared) {
+    std::puts("SKIPPED: CNCPLAN_SHARED is not set");
+    return;
+  }
+  constexpr Machine<3> free{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+  for (const char* name :
+       {"ball.nc", "ngc/3dtest.ngc", "ngc/51MeanderAve.ngc", "ngc/Cereal.ngc", "ngc/arcspiral.ngc",
+        "ngc/cds.ngc", "ngc/lathe_pawn.ngc", "ngc/test_12mmflat.ngc", "ngc/tort.ngc"}) {
+    const std::string path = *shared + "/data/" + name;
+    const auto planned = plan_file(path, free);
+    REQUIRE(planned);
+    std::ifstream file(path);
+    BlockReader reader(free);
+    const auto executor = std::make_unique<Executor<Machine<3>, 64>>(free);
+    int ticks = 0;
+    const auto tick = [&] { return ++ticks, executor->tick(period); };
+    for (std::string line; std::getline(file, line);) {
+      auto blocks = reader.read_line(line);
+      for (; blocks; blocks = reader.go_on()) {
+        for (const auto& block : *blocks)
+          while (!executor->push(block)) tick();
+        if (!reader.busy()) break;
+      }
+      REQUIRE(blocks);
+    }
+    executor->end_of_program();
+    while (!executor->finished()) tick();
+    CAPTURE(name);
+    CHECK_FALSE(executor->error());
+    CHECK(ticks * period - executor->rested() == Approx(planned->duration()).epsilon(1e-4));
+    CHECK((tick().position - planned->at(planned->duration()).position).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("blocks come from another thread", "[executor]") {
+  test::Random random;
+  const auto lines = test::random_lines(random, 300, {0, 0, 0}, 20, "");
+  const auto blocks = test::blocks_of(lines, mill);
+  const auto planned = plan_blocks(blocks, mill);
+  REQUIRE(planned);
+  const auto executor = std::make_unique<Runner>(mill, Runner::Options{.background = true});
+  std::atomic<bool> over{false};
+  std::thread feeder([&] {
+    for (const auto& block : blocks)
+      while (!executor->push(block)) {
+        executor->plan();
+        std::this_thread::yield();
+      }
+    executor->end_of_program();
+    while (!over) {
+      executor->plan();
+      std::this_thread::yield();
+    }
+  });
+  test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(mill, blocks,
+                                                                           {20, 1, period, 1e-12});
+  for (int tick = 0; tick < 10'000'000 && !executor->finished(); ++tick) {
+    const auto point = executor->tick(period);
+    if (executor->pushed() > 0) check.take(point);
+    if (tick == 300) executor->feed_override(1.5);
+    if (tick % 64 == 0) std::this_thread::yield();
+  }
+  over = true;
+  feeder.join();
+  check.finish();
+  CHECK(executor->finished());
+  CHECK(check.faults.acceleration < 1e-9);
+  CHECK(check.faults.jerk < 1e-9);
+  CHECK(check.faults.way <= 0);
+  CHECK(check.faults.place <= 0);
+  CHECK(check.faults.end < 1e-9);
+  CHECK_FALSE(check.faults.words_wrong);
+}
