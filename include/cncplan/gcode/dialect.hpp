@@ -27,10 +27,11 @@ struct Axis {
   friend bool operator==(const Axis&, const Axis&) = default;
 };
 
-/// Length of a tool, mm; it shifts Z under G43.
+/// A tool; its length shifts Z under G43.
 struct Tool {
   int number{};
-  double length{};
+  double length{};    ///< mm
+  double diameter{};  ///< mm
 
   friend bool operator==(const Tool&, const Tool&) = default;
 };
@@ -91,6 +92,13 @@ inline constexpr std::size_t max_set_tools = 64;
 [[nodiscard]] inline double tool_length(const Dialect& dialect, int number) {
   for (const Tool& tool : dialect.tools)
     if (tool.number == number) return tool.length;
+  return 0.0;
+}
+
+/// mm; 0 of a tool that the table lacks.
+[[nodiscard]] inline double tool_diameter(const Dialect& dialect, int number) {
+  for (const Tool& tool : dialect.tools)
+    if (tool.number == number) return tool.diameter;
   return 0.0;
 }
 
