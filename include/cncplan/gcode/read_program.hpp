@@ -6,6 +6,7 @@
 #include <functional>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
@@ -27,6 +28,19 @@ concept ProblemSink = requires(F& tell, const Diagnostic& problem) {
   { tell(problem) } -> std::same_as<bool>;
 };
 
+namespace detail {
+
+/// Puts an item where it stands in the text, for lines that are written anew (language/program_lines.hpp).
+template <class Lines>
+void locate(Item& item, const Lines& lines) {
+  if (auto* motion = std::get_if<Motion>(&item)) motion->column = lines.column(motion->column);
+  if (auto* word = std::get_if<Word>(&item)) word->column = lines.column(word->column);
+  if (auto* warning = std::get_if<Warning>(&item))
+    warning->about.column = lines.column(warning->about.column);
+}
+
+}  // namespace detail
+
 /// Reads lines up to the program's end and hands every item to `sink`, in order. A line in error goes to
 /// `tell`; where that says true the reading goes on behind it (`Reader::recover`). Memory: one line and its
 /// items, however long the program.
@@ -37,18 +51,27 @@ void read_program(Lines&& lines, Reader& reader, Sink&& sink, Tell&& tell) {
     const auto line = lines.next();
     if (!line) return;
     if constexpr (requires { lines.line(); }) reader.set_line(lines.line());
+    if constexpr (requires { lines.problem(); })
+      if (const auto& problem = lines.problem()) {
+        if (!tell(*problem)) return;
+        reader.recover(*line);
+        continue;
+      }
     const auto end = reader.read_line(*line, items.data());
     if (!end) {
-      if (!tell(end.error())) return;
+      Diagnostic problem = end.error();
+      if constexpr (requires { lines.column(1); }) problem.column = lines.column(problem.column);
+      if (!tell(problem)) return;
       reader.recover(*line);
       continue;
     }
     for (Item* last = *end;;) {
-      for (const Item* item = items.data(); item != last; ++item) {
+      for (Item* item = items.data(); item != last; ++item) {
+        if constexpr (requires { lines.column(1); }) detail::locate(*item, lines);
         if constexpr (std::is_void_v<std::invoke_result_t<Sink&, const Item&>>) {
-          std::invoke(sink, *item);
+          std::invoke(sink, std::as_const(*item));
         } else {
-          if (!std::invoke(sink, *item)) return;
+          if (!std::invoke(sink, std::as_const(*item))) return;
         }
       }
       if (!reader.busy()) break;
