@@ -97,8 +97,14 @@ class Expression {
   /// Index of the character to come, and the character in upper case; 0 at the end.
   [[nodiscard]] std::size_t at() const { return at_; }
   [[nodiscard]] char peek() const { return at_ < line_.size() ? upper(line_[at_]) : '\0'; }
+  /// Passes blanks and closed comments.
   void skip_blanks() {
-    while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) ++at_;
+    for (;; ++at_) {
+      if (peek() == '(' && line_.find(')', at_) != std::string_view::npos)
+        at_ = line_.find(')', at_);
+      else if (peek() != ' ' && peek() != '\t')
+        return;
+    }
   }
 
   /// A number, a parameter, an expression in brackets or a function, with or without signs.
@@ -210,7 +216,8 @@ class Expression {
     Scanner scanner(line_, at_);
     const auto number = scanner.read_number('=', column());
     if (!number) {
-      if (!problem_) problem_ = number.error();
+      const Error& error = number.error().error;
+      fail(error.code, "value", column(), error.value, error.bound);
       return 0.0;
     }
     at_ = static_cast<std::size_t>(scanner.column() - 1);

@@ -37,8 +37,13 @@ class ProgramLines {
  public:
   /// `main`: the text, which outlives this. The reader is the one that the lines are for: parameters ask it.
   /// `find` loads the files of subprograms that the text does not have.
-  ProgramLines(Main& main, const Reader& reader, FindFile find = {})
-      : main_(main), reader_(reader), find_(std::move(find)), parameters_(reader), frames_(1) {}
+  ProgramLines(Main& main, const Reader& reader, FindFile find = {}, int most_jumps = max_jumps)
+      : main_(main),
+        reader_(reader),
+        find_(std::move(find)),
+        most_jumps_(most_jumps),
+        parameters_(reader),
+        frames_(1) {}
 
   /// The next line; where `problem` says so, the line at fault as it stands in the text.
   [[nodiscard]] std::optional<std::string_view> next() {
@@ -121,9 +126,9 @@ class ProgramLines {
   }
 
   void go_back_to(const Place& place, int column) {
-    if (++jumps_ > max_jumps)
+    if (++jumps_ > most_jumps_)
       return fail(ErrorCode::above_limit, "number of times that the program goes back", column, jumps_,
-                  max_jumps);
+                  most_jumps_);
     go_to(place);
   }
 
@@ -410,7 +415,8 @@ class ProgramLines {
   }
 
   void leave(const ControlWord& word, std::string_view line) {
-    if (frames_.size() == 1 || frames_.back().numbered || frames_.back().label != word.label)
+    const bool ends = word.keyword == Keyword::return_ || frames_.back().label == word.label;
+    if (frames_.size() == 1 || frames_.back().numbered || !ends)
       return fail(ErrorCode::unmatched, "O-word", word.column);
     Expression expression(line, word.end, parameters_);
     std::optional<double> result;
@@ -465,6 +471,7 @@ class ProgramLines {
   Main& main_;
   const Reader& reader_;
   FindFile find_;
+  int most_jumps_;
   Parameters parameters_;
   FlatLine flat_line_;
   const FlatLine* flat_{};  ///< of the line that came last, if it was not flat
