@@ -323,7 +323,7 @@ TEST_CASE("a program with parameters plans as the flat one", "[program]") {
   REQUIRE(flat);
   REQUIRE(with->blocks().size() == flat->blocks().size());
   CHECK(with->duration() == flat->duration());
-  CHECK(error_of("G1 F600\no1 if [1]\nX[1/0]\no1 endif\n", mill) == "3:5: error: / is not a finite number");
+  CHECK(error_of("G1 F600\no1 if [1]\nX[1/0]\no1 endif\n", mill) == "3:4: error: / is not a finite number");
 }
 
 TEST_CASE("a file calls the files of its folder, and errors name the file", "[program]") {

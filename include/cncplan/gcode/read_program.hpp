@@ -60,14 +60,15 @@ void read_program(Lines&& lines, Reader& reader, Sink&& sink, Tell&& tell) {
     const auto end = reader.read_line(*line, items.data());
     if (!end) {
       Diagnostic problem = end.error();
-      if constexpr (requires { lines.column(1); }) problem.column = lines.column(problem.column);
+      if constexpr (requires { lines.rewritten(); }) problem.column = lines.column(problem.column);
       if (!tell(problem)) return;
       reader.recover(*line);
       continue;
     }
     for (Item* last = *end;;) {
       for (Item* item = items.data(); item != last; ++item) {
-        if constexpr (requires { lines.column(1); }) detail::locate(*item, lines);
+        if constexpr (requires { lines.rewritten(); })
+          if (lines.rewritten()) detail::locate(*item, lines);
         if constexpr (std::is_void_v<std::invoke_result_t<Sink&, const Item&>>) {
           std::invoke(sink, std::as_const(*item));
         } else {

@@ -62,7 +62,8 @@ class ProgramLines {
   [[nodiscard]] const std::optional<Diagnostic>& problem() const { return problem_; }
   /// Number in its file of the line that came last, from 1.
   [[nodiscard]] int line() const { return place_.line; }
-  /// Column in it, for a column of what came out.
+  /// Whether it was written anew, and the column in it for a column of what came out.
+  [[nodiscard]] bool rewritten() const { return flat_ != nullptr; }
   [[nodiscard]] int column(int flat) const { return flat_ != nullptr ? flat_->column(flat) : flat; }
   /// Path of the file that it is in; empty for the program itself.
   [[nodiscard]] std::string_view file() const {
@@ -103,8 +104,9 @@ class ProgramLines {
       for (const char c : std::string_view("#[oOmM")) table[static_cast<unsigned char>(c)] = true;
       return table;
     }();
-    return std::none_of(line.begin(), line.end(),
-                        [](char c) { return marks[static_cast<unsigned char>(c)]; });
+    bool marked = false;  // to the end of the line, without a branch: most lines are flat
+    for (const char c : line) marked |= marks[static_cast<unsigned char>(c)];
+    return !marked;
   }
 
   std::optional<std::string_view> read_line() {
@@ -166,7 +168,9 @@ class ProgramLines {
       const ControlWord word = read_control_word(expression);
       if (word.keyword == Keyword::none) {
         if (expression.problem() || find_end(line, word.end) != line.size()) return flatten(line);
-        return frames_.back().numbered ? std::string_view() : line;  // a program's number
+        // The number or the name of a program. In one that was called it is the next one's.
+        const bool named = numbered_label(line) == std::nullopt;
+        return named || frames_.back().numbered ? std::string_view() : line;
       }
       if (expression.problem())
         fail(*expression.problem());
@@ -379,6 +383,10 @@ class ProgramLines {
     }
     if (expression.problem()) return fail(*expression.problem());
     auto found = subprograms_.find(word.label);
+    if (found == subprograms_.end()) {
+      find_subprograms();
+      found = subprograms_.find(word.label);
+    }
     if (found == subprograms_.end() && load(word)) found = subprograms_.find(word.label);
     if (problem_) return;
     if (found == subprograms_.end()) return fail(ErrorCode::no_subprogram, "call", word.column);
@@ -429,14 +437,14 @@ class ProgramLines {
   }
 
   void call_numbered(const NumberedCall& call) {
-    if (!numbered_) find_numbered();
+    find_subprograms();
     double count = call.count.value_or(1.0);
-    auto place = numbered_->find(call.number);
-    if (place == numbered_->end() && !call.count && call.number >= 10000) {  // P51000: O1000, five times
-      place = numbered_->find(call.number % 10000);
+    auto place = numbered_.find(call.number);
+    if (place == numbered_.end() && !call.count && call.number >= 10000) {  // P51000: O1000, five times
+      place = numbered_.find(call.number % 10000);
       count = static_cast<double>(call.number / 10000);
     }
-    if (place == numbered_->end()) return fail(ErrorCode::no_subprogram, "M", call.column, 98.0);
+    if (place == numbered_.end()) return fail(ErrorCode::no_subprogram, "M", call.column, 98.0);
     if (count < 1.0) return;
     enter({.back = place_, .numbered = true, .begin = place->second, .left = count}, call.column);
   }
@@ -458,13 +466,21 @@ class ProgramLines {
     return problem_ ? std::optional<std::string_view>("") : std::nullopt;
   }
 
-  /// Where the numbered subprograms of the program begin: they may stand behind their calls.
-  void find_numbered() {
-    numbered_.emplace();
+  /// Where all subprograms of the program begin: they may stand behind their calls.
+  void find_subprograms() {
+    if (indexed_) return;
+    indexed_ = true;
     const Place back = place_;
     go_to({});
-    while (const auto line = read_line())
-      if (const auto number = numbered_label(*line)) numbered_->try_emplace(*number, place_);
+    while (const auto line = read_line()) {
+      bool deleted = false;
+      const std::size_t at = find_control_word(*line, deleted);
+      if (at == std::string_view::npos || line->size() > max_line_length) continue;
+      if (const auto number = numbered_label(*line)) numbered_.try_emplace(*number, place_);
+      Expression expression(*line, at, parameters_);
+      const ControlWord word = read_control_word(expression);
+      if (!expression.problem() && word.keyword == Keyword::sub) subprograms_.try_emplace(word.label, place_);
+    }
     go_to(back);
   }
 
@@ -477,7 +493,8 @@ class ProgramLines {
   const FlatLine* flat_{};  ///< of the line that came last, if it was not flat
   std::deque<File> files_;
   std::map<std::string, Place> subprograms_;
-  std::optional<std::map<long long, Place>> numbered_;
+  std::map<long long, Place> numbered_;
+  bool indexed_{};
   std::vector<Frame> frames_;
   Place before_;  ///< of the line that came last
   Place place_;   ///< of the one behind it
