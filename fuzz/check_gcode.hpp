@@ -49,6 +49,7 @@ inline const std::array<gcode::Dialect, 3>& dialects() {
 /// A motion without its place in the text.
 inline gcode::Motion placeless(gcode::Motion motion) {
   motion.line = motion.column = 0;
+  motion.tool_radius = 0.0;  // a programmed path is written as it is
   return motion;
 }
 

@@ -33,6 +33,7 @@
 #include "cncplan/core/vector.hpp"
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/canned_cycle.hpp"
+#include "cncplan/gcode/compensation.hpp"
 #include "cncplan/gcode/controls.hpp"
 #include "cncplan/gcode/cycles.hpp"
 #include "cncplan/gcode/diagnostic.hpp"

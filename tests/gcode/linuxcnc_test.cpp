@@ -45,7 +45,8 @@ std::string ours(const std::string& program) {
     const auto* motion = std::get_if<gcode::Motion>(&item);
     if (motion == nullptr) return;
     const auto at = [motion](std::size_t i) { return motion->end[i] + motion->offset[i]; };
-    steps.place(motion->kind == gcode::MotionKind::rapid ? "rapid" : "feed", {at(0), at(1), at(2)});
+    const char* const names[] = {"rapid", "feed", "arc", "arc"};
+    steps.place(names[static_cast<int>(motion->kind)], {at(0), at(1), at(2)});
   });
   return steps.text() + (done ? std::string() : gcode::to_text("", done.error()));
 }
@@ -59,13 +60,15 @@ std::string theirs(const std::string& printed) {
     const auto is = [&](const char* name) { return line.find(name) != std::string::npos; };
     const std::size_t open = line.find('(');
     if (open == std::string::npos) continue;
-    std::array<double, 4> v{};
-    std::sscanf(line.c_str() + open, "(%lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3]);
+    std::array<double, 6> v{};
+    std::sscanf(line.c_str() + open, "(%lf, %lf, %lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3], &v[4],
+                &v[5]);
     if (is("USE_LENGTH_UNITS")) unit = is("INCHES") ? 25.4 : 1.0;
     if (is("SET_G5X_OFFSET")) system = Vector3(v[1], v[2], v[3]) * unit;
     if (is("SET_G92_OFFSET")) shift = Vector3(v[0], v[1], v[2]) * unit;
     if (is("USE_TOOL_LENGTH_OFFSET")) tool = Vector3(v[0], v[1], v[2]) * unit;
     if (is("DWELL")) steps.dwell(v[0]);
+    if (is("ARC_FEED")) steps.place("arc", Vector3(v[0], v[1], v[5]) * unit + system + shift + tool);  // G17
     if (is("STRAIGHT_"))
       steps.place(is("TRAVERSE") ? "rapid" : "feed",
                   Vector3(v[0], v[1], v[2]) * unit + system + shift + tool);
@@ -128,6 +131,23 @@ TEST_CASE("parameters, expressions and O-words as LinuxCNC's interpreter has the
            "G91.1 G1 F33 X#<_feed> Y[#<_motion_mode>/10]\nZ[#<_plane>/10]\n",
            "#2=3\nG[#2-2] X1\nG0 X[1 EQ 1.0000001] Y[2 NE 2] Z[3 GE 3]\nX[1 XOR 1] Y[1 LT 2] Z[1 LE 0]\n",
            "M98 P100 L2\nX50\nM30\no100\n#1=[#1+1]\nX#1\nM99\n",
+       })
+    compare(program);
+}
+
+TEST_CASE("cutter compensation as LinuxCNC's interpreter has it") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "G41.1 D4 G1 X0 Y10\nY20\nX10\nX10 Y10\nG40 X0 Y0\n",
+           "G42.1 D4 G1 X0 Y10\nY20\nX10 Z-1\nZ-2\nX10 Y10\nX20 Y30\nG40\nX0 Y0\n",
+           "G41.1 D4 G1 X0 Y10\nG3 X20 Y10 I10 J0\nG1 X30 Y30\nG2 X50 Y30 R10\nG3 X60 Y40 I0 J10\nG1 X60 "
+           "Y60\n"
+           "G40 G0 X0\n",
+           "G42.1 D4 G1 X0 Y10\nG3 X20 Y10 I10 J0\nG1 X30 Y30\nG2 X50 Y30 R10\nG3 X60 Y40 I0 J10\n"
+           "G2 X60 Y60 R20\nG40 G0 X0\n",
+           "G41.1 D4\nG3 X10 Y10 I0 J10\nG3 X10 Y10 I-10 J0\nG1 Y20\nG0 X20\nG4 P1\nG0 X20 Y50\nG40 X0\n",
+           "G41.1 D4 G1 X10 Y0\nX15\nX5\nG40 Y9\n",
+           "G20 G42.1 D.25 G1 X1 Y1\nG2 X2 Y2 I1\nG1 X4\nG3 X4 Y4 J1\nG1 X1 Y2.5\nG40 X0 Y0\n",
        })
     compare(program);
 }

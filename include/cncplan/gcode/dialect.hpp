@@ -125,6 +125,7 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
   }
   for (const Tool& tool : dialect.tools) {
     if (!std::isfinite(tool.length)) return fail(ErrorCode::not_finite, "tool length", tool.length);
+    if (!std::isfinite(tool.diameter)) return fail(ErrorCode::not_finite, "tool diameter", tool.diameter);
     if (tool.length != 0.0 && (seen & bit('Z')) == 0) return fail(ErrorCode::missing_word, "Z");
   }
   for (const PassThrough& passed : dialect.pass_through) {

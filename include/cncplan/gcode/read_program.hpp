@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "cncplan/core/error.hpp"
+#include "cncplan/gcode/compensation.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/gcode/motion.hpp"
@@ -42,14 +43,28 @@ void locate(Item& item, const Lines& lines) {
 }  // namespace detail
 
 /// Reads lines up to the program's end and hands every item to `sink`, in order. A line in error goes to
-/// `tell`; where that says true the reading goes on behind it (`Reader::recover`). Memory: one line and its
+/// `tell`; where that says true the reading goes on behind it (`Reader::recover`). Motions under cutter
+/// compensation are those of the tool's centre. Memory: one line and its
 /// items, however long the program.
 template <LineSource Lines, ItemSink Sink, ProblemSink Tell>
 void read_program(Lines&& lines, Reader& reader, Sink&& sink, Tell&& tell) {
   std::array<Item, max_items_per_line> items;
+  Compensation compensation;
+  bool goes_on = true;
+  const auto hand_out = [&](const Item& item) {
+    if constexpr (std::is_void_v<std::invoke_result_t<Sink&, const Item&>>)
+      std::invoke(sink, item);
+    else
+      goes_on = goes_on && std::invoke(sink, item);
+  };
+  const auto take = [&](const Item& item) {
+    const auto* motion = std::get_if<Motion>(&item);
+    if (compensation.idle() && (motion == nullptr || motion->tool_radius == 0.0)) return hand_out(item);
+    if (const auto done = compensation.take(item, hand_out); !done) goes_on = goes_on && tell(done.error());
+  };
   while (!reader.finished()) {
     const auto line = lines.next();
-    if (!line) return;
+    if (!line) break;
     if constexpr (requires { lines.line(); }) reader.set_line(lines.line());
     if constexpr (requires { lines.problem(); })
       if (const auto& problem = lines.problem()) {
@@ -69,16 +84,14 @@ void read_program(Lines&& lines, Reader& reader, Sink&& sink, Tell&& tell) {
       for (Item* item = items.data(); item != last; ++item) {
         if constexpr (requires { lines.rewritten(); })
           if (lines.rewritten()) detail::locate(*item, lines);
-        if constexpr (std::is_void_v<std::invoke_result_t<Sink&, const Item&>>) {
-          std::invoke(sink, std::as_const(*item));
-        } else {
-          if (!std::invoke(sink, std::as_const(*item))) return;
-        }
+        take(*item);
+        if (!goes_on) return;
       }
       if (!reader.busy()) break;
       last = reader.go_on(items.data());
     }
   }
+  compensation.finish(hand_out);
 }
 
 /// The same up to the first line in error.

@@ -141,6 +141,8 @@ class Reader {
     const Modal modal = after(block_, modal_, dialect_.g18);
     const auto motion = resolve(block_, modal, alphabet_, modal_.motion);
     if (!motion) return tl::unexpected(motion.error());
+    if (auto ok = detail::check_compensation(block_, modal_, modal, alphabet_, *motion); !ok)
+      return tl::unexpected(ok.error());
     if (auto ok = check_state(modal, *motion); !ok) return tl::unexpected(ok.error());
     modal_ = modal;
     words_seen_ = true;
@@ -205,6 +207,7 @@ class Reader {
     for (const Group group : {Group::polar, Group::scaling, Group::rotation}) name_once(group, emit);
     const Code non_modal = block_.code(Group::non_modal);
     if (non_modal == code(4)) emit(Dwell{block_.number('P') * dialect_.dwell_unit, line_});
+    if (block_.has(Group::compensation)) compensate();
     if (block_.has(Group::tool_length)) set_tool_length();
     if (block_.has(Group::coordinates)) select_work_system();
     if (block_.code(Group::path_control) == code(64) && (block_.has('P') || block_.has('Q')) &&
@@ -315,6 +318,7 @@ class Reader {
     motion.start = position();
     motion.end = end;
     motion.offset = offset();
+    motion.tool_radius = tool_radius_;
     motion.line = line_;
     return motion;
   }
@@ -458,6 +462,18 @@ class Reader {
     place_.set_tool(lengths);
   }
 
+  /// G41, G42: the radius of tool D, or of the loaded one; G41.1, G42.1: half of D. A negative one changes
+  /// the side.
+  void compensate() {
+    const Code how = modal_.compensation;
+    const bool given = how == code(41.1) || how == code(42.1);
+    const int number = block_.has('D') && !given ? static_cast<int>(block_.number('D')) : loaded_tool_;
+    const double diameter =
+        given ? block_.number('D') * modal_.millimetres_per_unit : tool_diameter(dialect_, number);
+    const bool left = how == code(41) || how == code(41.1);
+    tool_radius_ = how == code(40) ? 0.0 : (left ? 0.5 : -0.5) * diameter;
+  }
+
   /// G54 to G59 are 540, 550 ... 590; G59.1 to G59.3 are 591 to 593.
   void select_work_system() {
     const int tenths = block_.code(Group::coordinates);
@@ -484,7 +500,8 @@ class Reader {
   std::optional<Position> probed_;
   int selected_tool_{};
   int loaded_tool_{};
-  Letters doubtful_{};  ///< axes whose place a line in error left open
+  double tool_radius_{};  ///< of cutter compensation, as in `Motion`
+  Letters doubtful_{};    ///< axes whose place a line in error left open
   int line_{};
   bool percent_seen_{};
   bool words_seen_{};

@@ -52,6 +52,7 @@ inline constexpr std::array machine_names{
                 [](const Reader& r) {
                   return r.modal().plane == Plane::xy ? 170.0 : r.modal().plane == Plane::yz ? 190.0 : 180.0;
                 }},
+    MachineName{"_ccomp", [](const Reader& r) { return r.modal().compensation * 1.0; }},
     MachineName{"_metric", [](const Reader& r) { return r.modal().millimetres_per_unit == 1.0 ? 1.0 : 0.0; }},
     MachineName{"_imperial",
                 [](const Reader& r) { return r.modal().millimetres_per_unit == 1.0 ? 0.0 : 1.0; }},
