@@ -57,11 +57,12 @@ struct Dialect {
   std::array<Position, work_systems> work_offsets{};  ///< machine coordinates of each system's origin
   Position home_g28{};                                ///< machine coordinates
   Position home_g30{};                                ///< machine coordinates
-  Plane g18 = Plane::zx;          ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
-  double peck_clearance = 0.254;  ///< mm that G73 goes back, and that G83 stays above the bottom
-  double dwell_unit = 1.0;        ///< s that one of the P of G4 and of the cycles is
-  bool retract_to_r = true;       ///< G99 holds at the start; false: G98
-  bool block_delete = true;       ///< lines that begin with / are left out
+  Plane g18 = Plane::zx;           ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
+  double peck_clearance = 0.254;   ///< mm that G73 goes back, and that G83 stays above the bottom
+  double dwell_unit = 1.0;         ///< s that one of the P of G4 and of the cycles is
+  bool incremental_center = true;  ///< G91.1 holds at the start; false: G90.1
+  bool retract_to_r = true;        ///< G99 holds at the start; false: G98
+  bool block_delete = true;        ///< lines that begin with / are left out
 
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };

@@ -42,6 +42,7 @@ class Reader {
         alphabet_(dialect_),
         place_(dialect_, start) {
     modal_.retract_to_r = dialect_.retract_to_r;
+    modal_.incremental_center = dialect_.incremental_center;
     dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (readable_ && !std::isfinite(start[i]))
