@@ -26,10 +26,10 @@ std::optional<gcode::ProgramFile> find(std::string_view name) {
 
 /// Line and X of every motion ("3:1.5 "), and the error.
 template <class Source>
-std::string run_from(Source& source) {
+std::string run_from(Source& source, int most_jumps) {
   std::ostringstream all;
   gcode::Reader reader;
-  gcode::ProgramLines lines(source, reader, find);
+  gcode::ProgramLines lines(source, reader, find, most_jumps);
   const auto done = gcode::read_program(lines, reader, [&](const gcode::Item& item) {
     if (const auto* motion = std::get_if<gcode::Motion>(&item))
       all << lines.file() << motion->line << ':' << motion->end[0] << ' ';
@@ -38,12 +38,12 @@ std::string run_from(Source& source) {
   return all.str();
 }
 
-std::string run(const std::string& text) {
+std::string run(const std::string& text, int most_jumps = gcode::max_jumps) {
   gcode::TextLines source(text);
-  const std::string result = run_from(source);
+  const std::string result = run_from(source, most_jumps);
   std::istringstream stream(text);
   gcode::StreamLines streamed(stream);
-  CHECK(run_from(streamed) == result);
+  CHECK(run_from(streamed, most_jumps) == result);
   return result;
 }
 
@@ -128,8 +128,8 @@ TEST_CASE("parameters of the machine say where the program is") {
 }
 
 TEST_CASE("a loop that never ends is told with its line") {
-  CHECK(run("G0 X1\no1 while [1]\n#1=2\no1 endwhile\n") ==
-        "1:1 4:1: error: number of times that the program goes back is above the limit 10000000");
+  CHECK(run("G0 X1\no1 while [1]\n#1=2\no1 endwhile\n", 1000) ==
+        "1:1 4:1: error: number of times that the program goes back is above the limit 1000");
 }
 
 TEST_CASE("all problems of a program with parameters are told, at their columns") {
