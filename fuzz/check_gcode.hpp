@@ -6,12 +6,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "cncplan/gcode/diagnostic_text.hpp"
+#include "cncplan/gcode/language/program_lines.hpp"
 #include "cncplan/gcode/read_program.hpp"
 #include "cncplan/gcode/writer.hpp"
 
@@ -47,6 +49,7 @@ inline const std::array<gcode::Dialect, 3>& dialects() {
 /// A motion without its place in the text.
 inline gcode::Motion placeless(gcode::Motion motion) {
   motion.line = motion.column = 0;
+  motion.tool_radius = 0.0;  // a programmed path is written as it is
   return motion;
 }
 
@@ -78,6 +81,36 @@ inline void check_recovery(std::string_view text, const gcode::Dialect& dialect)
       });
 }
 
+/// Runs the bytes as a program with parameters, that may call itself as a file too: it ends, what comes out
+/// is finite, and every error has a place and a sentence.
+inline void check_language(std::string_view text, const gcode::Dialect& dialect) {
+  gcode::Reader reader(dialect);
+  gcode::TextLines source(text);
+  constexpr int patience = 1000;
+  gcode::ProgramLines lines(
+      source, reader,
+      [text](std::string_view name) {
+        return std::optional(gcode::ProgramFile{std::string(name), std::string(text)});
+      },
+      patience);
+  int steps = 0;
+  gcode::read_program(
+      lines, reader,
+      [&](const gcode::Item& item) {
+        if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
+          require(finite(*motion), "numbers of the language are finite");
+          require(motion->line >= 1, "a motion has its line");
+        }
+        return ++steps < patience;
+      },
+      [&](const gcode::Diagnostic& problem) {
+        require(problem.line >= 0 && problem.column >= 1, "an error of the language has its place");
+        require(problem.column <= static_cast<int>(gcode::max_line_length) + 1, "and that is within a line");
+        require(!gcode::to_text(problem).empty(), "and a sentence");
+        return ++steps < patience;
+      });
+}
+
 /// Reads the bytes line by line: no more items on a line than promised, every number finite, motions joined
 /// end to start, every error within its line and with a sentence. What was read can be written and read
 /// again, to the same motions bit for bit as long as the offset does not change.
@@ -85,6 +118,7 @@ inline void check_gcode(std::string_view bytes) {
   if (bytes.empty()) return;
   const gcode::Dialect& dialect = dialects()[static_cast<unsigned char>(bytes[0]) % dialects().size()];
   check_recovery(bytes.substr(1), dialect);
+  check_language(bytes.substr(1), dialect);
   gcode::Reader reader(dialect);
   gcode::TextLines lines(bytes.substr(1));
   std::array<gcode::Item, gcode::max_items_per_line> items;

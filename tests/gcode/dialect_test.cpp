@@ -147,6 +147,16 @@ TEST_CASE("controls differ in what a dwell counts and where a cycle goes back to
   CHECK(reading.motions().back().end[2] == 9);
   CHECK(test::read("G0 Z9\nG82 X1 Z-1 R2 P.5 F1\n").motions().back().end[2] == 2);
   CHECK_FALSE(gcode::find_control("Fanuc"));
+  const auto words = test::read("M29 S100\nM41\n", dialect).all<gcode::Word>();
+  REQUIRE(words.size() == 3);
+  CHECK(words[0].number == 29);
+  CHECK_FALSE(test::read("M29 S100\n").error.empty());
+  Dialect absolute;
+  absolute.incremental_center = false;
+  const auto arcs = test::read("G0 X10\nG2 X20 I15 J0 F1\nG91.1 X30 I5\n", absolute).motions();
+  REQUIRE(arcs.size() == 3);
+  CHECK(arcs[1].center[0] == 15.0);
+  CHECK(arcs[2].center[0] == 25.0);
   for (const gcode::Control& control : gcode::controls) CHECK(gcode::validate(gcode::with({}, control)));
   std::string text;
   gcode::Writer writer(dialect);

@@ -7,7 +7,9 @@
 #include <sstream>
 #include <string>
 
-#include "gcode/support.hpp"
+#include "cncplan/gcode/diagnostic_text.hpp"
+#include "cncplan/gcode/language/program_lines.hpp"
+#include "cncplan/gcode/read_program.hpp"
 #include "support/catch.hpp"
 #include "support/program_run.hpp"
 
@@ -35,15 +37,18 @@ class Steps {
 
 std::string ours(const std::string& program) {
   Steps steps;
-  const auto reading = test::read(program);
-  for (const gcode::Item& item : reading.items) {
+  gcode::Reader reader;
+  gcode::TextLines text(program);
+  gcode::ProgramLines lines(text, reader);
+  const auto done = gcode::read_program(lines, reader, [&steps](const gcode::Item& item) {
     if (const auto* dwell = std::get_if<gcode::Dwell>(&item)) steps.dwell(dwell->seconds);
     const auto* motion = std::get_if<gcode::Motion>(&item);
-    if (motion == nullptr) continue;
+    if (motion == nullptr) return;
     const auto at = [motion](std::size_t i) { return motion->end[i] + motion->offset[i]; };
-    steps.place(motion->kind == gcode::MotionKind::rapid ? "rapid" : "feed", {at(0), at(1), at(2)});
-  }
-  return steps.text() + reading.error;
+    const char* const names[] = {"rapid", "feed", "arc", "arc"};
+    steps.place(names[static_cast<int>(motion->kind)], {at(0), at(1), at(2)});
+  });
+  return steps.text() + (done ? std::string() : gcode::to_text("", done.error()));
 }
 
 std::string theirs(const std::string& printed) {
@@ -55,13 +60,15 @@ std::string theirs(const std::string& printed) {
     const auto is = [&](const char* name) { return line.find(name) != std::string::npos; };
     const std::size_t open = line.find('(');
     if (open == std::string::npos) continue;
-    std::array<double, 4> v{};
-    std::sscanf(line.c_str() + open, "(%lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3]);
+    std::array<double, 6> v{};
+    std::sscanf(line.c_str() + open, "(%lf, %lf, %lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3], &v[4],
+                &v[5]);
     if (is("USE_LENGTH_UNITS")) unit = is("INCHES") ? 25.4 : 1.0;
     if (is("SET_G5X_OFFSET")) system = Vector3(v[1], v[2], v[3]) * unit;
     if (is("SET_G92_OFFSET")) shift = Vector3(v[0], v[1], v[2]) * unit;
     if (is("USE_TOOL_LENGTH_OFFSET")) tool = Vector3(v[0], v[1], v[2]) * unit;
     if (is("DWELL")) steps.dwell(v[0]);
+    if (is("ARC_FEED")) steps.place("arc", Vector3(v[0], v[1], v[5]) * unit + system + shift + tool);  // G17
     if (is("STRAIGHT_"))
       steps.place(is("TRAVERSE") ? "rapid" : "feed",
                   Vector3(v[0], v[1], v[2]) * unit + system + shift + tool);
@@ -69,13 +76,28 @@ std::string theirs(const std::string& printed) {
   return steps.text();
 }
 
+/// Compares a program behind a common head, where rs274 is there.
+void compare(const char* program) {
+  INFO(program);
+  const std::string text = std::string("G21 G17 G90 G94 M3 S1000 F100\nG0 X0 Y0 Z10\n") + program + "M2\n";
+  const test::TemporaryFolder folder;
+  folder.write("part.ngc", text);
+  folder.write("tools.tbl", "T1 P1 Z0\n");
+  folder.write("none.var", "");
+  REQUIRE(folder.run_program("rs274", "-g -n 0 -t tools.tbl -v none.var part.ngc out.txt").exit == 0);
+  CHECK(ours(text) == theirs(folder.read("out.txt")));
+}
+
+bool interpreter_is_there() {
+  if (std::system("command -v rs274 >/dev/null 2>&1") == 0) return true;
+  WARN("SKIPPED: rs274 (linuxcnc-uspace) is not installed");
+  return false;
+}
+
 }  // namespace
 
 TEST_CASE("cycles, offsets and diameters as LinuxCNC's interpreter has them") {
-  if (std::system("command -v rs274 >/dev/null 2>&1") != 0) {
-    WARN("SKIPPED: rs274 (linuxcnc-uspace) is not installed");
-    return;
-  }
+  if (!interpreter_is_there()) return;
   for (const char* program : {
            "G98 G81 X1 Y2 Z-3 R2\nX5\nG99 X7 Y3\nG98 X9\nG80 G0 Z0\nG81 X1 Z-2 R1\n",
            "G82 Z-4 P.5 X10 R3\nY5\nG91 G83 X1 Y1 Z-5 R-2 Q2 L3\nX1\n",
@@ -85,13 +107,47 @@ TEST_CASE("cycles, offsets and diameters as LinuxCNC's interpreter has them") {
            "G10 L2 P2 X5 Y6 Z7\nG55 G0 X1 Y1 Z1\nG10 L20 P0 X100 Y100\nG0 X101\nG54 X3 Y3 Z3\n"
            "G10 L20 P1 X0 Y0\nG0 X1\nG10 L2 P1 X1 Y1 Z1\nG1 X9\nG92 X0\nG1 X1\nG92.1\nG1 X1\n",
            "G7 X8 Z1\nG8 X8\nG7 G91 X2\n",
-       }) {
-    INFO(program);
-    const std::string text = std::string("G21 G17 G90 G94 M3 S1000 F100\nG0 X0 Y0 Z10\n") + program + "M2\n";
-    const test::TemporaryFolder folder;
-    folder.write("part.ngc", text);
-    folder.write("tools.tbl", "T1 P1 Z0\n");
-    REQUIRE(folder.run_program("rs274", "-g -n 0 -t tools.tbl -v none.var part.ngc out.txt").exit == 0);
-    CHECK(ours(text) == theirs(folder.read("out.txt")));
-  }
+       })
+    compare(program);
+}
+
+TEST_CASE("parameters, expressions and O-words as LinuxCNC's interpreter has them") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "#1=[1+2*3**2] #2=[2**3**2]\nX#1 Y#2 Z[-2**2]\nX[-7 MOD 3] Y[7 mod -3] Z[1 OR 0 AND 0]\n",
+           "X[sin[30]] Y[cos[60]] Z[tan[45]]\nX[asin[.5]] Y[acos[-.5]] Z[atan[1]/[-2]]\n",
+           "X[round[-2.5]] Y[fix[-2.8]] Z[fup[-2.8]]\nX[exp[1]] Y[ln[3]] Z[sqrt[abs[-9]]]\n",
+           "#1=15\n#1=6 X#1\nX#1 Y-#1 Z+#1\n#<a b>=3 #<_g>=4\nX#<ab> Y[-#<_g>] Z##1\n#6=2\nZ##1\n",
+           "o1 sub\n#1=[#1+1] #31=#2\no2 if [#1 gt 3]\no1 return [#1]\no2 elseif [#1 eq 3]\nX#1\no2 "
+           "else\nY#1\n"
+           "o2 endif\no1 call [#1]\no1 endsub\n#1=7\no1 call [0] [5]\nX#<_value> Y#31 Z#1\n",
+           "#1=0\no1 while [#1 lt 5]\n#1=[#1+1]\no2 if [#1 eq 2]\no1 continue\no2 endif\no3 if [#1 eq 4]\no1 "
+           "break\n"
+           "o3 endif\nX#1\no1 endwhile\n",
+           "#1=3\no4 do\n#1=[#1-1]\nY#1\no4 while [#1 gt 0]\no5 repeat [3]\nG91 Z1\no5 "
+           "endrepeat\n",
+           "G20 X1\nG92 X3\nX[#5420+1] Y-2\nX[#<_x>*2] Z#<_metric>\nG21 X#5420\nG10 L2 P2 X4\nG55 "
+           "Y#5220\n"
+           "G91.1 G1 F33 X#<_feed> Y[#<_motion_mode>/10]\nZ[#<_plane>/10]\n",
+           "#2=3\nG[#2-2] X1\nG0 X[1 EQ 1.0000001] Y[2 NE 2] Z[3 GE 3]\nX[1 XOR 1] Y[1 LT 2] Z[1 LE 0]\n",
+           "M98 P100 L2\nX50\nM30\no100\n#1=[#1+1]\nX#1\nM99\n",
+       })
+    compare(program);
+}
+
+TEST_CASE("cutter compensation as LinuxCNC's interpreter has it") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "G41.1 D4 G1 X0 Y10\nY20\nX10\nX10 Y10\nG40 X0 Y0\n",
+           "G42.1 D4 G1 X0 Y10\nY20\nX10 Z-1\nZ-2\nX10 Y10\nX20 Y30\nG40\nX0 Y0\n",
+           "G41.1 D4 G1 X0 Y10\nG3 X20 Y10 I10 J0\nG1 X30 Y30\nG2 X50 Y30 R10\nG3 X60 Y40 I0 J10\nG1 X60 "
+           "Y60\n"
+           "G40 G0 X0\n",
+           "G42.1 D4 G1 X0 Y10\nG3 X20 Y10 I10 J0\nG1 X30 Y30\nG2 X50 Y30 R10\nG3 X60 Y40 I0 J10\n"
+           "G2 X60 Y60 R20\nG40 G0 X0\n",
+           "G41.1 D4\nG3 X10 Y10 I0 J10\nG3 X10 Y10 I-10 J0\nG1 Y20\nG0 X20\nG4 P1\nG0 X20 Y50\nG40 X0\n",
+           "G41.1 D4 G1 X10 Y0\nX15\nX5\nG40 Y9\n",
+           "G20 G42.1 D.25 G1 X1 Y1\nG2 X2 Y2 I1\nG1 X4\nG3 X4 Y4 J1\nG1 X1 Y2.5\nG40 X0 Y0\n",
+       })
+    compare(program);
 }

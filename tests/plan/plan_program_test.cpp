@@ -10,6 +10,7 @@
 
 #include "support/catch.hpp"
 #include "support/curves.hpp"
+#include "support/program_run.hpp"
 #include "support/shared.hpp"
 
 using namespace cncplan;
@@ -310,4 +311,37 @@ TEST_CASE("a feed of rotary axes alone counts degrees a minute, in inches too") 
     INFO(program);
     CHECK(trajectory->blocks().front().peak == Approx(10.0 * gcode::radians_per_degree).epsilon(1e-12));
   }
+}
+
+TEST_CASE("a program with parameters plans as the flat one", "[program]") {
+  const auto with = plan_text(
+      "#<r>=5\nG1 F600 X[#<r>*2]\no1 repeat [2]\nG3 X[#5420-2*#<r>] I-#<r>\nG1 X[#5420+2*#<r>]\no1 "
+      "endrepeat\n",
+      mill);
+  const auto flat = plan_text("\nG1 F600 X10\n\nG3 X0 I-5\nG1 X10\nG3 X0 I-5\nG1 X10\n", mill);
+  REQUIRE(with);
+  REQUIRE(flat);
+  REQUIRE(with->blocks().size() == flat->blocks().size());
+  CHECK(with->duration() == flat->duration());
+  CHECK(error_of("G1 F600\no1 if [1]\nX[1/0]\no1 endif\n", mill) == "3:4: error: / is not a finite number");
+}
+
+TEST_CASE("a file calls the files of its folder, and errors name the file", "[program]") {
+  const test::TemporaryFolder folder;
+  folder.write("part.ngc", "G1 F600 X1\no<side> call [4]\nX20\no<far> call\n");
+  folder.write("side.ngc", "o<side> sub\nX#1\no<side> endsub\n");
+  folder.write("far.ngc", "o<far> sub\n\nX1000\no<far> endsub\n");
+  const auto planned = plan_file(folder / "part.ngc", mill);
+  REQUIRE(planned);
+  REQUIRE(planned->blocks().size() == 4);
+  Machine<3> small = mill;
+  small.axes[0].high = 100;
+  const auto refused = plan_file(folder / "part.ngc", small);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().file == (folder / "far.ngc").string());
+  CHECK(refused.error().about.line == 3);
+  folder.write("far.ngc", "o<far> sub\nX1 X2\no<far> endsub\n");
+  const auto wrong = plan_file(folder / "part.ngc", mill);
+  REQUIRE_FALSE(wrong);
+  CHECK(to_text(wrong.error()) == (folder / "far.ngc").string() + ":2:4: error: X: word given twice");
 }

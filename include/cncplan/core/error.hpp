@@ -47,6 +47,10 @@ enum class ErrorCode : std::uint8_t {
   unfinished,
   no_contact,
   no_subprogram,
+  not_defined,
+  read_only,
+  unclosed,
+  unmatched,
   count_,  // number of codes
 };
 
@@ -86,6 +90,10 @@ enum class ErrorCode : std::uint8_t {
       "is not finished",
       "goes to its end: no contact is known",
       "finds no subprogram here",
+      "is not defined",
+      "is set by the machine alone",
+      "has no end",
+      "belongs to nothing that is open",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -12,18 +12,23 @@ namespace cncplan::gcode {
 /// Where a control differs from LinuxCNC.
 struct Control {
   std::string_view name;
-  double dwell_unit{};    ///< s that one of the P of G4 is
-  bool retract_to_r{};    ///< G99 at the start, else G98
-  double peck_clearance;  ///< mm, of G73 and G83
+  double dwell_unit{};           ///< s that one of the P of G4 is
+  bool retract_to_r{};           ///< G99 at the start, else G98
+  double peck_clearance{};       ///< mm, of G73 and G83
+  bool incremental_center{};     ///< G91.1 at the start, else G90.1
+  std::array<int, 6> m_words{};  ///< M words of its own, which pass through; 0 for none
 };
 
-/// LinuxCNC 2.9 and grbl count dwells in seconds, Fanuc and Marlin in milliseconds. Peck clearances are
-/// LinuxCNC's where the control has a parameter of its own for it.
+/// LinuxCNC and grbl count dwells in seconds, Fanuc, Marlin and Mach3 in milliseconds; Mach3 can be set to
+/// seconds, and to absolute centres. Peck clearances are LinuxCNC's where the control has a parameter of its
+/// own for it. M words: grbl's parking; Fanuc's spindle orientation, rigid tapping and gears; Marlin's
+/// motors, fan and waiting.
 inline constexpr std::array controls{
-    Control{"linuxcnc", 1.0, true, 0.254},
-    Control{"grbl", 1.0, false, 0.254},
-    Control{"fanuc", 1e-3, false, 0.254},
-    Control{"marlin", 1e-3, false, 0.254},
+    Control{"linuxcnc", 1.0, true, 0.254, true, {}},
+    Control{"grbl", 1.0, false, 0.254, true, {56}},
+    Control{"fanuc", 1e-3, false, 0.254, true, {19, 29, 41, 42, 43, 44}},
+    Control{"marlin", 1e-3, false, 0.254, true, {17, 18, 84, 106, 107, 400}},
+    Control{"mach3", 1e-3, false, 0.254, true, {}},
 };
 
 /// The control of a name; none for one that is not known.
@@ -38,6 +43,9 @@ inline constexpr std::array controls{
   dialect.dwell_unit = control.dwell_unit;
   dialect.retract_to_r = control.retract_to_r;
   dialect.peck_clearance = control.peck_clearance;
+  dialect.incremental_center = control.incremental_center;
+  for (const int number : control.m_words)
+    if (number != 0) dialect.pass_through.push_back({'M', static_cast<double>(number)});
   return dialect;
 }
 

@@ -27,10 +27,11 @@ struct Axis {
   friend bool operator==(const Axis&, const Axis&) = default;
 };
 
-/// Length of a tool, mm; it shifts Z under G43.
+/// A tool; its length shifts Z under G43.
 struct Tool {
   int number{};
-  double length{};
+  double length{};    ///< mm
+  double diameter{};  ///< mm
 
   friend bool operator==(const Tool&, const Tool&) = default;
 };
@@ -56,11 +57,12 @@ struct Dialect {
   std::array<Position, work_systems> work_offsets{};  ///< machine coordinates of each system's origin
   Position home_g28{};                                ///< machine coordinates
   Position home_g30{};                                ///< machine coordinates
-  Plane g18 = Plane::zx;          ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
-  double peck_clearance = 0.254;  ///< mm that G73 goes back, and that G83 stays above the bottom
-  double dwell_unit = 1.0;        ///< s that one of the P of G4 and of the cycles is
-  bool retract_to_r = true;       ///< G99 holds at the start; false: G98
-  bool block_delete = true;       ///< lines that begin with / are left out
+  Plane g18 = Plane::zx;           ///< what G18 selects: `zx`, or `xz_printed` for KK22's table
+  double peck_clearance = 0.254;   ///< mm that G73 goes back, and that G83 stays above the bottom
+  double dwell_unit = 1.0;         ///< s that one of the P of G4 and of the cycles is
+  bool incremental_center = true;  ///< G91.1 holds at the start; false: G90.1
+  bool retract_to_r = true;        ///< G99 holds at the start; false: G98
+  bool block_delete = true;        ///< lines that begin with / are left out
 
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };
@@ -94,6 +96,13 @@ inline constexpr std::size_t max_set_tools = 64;
   return 0.0;
 }
 
+/// mm; 0 of a tool that the table lacks.
+[[nodiscard]] inline double tool_diameter(const Dialect& dialect, int number) {
+  for (const Tool& tool : dialect.tools)
+    if (tool.number == number) return tool.diameter;
+  return 0.0;
+}
+
 /// Letters that mean something of their own, and cannot name an axis.
 inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
 
@@ -117,6 +126,7 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
   }
   for (const Tool& tool : dialect.tools) {
     if (!std::isfinite(tool.length)) return fail(ErrorCode::not_finite, "tool length", tool.length);
+    if (!std::isfinite(tool.diameter)) return fail(ErrorCode::not_finite, "tool diameter", tool.diameter);
     if (tool.length != 0.0 && (seen & bit('Z')) == 0) return fail(ErrorCode::missing_word, "Z");
   }
   for (const PassThrough& passed : dialect.pass_through) {

@@ -48,10 +48,17 @@ namespace detail {
 
 }  // namespace detail
 
+/// Can go back to where a line began. A place counts bytes from the start; `seek` says whether it is there.
+template <class L>
+concept SeekableLines = LineSource<L> && requires(std::remove_reference_t<L>& lines, std::size_t place) {
+  { lines.place() } -> std::same_as<std::size_t>;
+  { lines.seek(place) } -> std::same_as<bool>;
+};
+
 /// The lines of a text, which end at LF, CR, CR LF or CR CR LF. The last one needs no end.
 class TextLines {
  public:
-  constexpr explicit TextLines(std::string_view text) : rest_(text) {}
+  constexpr explicit TextLines(std::string_view text) : text_(text), rest_(text) {}
 
   [[nodiscard]] constexpr std::optional<std::string_view> next() {
     if (rest_.empty()) return std::nullopt;
@@ -61,10 +68,19 @@ class TextLines {
     return line;
   }
 
+  /// Of the line that comes next.
+  [[nodiscard]] constexpr std::size_t place() const { return text_.size() - rest_.size(); }
+  constexpr bool seek(std::size_t place) {
+    if (place > text_.size()) return false;
+    rest_ = text_.substr(place);
+    return true;
+  }
+
  private:
+  std::string_view text_;
   std::string_view rest_;
 };
 
-static_assert(LineSource<TextLines>);
+static_assert(SeekableLines<TextLines>);
 
 }  // namespace cncplan::gcode

@@ -108,6 +108,10 @@ inline constexpr CodeEntry g_codes[] = {
     {20, Group::units},
     {21, Group::units},
     {40, Group::compensation},
+    {41, Group::compensation, "D"},
+    {41.1, Group::compensation, "DL", "D"},
+    {42, Group::compensation, "D"},
+    {42.1, Group::compensation, "DL", "D"},
     {43, Group::tool_length, "H"},
     {43.1, Group::tool_length},
     {49, Group::tool_length},
@@ -222,6 +226,7 @@ struct Modal {
   PathMode path_mode = PathMode::continuous;
   std::optional<double> tolerance{};  ///< mm, of G64 P
   double merge_tolerance = 0.0;       ///< mm, of G64 Q
+  Code compensation = 400;            ///< G40 to G42.1
 
   friend bool operator==(const Modal&, const Modal&) = default;
 };

@@ -46,6 +46,7 @@ struct Motion {
   Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
   bool probe{};                      ///< G38.2 to G38.5: the end is where it goes without contact
   int extra_turns{};                 ///< whole turns more than the arc itself: P - 1
+  double tool_radius{};  ///< mm, under cutter compensation; > 0: the tool is to the left, < 0: right
   /// mm/s, degrees/s where only rotary axes move, 1/s under inverse time; none for rapids and before the
   /// first F
   std::optional<double> feed{};

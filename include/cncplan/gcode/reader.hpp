@@ -5,15 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/gcode/block.hpp"
-#include "cncplan/gcode/canned_cycle.hpp"
+#include "cncplan/gcode/cycles.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/modal.hpp"
@@ -21,14 +19,12 @@
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/spindle.hpp"
+#include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
 inline constexpr std::size_t max_items_per_line = max_passed + 19;
-
-/// Radians per degree, the unit of rotary axes in the text.
-inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -44,15 +40,13 @@ class Reader {
       : readable_(validate(dialect).map([](const Dialect&) {})),
         dialect_(readable_ ? dialect : Dialect{}),
         alphabet_(dialect_),
-        machine_(start) {
+        place_(dialect_, start) {
     modal_.retract_to_r = dialect_.retract_to_r;
+    modal_.incremental_center = dialect_.incremental_center;
     dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
-    offset_ = dialect_.work_offsets[0];
-    for (std::size_t i = 0; i < axis_count(); ++i) {
-      current_[i] = machine_[i] - offset_[i];
-      if (readable_ && !std::isfinite(machine_[i]))
-        readable_ = tl::unexpected(Error{ErrorCode::not_finite, "start", machine_[i], 0.0});
-    }
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (readable_ && !std::isfinite(start[i]))
+        readable_ = tl::unexpected(Error{ErrorCode::not_finite, "start", start[i], 0.0});
   }
 
   /// Reads one line (without its end; carriage returns there are passed over) and writes its items in the
@@ -61,7 +55,7 @@ class Reader {
   /// lines are only counted.
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
-    if (cycle_.busy())
+    if (cycles_.busy())
       return tl::unexpected(Diagnostic{{ErrorCode::unfinished, "canned cycle", 0.0, 0.0}, line_ + 1, 1});
     ++line_;
     if (!readable_) return tl::unexpected(Diagnostic{readable_.error(), line_, 1});
@@ -72,13 +66,13 @@ class Reader {
   }
 
   /// Whether items of the last line are to come.
-  [[nodiscard]] bool busy() const { return cycle_.busy(); }
+  [[nodiscard]] bool busy() const { return cycles_.busy(); }
 
   /// The next of them, at most `max_items_per_line`.
   template <std::output_iterator<Item> Out>
   Out go_on(Out out) {
     const auto emit = emitter(out);
-    if (const auto step = cycle_.next()) drill(*step, emit);
+    if (const auto step = cycles_.next()) drill(*step, emit);
     return out;
   }
 
@@ -107,9 +101,19 @@ class Reader {
   /// Number of the line that is read next: of a source that goes through its lines in another order.
   void set_line(int number) { line_ = number - 1; }
   /// Where the program stands, in work coordinates.
-  [[nodiscard]] const Position& position() const { return current_; }
+  [[nodiscard]] const Position& position() const { return place_.current(); }
   /// What takes work to machine coordinates.
-  [[nodiscard]] const Position& offset() const { return offset_; }
+  [[nodiscard]] const Position& offset() const { return place_.offset(); }
+  /// The state that programs may ask for (language/machine_parameters.hpp).
+  [[nodiscard]] const Dialect& dialect() const { return dialect_; }
+  [[nodiscard]] const Modal& modal() const { return modal_; }
+  [[nodiscard]] const WorkCoordinates& place() const { return place_; }
+  [[nodiscard]] const Spindle& spindle() const { return spindle_; }
+  /// Number of the tool that T has selected, and of the one in the spindle.
+  [[nodiscard]] int selected_tool() const { return selected_tool_; }
+  [[nodiscard]] int loaded_tool() const { return loaded_tool_; }
+  /// Where the last probing motion ended, in work coordinates; none before the first.
+  [[nodiscard]] const std::optional<Position>& probed() const { return probed_; }
 
  private:
   template <class Out>
@@ -138,6 +142,8 @@ class Reader {
     const Modal modal = after(block_, modal_, dialect_.g18);
     const auto motion = resolve(block_, modal, alphabet_, modal_.motion);
     if (!motion) return tl::unexpected(motion.error());
+    if (auto ok = detail::check_compensation(block_, modal_, modal, alphabet_, *motion); !ok)
+      return tl::unexpected(ok.error());
     if (auto ok = check_state(modal, *motion); !ok) return tl::unexpected(ok.error());
     modal_ = modal;
     words_seen_ = true;
@@ -150,7 +156,7 @@ class Reader {
   /// Goes where the axis words lead, in silence.
   void follow() {
     if (!modal_.incremental) doubtful_ &= ~block_.letters();
-    arrive(target());
+    place_.arrive(target());
   }
 
   /// The first % stands before the program, the next one ends it.
@@ -202,6 +208,7 @@ class Reader {
     for (const Group group : {Group::polar, Group::scaling, Group::rotation}) name_once(group, emit);
     const Code non_modal = block_.code(Group::non_modal);
     if (non_modal == code(4)) emit(Dwell{block_.number('P') * dialect_.dwell_unit, line_});
+    if (block_.has(Group::compensation)) compensate();
     if (block_.has(Group::tool_length)) set_tool_length();
     if (block_.has(Group::coordinates)) select_work_system();
     if (block_.code(Group::path_control) == code(64) && (block_.has('P') || block_.has('Q')) &&
@@ -214,11 +221,11 @@ class Reader {
     if (non_modal == code(28)) home(dialect_.home_g28, emit);
     if (non_modal == code(30)) home(dialect_.home_g30, emit);
     if (non_modal >= code(92) && non_modal <= code(92.3)) shift(non_modal);
-    if (!is_cycle(motion) && motion != no_code) level_.reset();
+    if (!is_cycle(motion) && motion != no_code) cycles_.end_series();
     if (is_arc(motion)) {
       turn(motion, emit);
     } else if (is_cycle(motion)) {
-      begin_cycle(motion);
+      cycles_.begin(block_, modal_, dialect_, motion, position(), named_coordinates());
     } else if (motion != no_code) {
       straight(motion, non_modal == code(53) ? machine_target() : target(), emit);
     }
@@ -277,35 +284,27 @@ class Reader {
     return block_.number(letter) * (modal_.diameter && letter == 'X' ? unit / 2.0 : unit);
   }
 
-  /// A coordinate that some word names: the radians of a rotary axis are those of a number of degrees, sums
-  /// too, so that whatever was read can be written again.
-  [[nodiscard]] double nameable(std::size_t axis, double coordinate) const {
-    return dialect_.axes[axis].kind == AxisKind::linear
-               ? coordinate
-               : coordinate / radians_per_degree * radians_per_degree;
-  }
-
-  /// An axis of a target. Nearer than the roundings that changes of offset have left is where the axis
-  /// already is: no motion, and the full circle that was meant.
-  [[nodiscard]] double meet(std::size_t axis, double coordinate) const {
-    const double target = nameable(axis, coordinate);
-    return std::abs(target - current_[axis]) <= rounding_[axis] ? current_[axis] : target;
+  [[nodiscard]] NamedCoordinates named_coordinates() const {
+    NamedCoordinates named;
+    const std::size_t count = std::min<std::size_t>(axis_count(), max_axes);
+    for (std::size_t i = 0; i < count; ++i) named[i] = coordinate(i);
+    return named;
   }
 
   /// Where the axis words lead, in work coordinates.
   [[nodiscard]] Position target() const {
-    Position end = current_;
+    Position end = position();
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (const auto value = coordinate(i))
-        end[i] = meet(i, modal_.incremental ? current_[i] + *value : *value);
+        end[i] = place_.meet(i, modal_.incremental ? position()[i] + *value : *value);
     return end;
   }
 
   /// Where they lead as machine coordinates (G53), in work coordinates.
   [[nodiscard]] Position machine_target() const {
-    Position end = current_;
+    Position end = position();
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i)) end[i] = meet(i, *value - offset_[i]);
+      if (const auto value = coordinate(i)) end[i] = place_.meet(i, *value - offset()[i]);
     return end;
   }
 
@@ -317,9 +316,10 @@ class Reader {
     motion.exact_stop = modal_.path_mode != PathMode::continuous;
     motion.tolerance = modal_.tolerance;
     motion.merge_tolerance = modal_.merge_tolerance;
-    motion.start = current_;
+    motion.start = position();
     motion.end = end;
-    motion.offset = offset_;
+    motion.offset = offset();
+    motion.tool_radius = tool_radius_;
     motion.line = line_;
     return motion;
   }
@@ -343,61 +343,8 @@ class Reader {
         dialect_.tools.size() == dialect_.tools.capacity() &&
         find_tool(static_cast<int>(block_.number('P'))) == nullptr)
       return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
-    if (!is_cycle(motion)) return {};
-    const CycleWords words = cycle_words(modal);
-    const auto [r, bottom] = cycle_heights(words, modal);
-    const auto at = [this](char letter) {
-      return std::max(1, block_.first_column(block_.has(letter) ? bit(letter) : bits("RXYZ")));
-    };
-    if (r < bottom) return tl::unexpected(Diagnostic{{ErrorCode::below_limit, "R", r, bottom}, 0, at('R')});
-    const double rounding =
-        4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(r), std::abs(bottom));
-    const double shortest = std::max((r - bottom) / max_pecks, rounding);
-    if (is_peck(motion) && words.peck < shortest)
-      return tl::unexpected(Diagnostic{{ErrorCode::below_limit, "Q", words.peck, shortest}, 0, at('Q')});
-    return {};
-  }
-
-  /// The words of a cycle, with those of the line before where this one has none.
-  [[nodiscard]] CycleWords cycle_words(const Modal& modal) const {
-    const char depth = "XYZ"[axes(modal.plane).third];
-    CycleWords words = cycle_words_;
-    const double unit = modal.millimetres_per_unit;
-    const double depth_unit = modal.diameter && depth == 'X' ? unit / 2.0 : unit;
-    if (block_.has('R')) words.r = block_.number('R') * unit;
-    if (block_.has(depth)) words.depth = block_.number(depth) * depth_unit;
-    if (block_.has('P')) words.dwell = block_.number('P') * dialect_.dwell_unit;
-    if (block_.has('Q')) words.peck = block_.number('Q') * unit;
-    return words;
-  }
-
-  /// R and the bottom of the hole in work coordinates; in increments R is from the height at which the cycle
-  /// began, and the bottom from R.
-  [[nodiscard]] std::pair<double, double> cycle_heights(const CycleWords& words, const Modal& modal) const {
-    if (!modal.incremental) return {words.r, words.depth};
-    const auto third = static_cast<std::size_t>(axes(modal.plane).third);
-    const double r = level_.value_or(current_[third]) + words.r;
-    return {r, r + words.depth};
-  }
-
-  void begin_cycle(Code motion) {
-    cycle_words_ = cycle_words(modal_);
-    const auto [first, second, third] = axes(modal_.plane);
-    const auto at = [](int axis) { return static_cast<std::size_t>(axis); };
-    if (!level_) level_ = current_[at(third)];
-    const auto [r, bottom] = cycle_heights(cycle_words_, modal_);
-    CannedCycle::Holes holes{.first = current_[at(first)], .second = current_[at(second)]};
-    const auto place = [&](int axis, double& start, double& step) {
-      const auto value = coordinate(at(axis));
-      if (value && modal_.incremental) step = *value;
-      if (value && !modal_.incremental) start = *value;
-    };
-    place(first, holes.first, holes.first_step);
-    place(second, holes.second, holes.second_step);
-    if (block_.has('L')) holes.count = static_cast<int>(block_.number('L'));
-    const double clear = modal_.retract_to_r ? r : std::max(r, *level_);
-    cycle_ = CannedCycle(motion, holes, {*level_, current_[at(third)], r, bottom, clear}, cycle_words_.peck,
-                         dialect_.peck_clearance, cycle_words_.dwell);
+    return is_cycle(motion) ? cycles_.check(block_, modal, dialect_, motion, position())
+                            : Expected<void, Diagnostic>();
   }
 
   template <class Emit>
@@ -411,10 +358,10 @@ class Reader {
       return;
     }
     const auto [first, second, third] = axes(modal_.plane);
-    Position end = current_;
+    Position end = position();
     const auto set = [&](int axis, double coordinate) {
       const auto i = static_cast<std::size_t>(axis);
-      end[i] = meet(i, coordinate);
+      end[i] = place_.meet(i, coordinate);
     };
     set(third, step.third);
     if (step.kind != Kind::lift) {
@@ -424,14 +371,9 @@ class Reader {
     straight(step.kind == Kind::feed ? code(1) : code(0), end, emit);
   }
 
-  void arrive(const Position& end) {
-    current_ = end;
-    for (std::size_t i = 0; i < axis_count(); ++i) machine_[i] = end[i] + offset_[i];
-  }
-
   template <class Emit>
   void straight(Code code_of_motion, const Position& end, Emit& emit) {
-    if (end == current_) return;
+    if (end == position()) return;
     Motion motion = motion_to(end);
     motion.kind = code_of_motion == code(0) ? MotionKind::rapid : MotionKind::line;
     motion.probe = is_probe(code_of_motion);
@@ -441,10 +383,11 @@ class Reader {
                     line_,
                     block_.first_column(alphabet_.axes)}});
     }
+    if (motion.probe) probed_ = end;
     if (motion.kind == MotionKind::line) motion.feed = feed(motion);
     motion.column = block_.first_column(alphabet_.axes);
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
-    arrive(end);
+    place_.arrive(end);
     if (doubtful_ == 0) emit(motion);
   }
 
@@ -460,7 +403,7 @@ class Reader {
       motion.column = block_.column('R');
     } else {
       motion.kind = MotionKind::arc_center;
-      motion.center = Vector3(current_[0], current_[1], current_[2]);
+      motion.center = Vector3(position()[0], position()[1], position()[2]);
       const auto [first, second, third] = axes(modal_.plane);
       for (const int axis : {first, second}) {
         const char letter = center_letter(axis);
@@ -469,7 +412,7 @@ class Reader {
       }
       motion.column = block_.first_column(bits("IJK"));
     }
-    arrive(motion.end);
+    place_.arrive(motion.end);
     if (doubtful_ == 0) emit(motion);
   }
 
@@ -478,9 +421,9 @@ class Reader {
   void home(const Position& machine, Emit& emit) {
     straight(code(0), target(), emit);
     const bool all = (block_.letters() & alphabet_.axes) == 0;
-    Position end = current_;
+    Position end = position();
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (all || block_.has(dialect_.axes[i].letter)) end[i] = meet(i, machine[i] - offset_[i]);
+      if (all || block_.has(dialect_.axes[i].letter)) end[i] = place_.meet(i, machine[i] - offset()[i]);
     straight(code(0), end, emit);
   }
 
@@ -494,19 +437,14 @@ class Reader {
           set_length(number, *value);
       return;
     }
-    const std::size_t system = number == 0 ? work_system_ : static_cast<std::size_t>(number - 1);
-    for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i))
-        dialect_.work_offsets[system][i] =
-            block_.number('L') == 2.0 ? *value : machine_[i] - shift_[i] - tool_[i] - *value;
-    update_offset();
+    place_.set_origin(number, named_coordinates(), block_.number('L') == 20.0);
   }
 
   void set_length(int number, double length) {
     if (Tool* const tool = find_tool(number))
       tool->length = length;
     else
-      dialect_.tools.push_back({number, length});  // room for it is reserved, and checked
+      dialect_.tools.push_back({number, length, 0.0});  // room for it is reserved, and checked
   }
 
   [[nodiscard]] Tool* find_tool(int number) {
@@ -517,55 +455,37 @@ class Reader {
 
   void set_tool_length() {
     const Code how = block_.code(Group::tool_length);
-    if (how == code(43.1)) {
-      for (std::size_t i = 0; i < axis_count(); ++i)
-        if (const auto value = coordinate(i)) tool_[i] = *value;
-    } else {
-      const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
-      tool_ = {};
-      for (std::size_t i = 0; i < axis_count(); ++i)
-        if (how == code(43) && dialect_.axes[i].letter == 'Z') tool_[i] = tool_length(dialect_, number);
-    }
-    update_offset();
+    if (how == code(43.1)) return place_.set_tool(named_coordinates());
+    const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
+    NamedCoordinates lengths;
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      lengths[i] = how == code(43) && dialect_.axes[i].letter == 'Z' ? tool_length(dialect_, number) : 0.0;
+    place_.set_tool(lengths);
+  }
+
+  /// G41, G42: the radius of tool D, or of the loaded one; G41.1, G42.1: half of D. A negative one changes
+  /// the side.
+  void compensate() {
+    const Code how = modal_.compensation;
+    const bool given = how == code(41.1) || how == code(42.1);
+    const int number = block_.has('D') && !given ? static_cast<int>(block_.number('D')) : loaded_tool_;
+    const double diameter =
+        given ? block_.number('D') * modal_.millimetres_per_unit : tool_diameter(dialect_, number);
+    const bool left = how == code(41) || how == code(41.1);
+    tool_radius_ = how == code(40) ? 0.0 : (left ? 0.5 : -0.5) * diameter;
   }
 
   /// G54 to G59 are 540, 550 ... 590; G59.1 to G59.3 are 591 to 593.
   void select_work_system() {
     const int tenths = block_.code(Group::coordinates);
-    const int place = (tenths - code(54)) / 10 + tenths % 10;
-    work_system_ = static_cast<std::size_t>(place);
-    update_offset();
+    place_.select(static_cast<std::size_t>((tenths - code(54)) / 10 + tenths % 10));
   }
 
-  /// G92: the present place gets the coordinates named. G92.1 forgets the shift, G92.2 suspends it, G92.3
-  /// restores it.
   void shift(Code how) {
-    if (how == code(92.1)) kept_shift_ = {};
-    if (how != code(92)) {
-      shift_ = how == code(92.3) ? kept_shift_ : Position{};
-      return update_offset();
-    }
-    Position named = current_;
-    for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i)) {
-        shift_[i] += current_[i] - *value;
-        named[i] = *value;
-      }
-    kept_shift_ = shift_;
-    update_offset();
-    current_ = named;  // to the last bit
-  }
-
-  /// The machine stays where it is; the work coordinates of that place change with the offset.
-  void update_offset() {
-    for (std::size_t i = 0; i < axis_count(); ++i) {
-      const double offset = nameable(i, dialect_.work_offsets[work_system_][i] + shift_[i] + tool_[i]);
-      if (offset == offset_[i]) continue;
-      const double scale = std::abs(machine_[i]) + std::abs(offset_[i]) + std::abs(offset);
-      rounding_[i] = std::max(rounding_[i], 8.0 * std::numeric_limits<double>::epsilon() * scale);
-      current_[i] = machine_[i] - offset;
-      offset_[i] = offset;
-    }
+    if (how == code(92)) return place_.shift_to(named_coordinates());
+    if (how == code(92.1)) return place_.forget_shift();
+    if (how == code(92.2)) return place_.suspend_shift();
+    place_.restore_shift();
   }
 
   Expected<void> readable_;
@@ -573,23 +493,16 @@ class Reader {
   Alphabet alphabet_;
   Block block_;
   Modal modal_;
-  Position current_{};  ///< in work coordinates
-  Position machine_{};  ///< what stays when the offset changes
-  Position offset_{};
-  Position rounding_{};  ///< what changes of offset may have left; 0 without any
-  Position shift_{};
-  Position kept_shift_{};
-  Position tool_{};
-  std::size_t work_system_{};
-  CannedCycle cycle_;
-  CycleWords cycle_words_;
-  std::optional<double> level_;  ///< height at which a row of cycles began
+  WorkCoordinates place_;
+  Cycles cycles_;
   Spindle spindle_;
   std::uint32_t named_{};  ///< groups whose codes have been named as without effect
   bool probe_told_{};
+  std::optional<Position> probed_;
   int selected_tool_{};
   int loaded_tool_{};
-  Letters doubtful_{};  ///< axes whose place a line in error left open
+  double tool_radius_{};  ///< of cutter compensation, as in `Motion`
+  Letters doubtful_{};    ///< axes whose place a line in error left open
   int line_{};
   bool percent_seen_{};
   bool words_seen_{};

@@ -78,6 +78,7 @@ inline void control_path(const Block& block, Modal& modal) {
   if (block.has(Group::path_control)) control_path(block, modal);
   if (block.has(Group::motion))
     modal.motion = block.code(Group::motion) == code(80) ? no_code : block.code(Group::motion);
+  if (block.has(Group::compensation)) modal.compensation = block.code(Group::compensation);
   if (block.has(Group::plane)) {
     const Code plane = block.code(Group::plane);
     modal.plane = plane == code(17) ? Plane::xy : plane == code(18) ? g18 : Plane::yz;
@@ -177,8 +178,9 @@ using Check = Expected<void, Diagnostic>;
 /// twice. `used` gets them.
 [[nodiscard]] inline Check take_words(const Block& block, Letters taken_by_motion, Letters& used) {
   Letters taken = taken_by_motion;
-  for (const Group group : {Group::non_modal, Group::tool_length, Group::path_control, Group::spindle_mode,
-                            Group::tool_change, Group::override_control, Group::input_output}) {
+  for (const Group group :
+       {Group::non_modal, Group::compensation, Group::tool_length, Group::path_control, Group::spindle_mode,
+        Group::tool_change, Group::override_control, Group::input_output}) {
     if (!block.has(group)) continue;
     const auto& [own, may, must] = facts(group, block.code(group));
     if (const Letters lacking = must & ~block.letters(); lacking != 0)
@@ -204,6 +206,33 @@ using Check = Expected<void, Diagnostic>;
     return tl::unexpected(
         block.error(ErrorCode::not_supported, static_cast<char>('A' + std::countr_zero(others))));
   return kind == 1.0 ? whole(block, 'P', 0, max_count) : whole(block, 'P', 0, work_systems);
+}
+
+/// Cutter compensation begins in XY or ZX, when it is off, with a tool that has no orientation; while it is
+/// on, only G0 to G3 move, and nothing shifts the coordinates.
+[[nodiscard]] inline Check check_compensation(const Block& block, const Modal& before, const Modal& modal,
+                                              const Alphabet& alphabet, Code motion) {
+  if (modal.compensation == code(40)) return {};
+  const double how = modal.compensation / 10.0;
+  if (block.has(Group::compensation)) {
+    const auto begin = block.error(ErrorCode::conflicting_words, Group::compensation);
+    if (before.compensation != code(40)) return conflict(begin, "G", before.compensation / 10.0);
+    if (!alphabet.has_arcs) return tl::unexpected(block.error(ErrorCode::not_supported, Group::compensation));
+    if (modal.plane == Plane::yz) return conflict(begin, "G", 19);
+    if (block.has('L') && block.number('L') != 0.0)
+      return tl::unexpected(block.error(ErrorCode::not_supported, 'L'));
+    if (modal.compensation == code(41) || modal.compensation == code(42))
+      return whole(block, 'D', 0, max_count);
+    return {};
+  }
+  for (const Group group : {Group::plane, Group::tool_length, Group::coordinates})
+    if (block.has(group)) return conflict(block.error(ErrorCode::conflicting_words, group), "G", how);
+  if (block.has(Group::non_modal) && block.code(Group::non_modal) != code(4))
+    return conflict(block.error(ErrorCode::conflicting_words, Group::non_modal), "G", how);
+  if (motion != no_code && motion > code(3))
+    return conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, std::max(1, block.column(Group::motion))},
+                    "G", how);
+  return {};
 }
 
 /// A feed where a feed move needs one.
@@ -306,8 +335,10 @@ using Check = Expected<void, Diagnostic>;
   const bool feeds =
       is_arc(motion) || is_cycle(motion) || ((motion == code(1) || is_probe(motion)) && axis_words != 0);
   if (feeds || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
+  const bool signed_diameter = block.has(Group::compensation);
   for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
-    if ((used & bit(letter)) != 0 && block.code(Group::input_output) < code(67))  // M67, M68: any Q
+    if ((used & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) &&
+        block.code(Group::input_output) < code(67))  // M67, M68: any Q
       if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
   for (const char letter : {'N', 'T', 'H'})
     if ((used & bit(letter)) != 0)

@@ -16,7 +16,7 @@ namespace cncplan::gcode {
 /// does not fit is cut there: it is longer than the reader accepts anyway, and the reader says so.
 class StreamLines {
  public:
-  explicit StreamLines(std::istream& stream) : stream_(stream) {}
+  explicit StreamLines(std::istream& stream) : stream_(stream), start_(stream.tellg()) {}
 
   StreamLines(const StreamLines&) = delete;  // two cannot share a stream
   StreamLines& operator=(const StreamLines&) = delete;
@@ -38,9 +38,28 @@ class StreamLines {
     }
   }
 
+  /// Of the line that comes next.
+  [[nodiscard]] std::size_t place() const { return before_ + begin_; }
+  /// False for a stream that cannot go there, as a pipe.
+  bool seek(std::size_t place) {
+    cut_ = false;
+    if (place >= before_ && place <= before_ + end_) {
+      begin_ = place - before_;
+      return true;
+    }
+    stream_.clear();
+    if (start_ == std::istream::pos_type(-1) || !stream_.seekg(start_ + static_cast<std::streamoff>(place)))
+      return false;
+    before_ = place;
+    begin_ = end_ = 0;
+    stream_at_end_ = false;
+    return true;
+  }
+
  private:
   void refill() {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    before_ += begin_;
     end_ -= begin_;
     begin_ = 0;
     stream_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
@@ -51,6 +70,8 @@ class StreamLines {
   static constexpr std::size_t longest_line_end = 3;
 
   std::istream& stream_;
+  std::istream::pos_type start_;
+  std::size_t before_{};  ///< bytes of the stream before the buffer
   std::size_t begin_{};
   std::size_t end_{};
   bool stream_at_end_{};
@@ -59,6 +80,6 @@ class StreamLines {
   static_assert(sizeof(buffer_) > max_line_length + 2);
 };
 
-static_assert(LineSource<StreamLines>);
+static_assert(SeekableLines<StreamLines>);
 
 }  // namespace cncplan::gcode

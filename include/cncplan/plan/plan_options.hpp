@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
 
 namespace cncplan {
@@ -16,6 +17,7 @@ struct PlanOptions {
   std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
   path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be
+  gcode::FindFile subprograms{};            ///< files of subprograms; those in the program's folder if empty
 };
 
 }  // namespace cncplan

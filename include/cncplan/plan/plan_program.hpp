@@ -1,14 +1,18 @@
 // Plans a G-code program, from a text or a file, into a trajectory (set-up).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "cncplan/gcode/language/program_lines.hpp"
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/gcode/read_program.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
@@ -25,14 +29,65 @@ struct ProgramBlocks {
     std::size_t block{};
   };
 
+  /// From this block on the lines are those of this file.
+  struct FileFrom {
+    std::size_t block{};
+    std::string file;
+  };
+
   std::vector<ProgramBlock<M>> blocks;
   std::vector<WordBefore> words;
   std::vector<std::string> warnings;
-  int lines{};
+  std::vector<FileFrom> files;  ///< ascending; the first one is the program's own, from block 0
+  int lines{};                  ///< number of the last line
+
+  [[nodiscard]] const std::string& file_of(std::size_t block) const {
+    const auto behind =
+        std::upper_bound(files.begin(), files.end(), block,
+                         [](std::size_t number, const FileFrom& from) { return number < from.block; });
+    return std::prev(behind)->file;
+  }
 };
 
-/// Reads all blocks of a program, at least one. Errors, at their place: the reader's, and those of
-/// `BlockBuilder`.
+namespace plan {
+
+/// Reads what is left of a source and adds it to a program, in the file that the source names, else in
+/// `file`.
+template <MachineModel M, gcode::LineSource Lines>
+[[nodiscard]] Expected<void, ProgramError> read_into(ProgramBlocks<M>& program, Lines& lines,
+                                                     gcode::Reader& reader, BlockBuilder<M>& builder,
+                                                     const std::string& file) {
+  const auto file_here = [&] {
+    std::string_view named;
+    if constexpr (requires { lines.file(); }) named = lines.file();
+    return named.empty() ? std::string_view(file) : named;
+  };
+  std::optional<gcode::Diagnostic> fault;
+  const auto read = gcode::read_program(lines, reader, [&](const gcode::Item& item) {
+    if (const auto* word = std::get_if<gcode::Word>(&item))
+      program.words.push_back({*word, program.blocks.size()});
+    if (const auto* warning = std::get_if<gcode::Warning>(&item))
+      program.warnings.push_back(gcode::to_text(file_here(), warning->about, "warning"));
+    auto block = builder.take(item);
+    if (!block) {
+      fault = block.error();
+    } else if (*block) {
+      if (file_here() != program.files.back().file)
+        program.files.push_back({program.blocks.size(), std::string(file_here())});
+      program.blocks.push_back(std::move(**block));
+    }
+    return block.has_value();
+  });
+  if (!read) fault = read.error();
+  if (fault) return tl::unexpected(ProgramError{*fault, std::string(file_here())});
+  return {};
+}
+
+}  // namespace plan
+
+/// Reads all blocks of a program, at least one. From lines that can go back, parameters, O-words and calls of
+/// subprograms are carried out (gcode/language/). Errors, at their place: the reader's, the language's, and
+/// those of `BlockBuilder`.
 template <MachineModel M, gcode::LineSource Lines>
 [[nodiscard]] Expected<ProgramBlocks<M>, ProgramError> read_blocks(Lines&& lines, const M& machine,
                                                                    const PlanOptions& options,
@@ -44,21 +99,15 @@ template <MachineModel M, gcode::LineSource Lines>
   BlockBuilder<M> builder(machine, dialect, options.arcs);
   builder.start_at(start);
   ProgramBlocks<M> program;
-  std::optional<gcode::Diagnostic> fault;
-  const auto read = gcode::read_program(std::forward<Lines>(lines), reader, [&](const gcode::Item& item) {
-    if (const auto* word = std::get_if<gcode::Word>(&item))
-      program.words.push_back({*word, program.blocks.size()});
-    if (const auto* warning = std::get_if<gcode::Warning>(&item))
-      program.warnings.push_back(gcode::to_text(file, warning->about, "warning"));
-    auto block = builder.take(item);
-    if (!block)
-      fault = block.error();
-    else if (*block)
-      program.blocks.push_back(std::move(**block));
-    return block.has_value();
-  });
-  if (fault) return tl::unexpected(ProgramError{*fault, file});
-  if (!read) return tl::unexpected(ProgramError{read.error(), file});
+  program.files.push_back({0, file});
+  Expected<void, ProgramError> read;
+  if constexpr (gcode::SeekableLines<Lines>) {
+    gcode::ProgramLines flat(lines, reader, options.subprograms);
+    read = plan::read_into(program, flat, reader, builder, file);
+  } else {
+    read = plan::read_into(program, lines, reader, builder, file);
+  }
+  if (!read) return tl::unexpected(read.error());
   if (program.blocks.empty()) program.blocks.push_back(builder.rest());  // where it starts
   program.lines = reader.line();
   return program;
@@ -75,7 +124,8 @@ template <MachineModel M, gcode::LineSource Lines>
   if (!program) return tl::unexpected(program.error());
   auto planned = plan_blocks(program->blocks, machine, options);
   if (!planned) {
-    planned.error().file = file;
+    const auto at = planned.error().block;
+    planned.error().file = at ? program->file_of(*at) : file;
     return planned;
   }
   std::vector<TimedWord> words;
@@ -96,7 +146,8 @@ template <MachineModel M>
   return plan::plan_program(gcode::TextLines(text), machine, options, {});
 }
 
-/// Plans a file. Errors as for `plan_text`, and `unreachable` for a file that cannot be read.
+/// Plans a file, with the files of its folder as subprograms. Errors as for `plan_text`, and `unreachable`
+/// for a file that cannot be read.
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_file(
     const std::filesystem::path& file, const M& machine, const PlanOptions& options = {}) {
@@ -104,7 +155,9 @@ template <MachineModel M>
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(file, ignored))
     return tl::unexpected(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file.string()});
-  return plan::plan_program(gcode::StreamLines(stream), machine, options, file.string());
+  PlanOptions here = options;
+  if (!here.subprograms) here.subprograms = gcode::files_of(file.parent_path());
+  return plan::plan_program(gcode::StreamLines(stream), machine, here, file.string());
 }
 
 }  // namespace cncplan
