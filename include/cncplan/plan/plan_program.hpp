@@ -31,6 +31,9 @@ struct ProgramBlocks {
   int lines{};
 };
 
+/// What the reader says of G64 P, which has its effect where programs are smoothed.
+inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64";
+
 /// Reads all blocks of a program, at least one. Errors, at their place: the reader's, and those of
 /// `BlockBuilder`.
 template <MachineModel M, gcode::LineSource Lines>
@@ -45,11 +48,20 @@ template <MachineModel M, gcode::LineSource Lines>
   builder.start_at(start);
   ProgramBlocks<M> program;
   std::optional<gcode::Diagnostic> fault;
+  bool merging_told = false;
   const auto read = gcode::read_program(std::forward<Lines>(lines), reader, [&](const gcode::Item& item) {
     if (const auto* word = std::get_if<gcode::Word>(&item))
       program.words.push_back({*word, program.blocks.size()});
+    const auto warn = [&](const gcode::Diagnostic& about) {
+      program.warnings.push_back(gcode::to_text(file, about, "warning"));
+    };
     if (const auto* warning = std::get_if<gcode::Warning>(&item))
-      program.warnings.push_back(gcode::to_text(file, warning->about, "warning"));
+      if (!(options.tolerance > 0 && warning->about.error.field == tolerance_of_g64)) warn(warning->about);
+    if (const auto* motion = std::get_if<gcode::Motion>(&item);
+        motion != nullptr && motion->merge_tolerance > 0 && options.tolerance > 0 && !merging_told) {
+      merging_told = true;
+      warn({{ErrorCode::ignored, "Q of G64", 0.0, 0.0}, motion->line, motion->column, {}});
+    }
     auto block = builder.take(item);
     if (!block)
       fault = block.error();
