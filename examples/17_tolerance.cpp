@@ -13,7 +13,8 @@ int main() {
       "G21 G90 F1800\n"
       "G1 X30\nX40 Y0.6\nX60 Y1.8\nG3 X65 Y6.8 I0 J5\nG1 Y30\nX55 Y34\nX0\nG64 P0.002\nX-5 Y30\nX0 Y0\n";
   const cncplan::Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  std::printf("%12s %10s %14s %14s %12s\n", "tolerance mm", "time s", "deviation mm", "jump mm/s", "jerk mm/s^3");
+  std::printf("%12s %10s %14s %14s %12s\n", "tolerance mm", "time s", "deviation mm", "jump mm/s",
+              "jerk mm/s^3");
   for (const double tolerance : {0.0, 0.001, 0.01, 0.1}) {
     const auto planned = cncplan::plan_text(program, mill, {.tolerance = tolerance});
     if (!planned) return std::fprintf(stderr, "%s\n", to_text(planned.error()).c_str()), 2;
@@ -31,10 +32,10 @@ int main() {
   }
   const auto planned = cncplan::plan_text(program, mill, {.tolerance = 0.1});
   if (!planned) return 2;
-  std::printf("\n%10s %10s %10s   the corner at X40 Y0.6, tolerance 0.1\n", "X mm", "Y mm", "speed mm/s");
-  const double corner = planned->start_time(2);
+  std::printf("\n%10s %10s %10s   the corner at X30 Y0, tolerance 0.1\n", "X mm", "Y mm", "speed mm/s");
+  const double corner = planned->start_time(1);
   for (int i = -4; i <= 4; ++i) {
-    const auto point = planned->at(corner + 0.01 * i);
+    const auto point = planned->at(corner + 0.02 * i);
     std::printf("%10.4f %10.4f %10.4f\n", point.position[0], point.position[1], point.velocity.norm());
   }
 }
