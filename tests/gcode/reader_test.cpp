@@ -124,9 +124,10 @@ TEST_CASE("exact stop and the tolerance that is ignored once") {
   CHECK_FALSE(reading.motions()[1].exact_stop);
   CHECK(reading.motions()[2].exact_stop);
   const auto warnings = reading.all<gcode::Warning>();
-  REQUIRE(warnings.size() == 1);
+  REQUIRE(warnings.size() == 2);
   CHECK(gcode::to_text("f.nc", warnings[0].about, "warning") ==
         "f.nc:2:5: warning: tolerance of G64 is ignored");
+  CHECK(gcode::to_text("f.nc", warnings[1].about, "warning") == "f.nc:2:9: warning: Q of G64 is ignored");
   CHECK(read("G64\n").items.empty());
 }
 

@@ -52,11 +52,11 @@ TEST_CASE("the jump of velocity at a corner is the speed there times the jump of
   const std::vector<Block<3>> blocks{
       {.path = path::Line<3>({0, 0, 0}, {20, 0, 0})},
       {.path = path::Line<3>({20, 0, 0}, {20 + 20 * std::cos(angle), 20 * std::sin(angle), 0})}};
-  const auto trajectory = plan_blocks(blocks, mill, {.tolerance = 0.01});
+  const auto trajectory = plan_blocks(blocks, mill, {.junction_deviation = 0.01});
   REQUIRE(trajectory);
   const double speed = trajectory->blocks()[1].entry;
   REQUIRE(speed > 1);
   const double jump = speed * std::max(std::sin(angle), 1 - std::cos(angle));
   CHECK(corner_velocity_step(*trajectory) == Approx(jump).epsilon(1e-9));
-  CHECK(corner_velocity_step(*plan_blocks(blocks, mill, {.tolerance = 0})) == 0);  // a stop
+  CHECK(corner_velocity_step(*plan_blocks(blocks, mill, {.junction_deviation = 0})) == 0);  // a stop
 }

@@ -291,7 +291,7 @@ TEST_CASE("the real programs take the time that they took before", "[program][sl
                             Program{"ngc/test_12mmflat.ngc", 61.7594},
                             Program{"ngc/tort.ngc", 566.1161}};
   for (const auto& [name, seconds] : programs) {
-    const auto planned = plan_file(*shared + "/data/" + name, mill, {.tolerance = 0.01});
+    const auto planned = plan_file(*shared + "/data/" + name, mill, {.junction_deviation = 0.01});
     INFO(name << ": " << (planned ? std::string() : to_text(planned.error())));
     REQUIRE(planned);
     CHECK(planned->duration() < seconds + 1e-3);

@@ -61,12 +61,35 @@ TEST_CASE("G61 stops where the path turns, G61.1 behind each move, G64 returns t
   }
 }
 
-TEST_CASE("G64's tolerance is read, and said once to be ignored") {
+TEST_CASE("on the exact path G64's tolerance is said once to be ignored") {
   const test::Folder folder;
   const auto run = folder.run_text("G64 P0.01 Q0.02\nG1 X1\nG64 P0.1\nX2\n", "--json");
   REQUIRE(run.exit == 0);
-  CHECK(run.err == "program.ngc:1:5: warning: tolerance of G64 is ignored\n");
-  CHECK(run.json()["warnings"] == 1);
+  CHECK(run.err ==
+        "program.ngc:1:5: warning: tolerance of G64 is ignored\n"
+        "program.ngc:1:11: warning: Q of G64 is ignored\n");
+  CHECK(run.json()["warnings"] == 2);
+}
+
+TEST_CASE("a program's own G64 P wins over --tolerance") {
+  const test::Folder folder;
+  const std::string program = "G64 P0.01\nG1 X10\nG64 P0.1\nX20 Y10\nG61 X30\nY20\nG64\nX40\nY30\n";
+  const auto run = folder.run_text(program, "--json --period 1e-4 --samples s.csv --tolerance 0.03");
+  REQUIRE(run.exit == 0);
+  CHECK(run.err.empty());
+  const test::Table samples(folder / "s.csv");
+  const auto nearest = [&](double x, double y) {
+    double gap = 1e9;
+    for (std::size_t i = 0; i < samples.rows(); ++i)
+      gap = std::min(gap, std::hypot(samples["x"][i] - x, samples["y"][i] - y));
+    return gap;
+  };
+  // from the corner to the middle of what rounds it: more than the distance from the path, by 1 / cos(half turn)
+  CHECK(nearest(10, 0) > 0.002);
+  CHECK(nearest(10, 0) <= 0.01 / std::cos(std::acos(-1.0) / 8) + 1e-6);
+  CHECK(nearest(30, 10) < 2e-6);  // exact, at rest
+  CHECK(nearest(40, 20) > 0.01);
+  CHECK(nearest(40, 20) <= 0.03 * std::sqrt(2.0) + 1e-6);
 }
 
 TEST_CASE("dwells count in the time, wherever they stand") {

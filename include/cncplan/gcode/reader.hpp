@@ -24,7 +24,11 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 19;
+inline constexpr std::size_t max_items_per_line = max_passed + 20;
+
+/// What the warning of a G64 with P names: the reader hands the tolerance out with each motion, and whether it
+/// has an effect is for the planner to say.
+inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64";
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -211,11 +215,9 @@ class Reader {
     if (block_.has(Group::compensation)) compensate();
     if (block_.has(Group::tool_length)) set_tool_length();
     if (block_.has(Group::coordinates)) select_work_system();
-    if (block_.code(Group::path_control) == code(64) && (block_.has('P') || block_.has('Q')) &&
-        !tolerance_told_) {
-      tolerance_told_ = true;
-      emit(Warning{
-          {{ErrorCode::ignored, "tolerance of G64", 0.0, 0.0}, line_, block_.first_column(bits("PQ"))}});
+    if (block_.code(Group::path_control) == code(64)) {
+      ignore_once('P', tolerance_of_g64, tolerance_told_, emit);
+      ignore_once('Q', "Q of G64", merging_told_, emit);
     }
     if (non_modal == code(10)) set_table();
     if (non_modal == code(28)) home(dialect_.home_g28, emit);
@@ -267,6 +269,14 @@ class Reader {
     if (!block_.has(group) || (named_ & told) != 0) return;
     named_ |= told;
     emit(Warning{{{ErrorCode::ignored, "G", block_.code(group) / 10.0, 0.0}, line_, block_.column(group)}});
+  }
+
+  /// A word of the line that has no effect.
+  template <class Emit>
+  void ignore_once(char letter, std::string_view what, bool& told, Emit& emit) {
+    if (told || !block_.has(letter)) return;
+    told = true;
+    emit(Warning{{{ErrorCode::ignored, what, 0.0, 0.0}, line_, block_.column(letter)}});
   }
 
   [[nodiscard]] Word at_line(Word word) const {
@@ -508,6 +518,7 @@ class Reader {
   bool words_seen_{};
   bool finished_{};
   bool tolerance_told_{};
+  bool merging_told_{};
 };
 
 }  // namespace cncplan::gcode

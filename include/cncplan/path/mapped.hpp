@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
-#include "cncplan/path/enclosed_bounds.hpp"
+#include "cncplan/core/enclosed_bounds.hpp"
 
 namespace cncplan::path {
 

@@ -8,9 +8,9 @@
 #include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/path/arc_length_table.hpp"
-#include "cncplan/path/enclosed_bounds.hpp"
 
 namespace cncplan::path {
 

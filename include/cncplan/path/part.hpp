@@ -4,7 +4,7 @@
 #include <concepts>
 
 #include "cncplan/core/concepts.hpp"
-#include "cncplan/path/enclosed_bounds.hpp"
+#include "cncplan/core/enclosed_bounds.hpp"
 
 namespace cncplan::path {
 

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/path/arc.hpp"
 #include "cncplan/path/arc_along.hpp"
 #include "cncplan/path/line.hpp"
@@ -69,7 +70,8 @@ class BasicSegment {
     return visit([](const auto& p) { return p.box(); });
   }
   [[nodiscard]] std::array<BasicJet<BasicInterval<S>>, static_cast<std::size_t>(N)> enclosure(S from,
-                                                                                              S to) const {
+                                                                                              S to) const
+      requires(EnclosedPath<Curves>&&...) {
     return visit([=](const auto& p) { return p.enclosure(from, to); });
   }
   [[nodiscard]] Vector start() const { return position_at(S(0)); }

@@ -173,12 +173,14 @@ class BlockBuilder {
     if (auto ok = check_axes(motion); !ok) return tl::unexpected(ok.error());
     const auto programmed = programmed_path(motion);
     if (!programmed) return tl::unexpected(programmed.error());
-    const bool exact_path = motion.path_mode == gcode::PathMode::exact_path;
-    Block result{.exact_stop = motion.exact_stop && !exact_path,
+    const bool exact_stop = motion.path_mode == gcode::PathMode::exact_stop;
+    const bool exact_path = motion.exact_stop && !exact_stop;  // G64 P0 as well
+    Block result{.exact_stop = exact_stop,
                  .exact_path = exact_path,
                  .rapid = motion.kind == gcode::MotionKind::rapid,
                  .line = motion.line,
                  .column = motion.column};
+    if (motion.tolerance && *motion.tolerance > 0) result.tolerance = static_cast<Scalar>(*motion.tolerance);
     result.path = path_of(*programmed);
     if constexpr (MappedModel<M>)
       if (result.rapid)

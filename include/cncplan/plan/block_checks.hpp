@@ -23,6 +23,13 @@ template <MachineModel M, BlockModel B>
   return in_space ? std::min(share * block.feed, feed_speed(machine)) : share * block.feed;
 }
 
+/// Whether the travel of any axis has an end.
+template <MachineModel M>
+[[nodiscard]] bool has_ends(const M& machine) {
+  return std::any_of(machine.axes.begin(), machine.axes.end(),
+                     [](const auto& axis) { return std::isfinite(axis.low) || std::isfinite(axis.high); });
+}
+
 /// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over.
 template <MachineModel M, Path P>
 [[nodiscard]] Expected<void> within_travel(const P& path, const M& machine) {

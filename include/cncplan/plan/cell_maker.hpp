@@ -16,8 +16,10 @@
 #include "cncplan/plan/joint_speed.hpp"
 #include "cncplan/plan/limits_along.hpp"
 #include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/passing.hpp"
 #include "cncplan/plan/tool.hpp"
 #include "cncplan/plan/turnings.hpp"
+#include "cncplan/smooth/smoothed.hpp"
 
 namespace cncplan::plan {
 
@@ -36,6 +38,9 @@ class CutByLimits {
  public:
   using Scalar = typename M::Scalar;
   using Part = BasicPartLimits<Scalar>;
+
+  /// The path that is driven in place of the block's from now on; it is to stay as the block is.
+  void drive(const smooth::Smoothed<typename B::Path>& path) { path_ = path; }
 
   /// Begins with a piece of a block that moves; the block is to stay until all parts are cut. `speed` is what
   /// the program asks for, `tool_speed` the most that the tool may.
@@ -66,7 +71,7 @@ class CutByLimits {
 
   /// The limits of a part of the block at any speed.
   [[nodiscard]] BasicLimits<Scalar> limits(const M& machine, Scalar from, Scalar to, Scalar speed) const {
-    return limits_along(block_->path.bounds(from, to), machine, speed, tool_speed_, block_->path.length());
+    return limits_along(bounds(from, to), machine, speed, tool_speed_, block_->path.length());
   }
 
  private:
@@ -78,7 +83,14 @@ class CutByLimits {
     int depth{};
   };
 
+  [[nodiscard]] BasicPathBounds<Scalar, M::axis_count> bounds(Scalar from, Scalar to) const {
+    if constexpr (EnclosedPath<typename B::Path>)
+      if (!path_.exact()) return path_.bounds(from, to);
+    return block_->path.bounds(from, to);
+  }
+
   const B* block_ = nullptr;
+  smooth::Smoothed<typename B::Path> path_;
   Scalar speed_{};
   Scalar tool_speed_{};
   std::array<Open, static_cast<std::size_t>(deepest + 1)> open_{};
@@ -102,6 +114,7 @@ class CellMaker {
   using Scalar = typename M::Scalar;
   using Cell = BasicCell<Scalar>;
   using Vector = VectorN<Scalar, M::axis_count>;
+  using Driven = smooth::Smoothed<typename B::Path>;
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
 
   CellMaker(const M& machine, const JointRules<Scalar, Policy>& rules)
@@ -111,9 +124,16 @@ class CellMaker {
   /// Errors: below_limit and above_limit where an axis would leave its travel; unreachable where the machine
   /// has no position for a place; discontinuous where the block begins elsewhere than the one before it ends.
   [[nodiscard]] Expected<void> begin(const B& block) {
+    return begin(block, Driven(block.path, {}, Scalar(0)), Passing::policy);
+  }
+  /// The same where another path is driven in place of the block's, and its start is passed in another way.
+  [[nodiscard]] Expected<void> begin(const B& block, const Driven& driven, Passing passing) {
     const Vector start = block.path.position_at(Scalar(0));
     if (auto ok = joined(end_, start, machine_); !ok) return ok;
     if (auto ok = within_travel(block.path, machine_); !ok) return ok;
+    if constexpr (EnclosedPath<typename B::Path>)
+      if (!driven.exact() && has_ends(machine_))
+        if (auto ok = within_travel(driven, machine_); !ok) return ok;
     const Scalar length = block.path.length();
     end_ = length > Scalar(0) ? block.path.position_at(length) : start;
     paused_ = std::exchange(pause_, Scalar(0));
@@ -122,10 +142,14 @@ class CellMaker {
       counted_ = counted;
       wanted_ = plan::wanted_speed(block, machine_, counted);
       entry_ = Scalar(0);
-      if (before_ && counted == before_->counted)
-        entry_ = before_->goes_on ? infinity : joint_speed(*before_, side(block, false, counted));
+      if (before_ && counted == before_->counted && passing != Passing::stop)
+        entry_ = before_->goes_on || passing == Passing::smooth
+                     ? infinity
+                     : joint_speed(*before_, side(block, false, counted));
       before_ = side(block, true, counted);
       block_ = &block;
+      driven_ = driven;
+      if constexpr (requires { cut_.drive(driven); }) cut_.drive(driven);
       turnings_.begin(block.path);
       cut_on(Scalar(0));
     } else {
@@ -221,7 +245,7 @@ class CellMaker {
       const auto turning = turnings_.take(block_->path);
       if (turning_count_ < turning_.size()) turning_[turning_count_++] = turning;
     }
-    const Scalar to = std::min(block_->path.length(), turnings_.next());
+    const Scalar to = std::min(driven_.next_change(from), turnings_.next());
     cut_.begin(*block_, machine_, from, to, wanted_,
                block_->rapid ? rapid_speed(machine_) : machine_.limits.velocity);
   }
@@ -234,6 +258,7 @@ class CellMaker {
   std::size_t turning_count_ = 0;
   Cut cut_;
   const B* block_ = nullptr;
+  Driven driven_;
   Scalar wanted_{};
   LengthOf counted_{};
   Scalar entry_{};

@@ -9,6 +9,7 @@
 #include "cncplan/core/error.hpp"
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/cell_maker.hpp"
+#include "cncplan/plan/smoothing.hpp"
 
 namespace cncplan::plan {
 
@@ -37,7 +38,8 @@ struct BlockFault {
 /// Cuts a program into cells, each block by `Cut`; see `CellMaker`, whose errors these are.
 template <template <class, class> class Cut = CutByLimits, MachineModel M, BlockModel B, class Policy>
 [[nodiscard]] Expected<BasicCells<typename M::Scalar>, BlockFault> make_cells(
-    std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules) {
+    std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
+    const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing = {}) {
   using S = typename M::Scalar;
   BasicCells<S> cells;
   const auto rest = [&](std::size_t block, S seconds) {
@@ -46,8 +48,11 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
     cells.pauses.push_back({cells.caps.size(), block, seconds});
   };
   CellMaker<M, B, Policy, Cut<M, B>> maker(machine, rules);
+  const auto tool = tool_axes(machine);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (const auto ok = maker.begin(blocks[i]); !ok) return tl::unexpected(BlockFault{ok.error(), i});
+    if (const auto ok = maker.begin(blocks[i], smoothing.path(blocks[i].path, i, tool), smoothing.passing(i));
+        !ok)
+      return tl::unexpected(BlockFault{ok.error(), i});
     while (!maker.done()) {
       const auto cell = maker.next();
       if (!cell) return tl::unexpected(BlockFault{cell.error(), i});

@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <limits>
+#include <optional>
 
 #include "cncplan/gcode/word.hpp"
 #include "cncplan/path/segment.hpp"
@@ -26,7 +27,8 @@ struct BasicBlock {
   bool rapid{};                                 ///< at the rapid rate, whatever the feed
   int line{};                                   ///< of the program; 0 where there is none
   int column{};
-  gcode::Word word{};  ///< told where the block begins; no letter: none
+  std::optional<S> tolerance{};  ///< mm from the path; that of the options where there is none
+  gcode::Word word{};            ///< told where the block begins; no letter: none
 
   friend bool operator==(const BasicBlock&, const BasicBlock&) = default;
 };

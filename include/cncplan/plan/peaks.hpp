@@ -40,8 +40,13 @@ class PeakSearch {
 
   [[nodiscard]] Peaks search() {
     for (const auto& [phase, block] : trajectory_.phases())
-      if (phase.duration > Scalar(0) && trajectory_.program()[block].path.length() > Scalar(0))
-        search(trajectory_.program()[block].path, phase);
+      if (const auto path = trajectory_.path(block);
+          phase.duration > Scalar(0) && path.length() > Scalar(0)) {
+        if (path.exact())
+          search(path.programmed(), phase);
+        else
+          search(path, phase);
+      }
     return peaks_;
   }
 
@@ -191,8 +196,7 @@ template <MachineModel M, BlockModel B>
     const auto& [before, block] = phases[i - 1];
     const auto& [after, next] = phases[i];
     if (block == next || !(after.velocity > S(0))) continue;
-    const auto& left = trajectory.program()[block].path;
-    const auto& entered = trajectory.program()[next].path;
+    const auto left = trajectory.path(block), entered = trajectory.path(next);
     if (!(left.length() > S(0) && entered.length() > S(0))) continue;
     const BasicState<S> along{S(0), after.velocity, after.acceleration, S(0)};
     const auto end = motion(left.point_at(left.length()), along);

@@ -34,13 +34,20 @@ template <BlockModel B>
   return {{fault.error, block.line, block.column, {}}, {}, fault.block};
 }
 
+/// The rules for smoothing that a program's options say.
+template <std::floating_point S>
+[[nodiscard]] SmoothingRules<S> smoothing_rules(const PlanOptions& options) {
+  return {static_cast<S>(options.tolerance), static_cast<S>(options.rotary_tolerance),
+          options.exact_between_rapids_and_feeds};
+}
+
 /// The trajectory of blocks under rules for their joints and a law for changes of speed.
 template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar> Law>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
     std::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
-    const Law& law) {
+    const Law& law, BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
   using S = typename M::Scalar;
-  const auto cells = make_cells(std::span<const B>(blocks), machine, rules);
+  const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing);
   if (!cells) return tl::unexpected(error_in(blocks, cells.error()));
   std::vector<BasicSpan<S>> spans;
   std::vector<BasicGate<S>> gates(cells->caps.size() + 1);
@@ -48,14 +55,15 @@ template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar
                                   std::back_inserter(spans));
   if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
   auto phases = block_phases(std::span<const BasicSpan<S>>(spans), *cells);
-  return Trajectory<M, B>(machine, std::move(blocks), std::move(phases));
+  return Trajectory<M, B>(machine, std::move(blocks), std::move(phases), std::move(smoothing));
 }
 
 }  // namespace plan
 
 /// The fastest motion along blocks, end to end, from rest to rest, such that the tool and each axis keep
-/// their limits inside blocks; at a joint that is not smooth the velocity jumps, at no more than what a
-/// corner rounded within the tolerances would allow. Errors: those of `validate` for the machine; a block
+/// their limits. Within the tolerance of the options the path is smoothed. Joints that are left exact are
+/// passed as fast as ones rounded within the junction deviation would be, where the velocity jumps; under a
+/// map all joints are. Errors: those of `validate` for the machine; a block
 /// that leaves the travel of an axis or that no limit bounds.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
@@ -63,11 +71,16 @@ template <std::ranges::contiguous_range R, MachineModel M>
                                                                             const PlanOptions& options = {}) {
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
-  const auto tolerance = static_cast<S>(options.tolerance);
+  const auto deviation = static_cast<S>(options.junction_deviation);
   const plan::JointRules<S, junction::BasicDeviation<S>> rules{
-      {tolerance}, tolerance, static_cast<S>(options.rotary_tolerance)};
-  return plan::trajectory(std::vector<BlockOf<R>>(std::ranges::begin(blocks), std::ranges::end(blocks)),
-                          machine, rules, plan::SevenPhase{});
+      {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
+  std::vector<BlockOf<R>> own(std::ranges::begin(blocks), std::ranges::end(blocks));
+  plan::BasicSmoothing<S, M::axis_count> smoothing;
+  if constexpr (EnclosedPath<typename BlockOf<R>::Path> && !MappedModel<M>)
+    if (options.tolerance > 0)
+      smoothing =
+          plan::smoothing(std::span<const BlockOf<R>>(own), machine, plan::smoothing_rules<S>(options));
+  return plan::trajectory(std::move(own), machine, rules, plan::SevenPhase{}, std::move(smoothing));
 }
 
 /// The same with a policy of one's own for joints (`JunctionPolicy`); the tolerances of the options do not

@@ -12,8 +12,13 @@ namespace cncplan {
 
 /// What holds for a whole program.
 struct PlanOptions {
-  double tolerance = 0.01;  ///< mm, >= 0: how far the tool may leave the programmed path at corners
-  double rotary_tolerance = 8.726646259971648e-4;  ///< rad, >= 0: the same for rotary axes; 0.05 degrees
+  /// mm, >= 0: how far the tool may leave the programmed path, so that it moves without a jump of velocity or
+  /// acceleration; 0: the exact path
+  double tolerance = 0;
+  double rotary_tolerance = 8.726646259971648e-4;  ///< rad, > 0: the same for rotary axes; 0.05 degrees
+  /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
+  double junction_deviation = 0.01;
+  bool exact_between_rapids_and_feeds{};    ///< keeps the joints of rapids with feed moves exact
   std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
   path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be

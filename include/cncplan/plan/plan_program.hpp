@@ -52,11 +52,12 @@ struct ProgramBlocks {
 namespace plan {
 
 /// Reads what is left of a source and adds it to a program, in the file that the source names, else in
-/// `file`.
+/// `file`. Where programs are smoothed, G64 P has its effect, and the reader's warning that it is ignored is
+/// left out.
 template <MachineModel M, gcode::LineSource Lines>
 [[nodiscard]] Expected<void, ProgramError> read_into(ProgramBlocks<M>& program, Lines& lines,
                                                      gcode::Reader& reader, BlockBuilder<M>& builder,
-                                                     const std::string& file) {
+                                                     const std::string& file, bool smoothed) {
   const auto file_here = [&] {
     std::string_view named;
     if constexpr (requires { lines.file(); }) named = lines.file();
@@ -66,7 +67,8 @@ template <MachineModel M, gcode::LineSource Lines>
   const auto read = gcode::read_program(lines, reader, [&](const gcode::Item& item) {
     if (const auto* word = std::get_if<gcode::Word>(&item))
       program.words.push_back({*word, program.blocks.size()});
-    if (const auto* warning = std::get_if<gcode::Warning>(&item))
+    if (const auto* warning = std::get_if<gcode::Warning>(&item);
+        warning != nullptr && !(smoothed && warning->about.error.field == gcode::tolerance_of_g64))
       program.warnings.push_back(gcode::to_text(file_here(), warning->about, "warning"));
     auto block = builder.take(item);
     if (!block) {
@@ -99,13 +101,14 @@ template <MachineModel M, gcode::LineSource Lines>
   BlockBuilder<M> builder(machine, dialect, options.arcs);
   builder.start_at(start);
   ProgramBlocks<M> program;
+  const bool smoothed = options.tolerance > 0;
   program.files.push_back({0, file});
   Expected<void, ProgramError> read;
   if constexpr (gcode::SeekableLines<Lines>) {
     gcode::ProgramLines flat(lines, reader, options.subprograms);
-    read = plan::read_into(program, flat, reader, builder, file);
+    read = plan::read_into(program, flat, reader, builder, file, smoothed);
   } else {
-    read = plan::read_into(program, lines, reader, builder, file);
+    read = plan::read_into(program, lines, reader, builder, file, smoothed);
   }
   if (!read) return tl::unexpected(read.error());
   if (program.blocks.empty()) program.blocks.push_back(builder.rest());  // where it starts

@@ -55,7 +55,7 @@ class MotorSteps {
   }
 
  private:
-  using Segment = plan::SteppableSegment<typename T::Block::Path>;
+  using Segment = plan::SteppableSegment<typename T::DrivenPath>;
   using Clock = step::PhaseClock<Scalar>;
 
   // Goes on to the next block that moves; false behind the last.
@@ -66,11 +66,13 @@ class MotorSteps {
       of_block_.clear();
       for (; phase_ < phases.size() && phases[phase_].block == block; ++phase_)
         of_block_.push_back(phases[phase_].phase);
-      const auto& path = trajectory_->program()[block].path;
-      if (!(path.length() > Scalar(0))) continue;
-      segment_ = Segment(path);
+      path_ = trajectory_->path(block);
+      if (!(path_.length() > Scalar(0))) continue;
+      segment_ = Segment(path_);
+      const auto& programmed = path_.programmed();
+      const bool curve = !path_.exact() || (programmed.line() == nullptr && programmed.arc() == nullptr);
       // where curves meet, the start of one is the end of the one before but for rounding
-      const bool goes_on = phase_ < phases.size() && path.line() == nullptr && path.arc() == nullptr;
+      const bool goes_on = phase_ < phases.size() && curve;
       cursor_.emplace(segment_, Clock(std::span<const BasicPhase<Scalar>>(of_block_)), axis_, scale_, count_,
                       goes_on, step::Reversal<Scalar>{direction_, hysteresis_});
       return true;
@@ -87,7 +89,8 @@ class MotorSteps {
   Scalar time_ = Scalar(0);
   std::size_t phase_ = 0;
   std::vector<BasicPhase<Scalar>> of_block_;
-  Segment segment_;
+  typename T::DrivenPath path_;
+  Segment segment_;  // of that
   std::optional<step::StepCursor<Segment, Clock>> cursor_;
 };
 

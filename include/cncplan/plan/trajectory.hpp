@@ -20,6 +20,7 @@
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/motion_table.hpp"
 #include "cncplan/plan/set_point.hpp"
+#include "cncplan/plan/smoothing.hpp"
 #include "cncplan/plan/tool.hpp"
 
 namespace cncplan {
@@ -57,12 +58,15 @@ class Trajectory {
   using Block = B;
   using SetPoint = BasicSetPoint<Scalar, M::axis_count>;
   using Phase = plan::BasicBlockPhase<Scalar>;
+  using Smoothing = plan::BasicSmoothing<Scalar, M::axis_count>;
+  using DrivenPath = smooth::Smoothed<typename B::Path>;
 
   /// From blocks and the phases that drive them: `plan_blocks` and `plan_text` make these.
-  Trajectory(const M& machine, std::vector<B> blocks, std::vector<Phase> phases)
+  Trajectory(const M& machine, std::vector<B> blocks, std::vector<Phase> phases, Smoothing smoothing = {})
       : machine_(machine),
         tool_(tool_axes(machine)),
         blocks_(std::move(blocks)),
+        smoothing_(std::move(smoothing)),
         phases_(std::move(phases)),
         starts_(blocks_.size() + 1) {
     for (std::size_t i = 0; i < blocks_.size(); ++i)
@@ -70,10 +74,16 @@ class Trajectory {
   }
 
   [[nodiscard]] const M& machine() const { return machine_; }
+  /// The blocks as they were given.
   [[nodiscard]] std::span<const B> program() const& { return blocks_; }
+  /// The path that is driven in place of a block's: a view of this trajectory.
+  [[nodiscard]] DrivenPath path(std::size_t block) const& {
+    return smoothing_.path(blocks_[block].path, block, tool_);
+  }
   /// Every phase, in order of time.
   [[nodiscard]] std::span<const Phase> phases() const& { return phases_; }
   void program() const&& = delete;
+  void path(std::size_t) const&& = delete;
   void phases() const&& = delete;
 
   /// s, from rest to rest.
@@ -137,9 +147,9 @@ class Trajectory {
         const Scalar tau = static_cast<Scalar>(k + static_cast<std::int64_t>(i)) * period - phase.time;
         part[i] = phase.at(std::max(tau, Scalar(0))).position;
       }
-      blocks_[phases_[index].block].path.positions_at(
-          std::span<const Scalar>(part),
-          PointsN<Scalar, M::axis_count>(out.col(done).data(), out.rows(), now));
+      path(phases_[index].block)
+          .positions_at(std::span<const Scalar>(part),
+                        PointsN<Scalar, M::axis_count>(out.col(done).data(), out.rows(), now));
       done += now;
     }
     return count;
@@ -220,7 +230,7 @@ class Trajectory {
 
   [[nodiscard]] SetPoint evaluate(std::size_t number, BasicState<Scalar> along, Scalar time) const {
     const B& block = blocks_[number];
-    const auto axes = motion(block.path.point_at(along.position), along);
+    const auto axes = motion(path(number).point_at(along.position), along);
     SetPoint point{time,          number,
                    block.line,    axes.position,
                    axes.velocity, axes.acceleration,
@@ -248,6 +258,7 @@ class Trajectory {
   M machine_;
   std::array<int, 3> tool_;
   std::vector<B> blocks_;
+  Smoothing smoothing_;
   std::vector<Phase> phases_;
   std::vector<Scalar> starts_;  // mm at which each block begins, and the end
   std::vector<TimedWord> words_;

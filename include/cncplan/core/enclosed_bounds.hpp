@@ -8,7 +8,7 @@
 #include "cncplan/core/box.hpp"
 #include "cncplan/core/concepts.hpp"
 
-namespace cncplan::path {
+namespace cncplan {
 
 /// A path whose position and derivatives by length are known as intervals between two lengths.
 template <class P>
@@ -91,4 +91,4 @@ template <EnclosedPath P>
   return box;
 }
 
-}  // namespace cncplan::path
+}  // namespace cncplan
