@@ -92,6 +92,11 @@ void check_options(const Options& options, const support::Machine& machine) {
                           options.interpolator == Interpolator::exact;
   if (options.events && !as_planned)
     refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
+  if (options.tolerance > 0.0 && machine.kinematics != Kinematics::cartesian)
+    refuse(
+        "--tolerance above 0 is for machines whose axes are the program's: paths on a table or a mold are "
+        "driven "
+        "exactly");
   if (options.interpolator == Interpolator::taylor &&
       (machine.kinematics != Kinematics::cartesian || machine.axes.size() > 3))
     refuse("--interpolator taylor is for machines of X, Y and Z");

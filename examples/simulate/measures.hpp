@@ -49,6 +49,7 @@ struct Measures {
   std::size_t acceleration_jumps = 0;
   double end_error = 0.0;
   double contour_error = 0.0;
+  double deviation = 0.0;  ///< of smoothed paths from the programmed ones
   std::size_t junctions_limited = 0;
   std::vector<cncplan::step::AxisReport> steps;  ///< none where no steps are made
   double plan_seconds = 0.0;

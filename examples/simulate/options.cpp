@@ -36,16 +36,9 @@ void settle_corners(Options& options, const std::optional<std::string>& junction
                            "--tolerance above 0 does not go with --profile five, --plan block or another "
                            "--interpolator than exact");
   constexpr double standard = 0.01;
+  options.tolerance = tolerance.value_or(0.0);
   options.junction = junction_choice(junction.value_or(fmt::format("deviation={}", standard)));
-  const double wanted = tolerance.value_or(junction || published ? 0.0 : standard);
-  if (!(wanted > 0.0)) return;
-  options.tolerance = wanted;
-  if (!junction) options.junction.policies.clear();
-  options.junction.policies.push_back(cncplan::junction::Deviation{wanted});
-  if (tolerance)
-    fmt::print(
-        stderr,
-        "warning: --tolerance: the path is kept exactly, corners are as fast as rounded ones would be\n");
+  if (!junction && !published) options.corner_tolerance = standard;
 }
 
 }  // namespace
@@ -81,8 +74,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.option_defaults()->always_capture_default(false);
   app.add_option(
          "--tolerance", tolerance,
-         "mm that the tool may be away from the path where it moves smoothly, 0.01 if not given; 0: the "
-         "exact path, corners by --junction")
+         "mm that the tool may leave the path, so that it moves without a jump of velocity or acceleration; "
+         "0, or not given: the exact path, corners by --junction")
       ->check(support::not_negative());
   app.add_option("--junction", junction,
                  "corners of the exact path: table, table-absolute, stop, tangent=MM/S, deviation=MM, "

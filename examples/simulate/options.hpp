@@ -21,7 +21,8 @@ struct Options : support::RunOptions {
   Law law = Law::seven;
   Planning planning = Planning::span;
   Interpolator interpolator = Interpolator::exact;
-  double tolerance = -1.0;            ///< mm, of corners that count as rounded; negative: none do
+  double tolerance = 0.0;             ///< mm from the path, within which it is smoothed; 0: the exact path
+  double corner_tolerance = -1.0;     ///< mm, of exact corners that count as rounded; negative: none do
   double rotary_tolerance = 0.05;     ///< degrees
   std::optional<double> tool_length;  ///< mm
   std::optional<std::string> events;

@@ -29,9 +29,12 @@ namespace simulate {
 template <class M>
 class Builder {
  public:
-  Builder(const support::Machine& file, const M& machine, Program<M>& program, Problems& problems)
+  /// `smoothed`: paths are smoothed, and G64 P says how closely.
+  Builder(const support::Machine& file, const M& machine, bool smoothed, Program<M>& program,
+          Problems& problems)
       : file_(file),
         machine_(machine),
+        smoothed_(smoothed),
         program_(program),
         problems_(problems),
         read_(plain(machine), file.dialect) {
@@ -51,6 +54,7 @@ class Builder {
     namespace gcode = cncplan::gcode;
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) return move(*motion);
     if (const auto* warning = std::get_if<gcode::Warning>(&item)) {
+      if (smoothed_ && warning->about.error.field == gcode::tolerance_of_g64) return;
       ++program_.warnings;
       fmt::print(stderr, "{}\n", gcode::to_text(program_.file, warning->about, "warning"));
       return;
@@ -166,7 +170,8 @@ class Builder {
             .exact_path = block.exact_path,
             .rapid = block.rapid,
             .line = block.line,
-            .column = block.column};
+            .column = block.column,
+            .tolerance = block.tolerance};
   }
 
   void rest(const Read& block) {
@@ -203,6 +208,7 @@ class Builder {
 
   const support::Machine& file_;
   const M& machine_;
+  bool smoothed_;
   Program<M>& program_;
   Problems& problems_;
   cncplan::BlockBuilder<Plain> read_;
@@ -253,7 +259,7 @@ template <class M>
   Program<M> program;
   program.file = options.program;
   gcode::Reader reader(file.dialect);
-  Builder<M> build(file, machine, program, problems);
+  Builder<M> build(file, machine, options.tolerance > 0.0, program, problems);
   const auto read = [&](auto&& lines) {
     gcode::read_program(
         lines, reader,

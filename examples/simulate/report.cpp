@@ -52,8 +52,8 @@ std::string json_summary(const ProgramText& program, const Options& options, con
   json["tool_peak"] = {{"velocity", m.tool_peak.velocity},
                        {"acceleration", m.tool_peak.acceleration},
                        {"jerk", m.tool_peak.jerk}};
-  json["tolerance_mm"] = std::max(options.tolerance, 0.0);
-  json["deviation_mm"] = 0.0;  // the path is kept exactly
+  json["tolerance_mm"] = options.tolerance;
+  json["deviation_mm"] = m.deviation;
   json["acceleration_jumps"] = m.acceleration_jumps;
   json["corner_velocity_step"] = m.corner_velocity_step;
   json["end_error_mm"] = m.end_error;

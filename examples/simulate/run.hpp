@@ -54,11 +54,13 @@ class Run {
       if (options_.interpolator == Interpolator::taylor) follow.emplace(trajectory_);
     PathDistance distance;
     Sample row;
+    std::size_t point_block = 0;
     const auto all = trajectory_.samples(options_.period);
     for (auto it = all.begin(); it != all.end(); ++it) {
       {
         const Stopwatch watch(measures_.interpolate_seconds);
         const auto point = *it;
+        point_block = point.block;
         const std::size_t motion = program_.motion_of[point.block];
         row = {point.time,
                &program_.motions[motion],
@@ -72,8 +74,7 @@ class Run {
         if (!std::is_same_v<M, Rows>)  // a row is what the axes do: there is nothing else to follow
           row.within = point.along.position - motion_start_[motion];
       }
-      if (!std::is_same_v<M, Rows>)
-        measures_.contour_error = std::max(measures_.contour_error, distance(row));
+      if (!std::is_same_v<M, Rows>) measure_distance(point_block, distance(row));
       ++measures_.samples;
       take(row);
     }
@@ -105,12 +106,21 @@ class Run {
  private:
   using Cells = cncplan::plan::BasicCells<double>;
 
+  // A mill's paths are; a table's and rows R Z A C are driven exactly.
+  static constexpr bool smoothed = !std::is_same_v<M, Table> && !std::is_same_v<M, Rows>;
+
   Trajectory plan(const M& machine) {
     namespace plan = cncplan::plan;
     const Stopwatch watch(measures_.plan_seconds);
     const double to_rad = cncplan::gcode::radians_per_degree;
-    const plan::JointRules<double, JunctionChoice> rules{options_.junction, options_.tolerance,
+    const plan::JointRules<double, JunctionChoice> rules{options_.junction, options_.corner_tolerance,
                                                          options_.rotary_tolerance * to_rad};
+    const std::span<const Block> programmed(program_.blocks);
+    typename Trajectory::Smoothing smoothing;
+    if constexpr (smoothed)
+      if (options_.tolerance > 0.0)
+        smoothing = plan::smoothing(programmed, machine,
+                                    {options_.tolerance, options_.rotary_tolerance * to_rad, false});
     std::vector<Event> events;
     std::vector<Block> blocks = program_.blocks;
     if (options_.events) {  // limits are made for the highest feed
@@ -120,18 +130,20 @@ class Run {
     const bool whole =
         options_.planning == Planning::block || options_.interpolator == Interpolator::constant;
     const std::span<const Block> all(blocks);
-    const auto cells = whole ? plan::make_cells<cncplan::published::WholeBlocks>(all, machine, rules)
-                             : plan::make_cells(all, machine, rules);
+    const auto cells = whole
+                           ? plan::make_cells<cncplan::published::WholeBlocks>(all, machine, rules, smoothing)
+                           : plan::make_cells(all, machine, rules, smoothing);
     if (!cells) {
       auto error = plan::error_in(blocks, cells.error());
       error.file = program_.file;
       throw support::Failure(support::Exit::bad_input, cncplan::to_text(error));
     }
     count_limited(*cells, machine);
-    if (options_.events) return Trajectory(machine, program_.blocks, played(*cells, machine, events));
+    if (options_.events)
+      return Trajectory(machine, program_.blocks, played(*cells, machine, events), std::move(smoothing));
     const auto spans = spans_of(cells->caps);
     return Trajectory(machine, program_.blocks,
-                      plan::block_phases(std::span<const plan::Span>(spans), *cells));
+                      plan::block_phases(std::span<const plan::Span>(spans), *cells), std::move(smoothing));
   }
 
   std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps) const {
@@ -195,6 +207,12 @@ class Run {
           cells.caps[i].entry < std::min(wanted(before), wanted(after)))
         ++measures_.junctions_limited;
     }
+  }
+
+  // Of a sample from the programmed path: an error where that is driven, else what smoothing takes.
+  void measure_distance(std::size_t block, double distance) {
+    double& largest = trajectory_.path(block).exact() ? measures_.contour_error : measures_.deviation;
+    largest = std::max(largest, distance);
   }
 
   void measure() {

@@ -84,12 +84,47 @@ TEST_CASE("a program's own G64 P wins over --tolerance") {
       gap = std::min(gap, std::hypot(samples["x"][i] - x, samples["y"][i] - y));
     return gap;
   };
-  // from the corner to the middle of what rounds it: more than the distance from the path, by 1 / cos(half turn)
+  // from the corner to the middle of what rounds it: more than the distance from the path, by 1 / cos(half
+  // turn)
   CHECK(nearest(10, 0) > 0.002);
   CHECK(nearest(10, 0) <= 0.01 / std::cos(std::acos(-1.0) / 8) + 1e-6);
   CHECK(nearest(30, 10) < 2e-6);  // exact, at rest
   CHECK(nearest(40, 20) > 0.01);
   CHECK(nearest(40, 20) <= 0.03 * std::sqrt(2.0) + 1e-6);
+}
+
+TEST_CASE("option --tolerance: within limits as samples show, within the tolerance, without a jump") {
+  const test::Folder folder;
+  const std::string program = "G1 X10\nX10.1 Y0.05\nX20 Y9\nG3 X30 Y19 R10\nG1 X30 Y30\nX29 Y30\nX10\nY0\n";
+  const double tolerance = GENERATE(0.002, 0.01, 0.1);
+  CAPTURE(tolerance);
+  const auto run = folder.run_text(
+      program, "--json --period 1e-4 --samples s.csv --tolerance " + std::to_string(tolerance));
+  REQUIRE(run.exit == 0);
+  const auto json = run.json();
+  const test::Table samples(folder / "s.csv");
+  const auto& x = samples["x"];
+  const auto& y = samples["y"];
+  double velocity = 0.0, acceleration = 0.0, jerk = 0.0;  // of the vector, by differences
+  constexpr double h = 1e-4;
+  for (std::size_t i = 3; i + 1 < x.size(); ++i) {
+    const auto norm = [&](auto&& of) { return std::hypot(of(x), of(y)); };
+    velocity = std::max(velocity, norm([i](const auto& q) { return q[i] - q[i - 1]; }) / h);
+    acceleration =
+        std::max(acceleration, norm([i](const auto& q) { return q[i] - 2 * q[i - 1] + q[i - 2]; }) / (h * h));
+    jerk = std::max(jerk, norm([i](const auto& q) { return q[i] - 3 * q[i - 1] + 3 * q[i - 2] - q[i - 3]; }) /
+                              (h * h * h));
+  }
+  CHECK(velocity <= 30 * (1 + 1e-9));
+  CHECK(acceleration <= 1000 * (1 + 1e-6));
+  CHECK(jerk <= 10000 * (1 + 1e-4));
+  CHECK(json["tolerance_mm"] == tolerance);
+  CHECK(json["deviation_mm"].get<double>() <= tolerance);
+  CHECK(json["deviation_mm"].get<double>() > 0.2 * tolerance);
+  CHECK(json["acceleration_jumps"] == 0);
+  CHECK(json["corner_velocity_step"].get<double>() < 1e-9);
+  CHECK(json["tool_peak"]["jerk"].get<double>() <= 10000 * (1 + 1e-9));
+  CHECK(json["tool_peak"]["jerk"].get<double>() >= jerk * (1 - 1e-4));
 }
 
 TEST_CASE("dwells count in the time, wherever they stand") {

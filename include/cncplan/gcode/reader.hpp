@@ -26,8 +26,8 @@ namespace cncplan::gcode {
 /// Most items that one line yields: so large a buffer takes every line.
 inline constexpr std::size_t max_items_per_line = max_passed + 20;
 
-/// What the warning of a G64 with P names: the reader hands the tolerance out with each motion, and whether it
-/// has an effect is for the planner to say.
+/// What the warning of a G64 with P names: the reader hands the tolerance out with each motion, and whether
+/// it has an effect is for the planner to say.
 inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64";
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
