@@ -38,7 +38,7 @@ struct BasicPiecePhase {
 template <std::floating_point S>
 struct BasicSmoothOptions {
   int passes = 2;        ///< of geometry, each followed by one of speed
-  int joint_rounds = 1;  ///< of geometry and speed together
+  int joint_rounds = 0;  ///< of geometry and speed together: a little faster, at several times the work
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
