@@ -274,7 +274,7 @@ class Band {
     for (const auto& block : blocks_) feed = std::max(feed, block.feed);
     const S ramp =
         std::isfinite(limits.jerk) ? feed * std::sqrt(feed / limits.jerk) : feed * feed / limits.acceleration;
-    const S widest = std::min(S(0.15) * ramp, length() / S(8));
+    const S widest = std::min(S(0.1) * ramp, length() / S(8));
     constexpr S growth = S(0.12);
     struct Fine {
       S at, size, reach;
