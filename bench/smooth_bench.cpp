@@ -1,0 +1,37 @@
+// Smoothing of the whole program within a tolerance: geometry and speed, reading excluded.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ball.hpp"
+#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/smooth/smooth_run.hpp"
+
+namespace {
+
+using namespace cncplan;
+
+// The blocks of the program as one run. An item is a block; `seconds` is the motion's duration.
+void smooth_ball_best(benchmark::State& state) {
+  using Segment = path::BasicSegment<double, 3>;
+  Machine<3> mill;
+  mill.limits = bench::limits;
+  const auto program = read_blocks(gcode::TextLines(bench::ball()), mill, PlanOptions{});
+  if (!program) return state.SkipWithError("the program does not read");
+  std::vector<smooth::BandBlock<Segment>> blocks;
+  for (const auto& block : program->blocks)
+    if (block.path.length() > 0)
+      blocks.push_back({&block.path,
+                        block.rapid ? bench::limits.velocity : std::min(block.feed, bench::limits.velocity),
+                        Vector3::Constant(0.01)});
+  smooth::MotionLimits<3> limits;
+  limits.tool = bench::limits;
+  double seconds = 0;
+  for (auto _ : state) seconds = smooth::smooth_run<Segment>(blocks, limits).duration;
+  state.counters["seconds"] = seconds;
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
+}
+BENCHMARK(smooth_ball_best)->Name("smooth/ball/best")->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,438 @@
+// The smoothest curve within a tolerance of a run of blocks, from rest to rest (set-up).
+#pragma once
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "cncplan/core/concepts.hpp"
+#include "cncplan/core/limits.hpp"
+#include "cncplan/smooth/band_window.hpp"
+#include "cncplan/smooth/cubic.hpp"
+#include "cncplan/smooth/joint_window.hpp"
+
+namespace cncplan::smooth {
+
+/// A block as smoothing sees it: where it goes, how fast it may, and how far each axis may leave it. The
+/// tolerances of the tool's axes are one number, which bounds the tool's distance.
+template <Path P>
+struct BandBlock {
+  const P* path{};
+  typename P::Scalar feed{};
+  typename P::Vector tolerance{};
+};
+
+/// A cubic B-spline q(s) over the programmed length with |q(s) - p(s)| below the tolerance. It is made of a
+/// start that is inside, and moves from there to where a speed-weighted sum of |q'''|^2 is least.
+template <Path P>
+class Band {
+ public:
+  using Scalar = typename P::Scalar;
+  using Vector = typename P::Vector;
+  static constexpr int axis_count = Vector::RowsAtCompileTime;
+  using S = Scalar;
+
+  struct Options {
+    BasicLimits<S> along{};  ///< the limits of motion along the path
+    S share = S(0.99);       ///< of the tolerances that is used between samples
+    S start_share = S(0.6);  ///< of the tolerances, by the start's corners
+    S jerk_share = S(0.15);  ///< of the jerk limit, by corners that may be run through at the feed
+    S centring = S(0.1);
+    std::size_t window = 300;  ///< control points that one window moves
+    BasicBandOptions<S> solver{};
+  };
+
+  /// Blocks that follow each other without a stop, each of a length > 0.
+  Band(std::span<const BandBlock<P>> blocks, const Options& options) : blocks_(blocks), options_(options) {
+    S at = S(0);
+    for (const auto& block : blocks_) {
+      starts_.push_back(at);
+      at += block.path->length();
+    }
+    starts_.push_back(at);
+    size_corners();
+    for (int round = 0; round < 30; ++round) {
+      make_knots();
+      make_points();
+      make_samples();
+      if (narrow()) break;
+    }
+    start_ = points_;
+  }
+
+  [[nodiscard]] std::size_t cell_count() const { return lengths_.size(); }
+  [[nodiscard]] S cell_start(std::size_t cell) const { return knots_[cell]; }
+  [[nodiscard]] S length() const { return starts_.back(); }
+  [[nodiscard]] std::size_t block_at(S s) const {
+    const auto next = std::upper_bound(starts_.begin(), starts_.end() - 1, s);
+    return static_cast<std::size_t>(next - starts_.begin()) - 1;
+  }
+  [[nodiscard]] S block_start(std::size_t block) const { return starts_[block]; }
+
+  [[nodiscard]] BasicCubic<S, axis_count> cubic(std::size_t cell) const {
+    return {cubic_start(cells_[cell].weights, std::span<const Vector>(points_).subspan(cell, 4)),
+            lengths_[cell]};
+  }
+
+  /// Moves the curve: `speeds_sq` is b = v^2 in each cell, of a law of speed along the curve as it is. Where
+  /// that is the feed the curve stays as it is. Returns the Newton steps.
+  int smoothen(std::span<const S> speeds_sq) {
+    const std::size_t cells = cell_count();
+    std::vector<char> slow(points_.size(), 0);
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      const S feed = blocks_[block_at(knots_[cell] + lengths_[cell] / S(2))].feed;
+      const S v = std::sqrt(speeds_sq[cell]);
+      cells_[cell].price = v * v * v * feed * feed * feed * lengths_[cell];
+      if (v < S(0.998) * feed)
+        for (std::size_t k = cell >= reach_ ? cell - reach_ : 0; k < std::min(cell + 4 + reach_, slow.size());
+             ++k)
+          slow[k] = 1;
+    }
+    prepare_memory();
+    const BasicBandMemory<S, axis_count> memory{rows_, gradient_, step_, trial_};
+    const BasicBandProblem<S, axis_count> problem{cells_, samples_, jerk_scale(), options_.centring};
+    int rounds = 0;
+    const std::size_t end = points_.size() - 3;
+    for (std::size_t k = 3; k < end;) {
+      if (slow[k] == 0) {
+        ++k;
+        continue;
+      }
+      std::size_t last = k;
+      while (last < end && slow[last] != 0) ++last;
+      for (std::size_t first = k; first < last; first += options_.window / 2) {
+        const std::size_t to = std::min(first + options_.window, last);
+        rounds +=
+            smooth::smoothen(problem, std::span<Vector>(points_), first, to, options_.solver, memory).rounds;
+        if (to == last) break;
+      }
+      k = last;
+    }
+    return rounds;
+  }
+
+  /// Moves curve and speed together. `speeds_sq`: for each cell the middle coefficient of b, as
+  /// `BasicCellSpeed` has it, of a law that keeps all limits; 0 in cells that stay. Returns the Newton steps.
+  int improve(std::span<const S> speeds_sq, const BasicMotionLimits<S, axis_count>& limits,
+              const BasicJointOptions<S>& solver) {
+    const std::size_t cells = cell_count();
+    std::vector<S> feeds(cells), speeds(points_.size(), S(0));
+    std::vector<char> moves(points_.size(), 0);
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      feeds[cell] = blocks_[block_at(knots_[cell] + lengths_[cell] / S(2))].feed;
+      speeds[cell + 1] = speeds_sq[cell];
+      if (speeds_sq[cell] < S(0.9995) * feeds[cell] * feeds[cell])
+        for (std::size_t k = cell >= reach_ ? cell - reach_ : 0;
+             k < std::min(cell + 4 + reach_, moves.size()); ++k)
+          moves[k] = 1;
+    }
+    // Not next to cells without a speed.
+    for (std::size_t cell = 0; cell < cells; ++cell)
+      if (!(speeds_sq[cell] > S(0)))
+        for (std::size_t k = cell >= 2 ? cell - 2 : 0; k < std::min(cell + 6, moves.size()); ++k)
+          moves[k] = 0;
+    std::vector<std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>> rows(options_.window);
+    std::vector<VectorN<S, axis_count + 1>> gradient(options_.window), step(options_.window),
+        trial(options_.window + 6);
+    const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
+    const BasicJointProblem<S, axis_count> problem{&curve, feeds, &limits};
+    int rounds = 0;
+    const std::size_t end = points_.size() - 4;
+    for (std::size_t k = 4; k < end;) {
+      if (moves[k] == 0) {
+        ++k;
+        continue;
+      }
+      std::size_t last = k;
+      while (last < end && moves[last] != 0) ++last;
+      for (std::size_t first = k; first < last; first += options_.window / 2) {
+        const std::size_t to = std::min(first + options_.window, last);
+        rounds += smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, to,
+                                  solver, BasicJointMemory<S, axis_count>{rows, gradient, step, trial})
+                      .rounds;
+        if (to == last) break;
+      }
+      k = last;
+    }
+    return rounds;
+  }
+
+  /// A bound of how far the curve is off the programmed path, as a share of the tolerance, within one cell.
+  /// On each part of it that lies in one block the difference is a cubic, but for the third derivative of the
+  /// block's path, whose bound is added.
+  [[nodiscard]] S deviation(std::size_t cell) const {
+    S worst = S(0);
+    const BasicCubic<S, axis_count> curve = cubic(cell);
+    const S end = knots_[cell + 1];
+    S at = knots_[cell];
+    for (std::size_t block = block_at(at); at < end; ++block) {
+      const S to = block + 1 < blocks_.size() ? std::min(end, starts_[block + 1]) : end;
+      if (to > at)
+        worst = std::max(worst, part_deviation(curve, at - knots_[cell], to - knots_[cell], block, at));
+      at = to;
+    }
+    return worst;
+  }
+
+  /// Brings the curve inside the tolerance by proof, where it leaves it between samples, by going back
+  /// towards the start. Returns the largest share of the tolerance that is left, below 1 unless the start
+  /// itself is not inside.
+  S settle() {
+    S worst = S(0);
+    for (int round = 0; round < 40; ++round) {
+      worst = S(0);
+      for (std::size_t cell = 0; cell < cell_count(); ++cell) {
+        const S share = deviation(cell);
+        worst = std::max(worst, share);
+        if (share <= S(1)) continue;
+        for (std::size_t k = std::max<std::size_t>(cell, 3); k < std::min(cell + 4, points_.size() - 3); ++k)
+          points_[k] = start_[k] + S(0.8) * (points_[k] - start_[k]);
+      }
+      if (!(worst > S(1))) break;
+    }
+    return worst;
+  }
+
+  /// The control points, to keep and to come back to.
+  [[nodiscard]] const std::vector<Vector>& points() const { return points_; }
+  void set_points(std::vector<Vector> points) { points_ = std::move(points); }
+
+ private:
+  static constexpr std::size_t reach_ = 6;
+
+  struct Corner {
+    S at{};
+    S tolerance{};
+    S width{};  // of a third of its kernel's half
+    Vector jump = Vector::Zero();
+  };
+
+  [[nodiscard]] Vector programmed(S s) const {
+    const std::size_t block = block_at(s);
+    return blocks_[block].path->position_at(s - starts_[block]);
+  }
+
+  [[nodiscard]] Vector jerk_scale() const { return Vector::Constant(S(1) / options_.along.jerk); }
+
+  // The B-spline kernel of which the second derivative of a rounded corner is made, integrated twice: a lone
+  // corner with jump D of its tangent is off by 28/120 w |D|, and has |q'''| up to 2/3 |D| / w^2.
+  [[nodiscard]] static S kernel(S x) {
+    const S u = std::abs(x), a = std::max(S(2) - u, S(0)), b = std::max(S(1) - u, S(0));
+    return (a * a * a * a * a - S(4) * b * b * b * b * b) / S(120);
+  }
+
+  [[nodiscard]] S part_deviation(const BasicCubic<S, axis_count>& curve, S from, S to, std::size_t block,
+                                 S at) const {
+    const P& path = *blocks_[block].path;
+    const S half = (to - from) / S(2), x = at - starts_[block];
+    const S length = path.length();
+    const auto p = path.point_at(std::clamp(x + half, S(0), length));
+    const auto q = curve.point_at(from + half);
+    const Vector scale = blocks_[block].tolerance.cwiseInverse();
+    // The difference over [-half, half] by its powers, then by its control points.
+    const Vector d0 = q.position - p.position, d1 = (q.first - p.first) * half,
+                 d2 = (q.second - p.second) * (half * half / S(2)),
+                 d3 = q.third * (half * half * half / S(6));
+    const std::array<Vector, 4> control{d0 - d1 + d2 - d3, d0 - d1 / S(3) - d2 / S(3) + d3,
+                                        d0 + d1 / S(3) - d2 / S(3) - d3, d0 + d1 + d2 + d3};
+    S worst = S(0);
+    for (const Vector& c : control) worst = std::max(worst, c.cwiseProduct(scale).norm());
+    if (!(d0.squaredNorm() < std::numeric_limits<S>::infinity())) return std::numeric_limits<S>::infinity();
+    const Vector third = path.bounds(std::max(x, S(0)), std::min(x + S(2) * half, length)).third;
+    return worst + third.cwiseProduct(scale).norm() * (half * half * half / S(6));
+  }
+
+  void size_corners() {
+    const auto& limits = options_.along;
+    for (std::size_t i = 1; i < blocks_.size(); ++i) {
+      const BandBlock<P>&before = blocks_[i - 1], &after = blocks_[i];
+      Corner corner;
+      corner.at = starts_[i];
+      corner.jump = after.path->point_at(S(0)).first - before.path->point_at(before.path->length()).first;
+      const Vector tolerance = before.tolerance.cwiseMin(after.tolerance);
+      const S jump = corner.jump.norm(), share = corner.jump.cwiseQuotient(tolerance).norm();
+      if (!(jump > S(1e-9))) continue;
+      const S v = std::min(before.feed, after.feed);
+      const S need = std::max(std::sqrt(S(2) / S(3) * jump * v * v * v / (options_.jerk_share * limits.jerk)),
+                              S(2) / S(3) * jump * v * v / (options_.jerk_share * limits.acceleration));
+      const S room = std::min(corner.at, length() - corner.at) / S(2);
+      corner.width = std::min({need, options_.start_share / (S(28) / S(120) * share), room});
+      corners_.push_back(corner);
+    }
+  }
+
+  // Cells a third of a corner's kernel wide near it, and growing with the distance.
+  void make_knots() {
+    const auto& limits = options_.along;
+    S feed = S(0);
+    for (const auto& block : blocks_) feed = std::max(feed, block.feed);
+    const S ramp =
+        std::isfinite(limits.jerk) ? feed * std::sqrt(feed / limits.jerk) : feed * feed / limits.acceleration;
+    const S widest = std::min(S(0.1) * ramp, length() / S(8));
+    constexpr S growth = S(0.12);
+    struct Fine {
+      S at, size, reach;
+    };
+    std::vector<Fine> fine;
+    fine.push_back({S(0), widest / S(30), S(0)});
+    for (const Corner& corner : corners_)
+      if (corner.width / S(3) < widest)
+        fine.push_back({corner.at, std::max(corner.width / S(3), widest / S(1000)), S(1.7) * corner.width});
+    fine.push_back({length(), widest / S(30), S(0)});
+    for (std::size_t i = 1; i < fine.size(); ++i)
+      fine[i].size = std::min(
+          fine[i].size,
+          fine[i - 1].size + growth * std::max(fine[i].at - fine[i - 1].at - fine[i - 1].reach, S(0)));
+    for (std::size_t i = fine.size() - 1; i-- > 0;)
+      fine[i].size = std::min(
+          fine[i].size,
+          fine[i + 1].size + growth * std::max(fine[i + 1].at - fine[i].at - fine[i + 1].reach, S(0)));
+    std::size_t index = 0;
+    const auto size_at = [&](S s) {
+      while (index + 1 < fine.size() && fine[index + 1].at <= s) ++index;
+      S size = std::min(widest,
+                        fine[index].size + growth * std::max(s - fine[index].at - fine[index].reach, S(0)));
+      if (index + 1 < fine.size())
+        size = std::min(size, fine[index + 1].size +
+                                  growth * std::max(fine[index + 1].at - s - fine[index + 1].reach, S(0)));
+      return size;
+    };
+    knots_.assign(1, S(0));
+    while (knots_.back() < length()) {
+      const S here = size_at(knots_.back());
+      const std::size_t stay = index;
+      const S next = std::min(here, size_at(knots_.back() + here));
+      index = stay;
+      knots_.push_back(knots_.back() + next);
+    }
+    const S fit = length() / knots_.back();
+    for (S& knot : knots_) knot *= fit;
+    knots_.back() = length();
+    lengths_.resize(knots_.size() - 1);
+    for (std::size_t i = 0; i < lengths_.size(); ++i) lengths_[i] = knots_[i + 1] - knots_[i];
+    cells_.assign(lengths_.size() + 1, {});
+    const auto length_of = [&](std::ptrdiff_t cell) {
+      return lengths_[static_cast<std::size_t>(
+          std::clamp<std::ptrdiff_t>(cell, 0, static_cast<std::ptrdiff_t>(lengths_.size()) - 1))];
+    };
+    for (std::size_t cell = 0; cell < lengths_.size(); ++cell) {
+      const auto k = static_cast<std::ptrdiff_t>(cell);
+      cells_[cell].length = lengths_[cell];
+      cells_[cell].weights = cubic_weights<S>(
+          {length_of(k - 2), length_of(k - 1), length_of(k), length_of(k + 1), length_of(k + 2)});
+    }
+  }
+
+  // A control point stands at the mean of three knots; there the programmed path, its corners rounded.
+  void make_points() {
+    const std::size_t cells = cell_count();
+    points_.assign(cells + 3, Vector::Zero());
+    const auto knot = [&](std::ptrdiff_t k) {
+      const auto last = static_cast<std::ptrdiff_t>(cells);
+      if (k < 0) return static_cast<S>(k) * lengths_.front();
+      if (k > last) return length() + static_cast<S>(k - last) * lengths_.back();
+      return knots_[static_cast<std::size_t>(k)];
+    };
+    std::size_t near = 0;
+    S widest = S(0);
+    for (const Corner& corner : corners_) widest = std::max(widest, corner.width);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const auto k = static_cast<std::ptrdiff_t>(i);
+      const S s = std::clamp((knot(k - 2) + knot(k - 1) + knot(k)) / S(3), S(0), length());
+      points_[i] = programmed(s);
+      while (near < corners_.size() && corners_[near].at < s - S(2) * widest) ++near;
+      for (std::size_t c = near; c < corners_.size() && corners_[c].at < s + S(2) * widest; ++c)
+        if (corners_[c].width > S(0))
+          points_[i] +=
+              (corners_[c].width * kernel((s - corners_[c].at) / corners_[c].width)) * corners_[c].jump;
+    }
+    // Both ends have the position, tangent and curvature of the programmed path.
+    fix_end(cells_.front().weights, 0, blocks_.front().path->point_at(S(0)), 0);
+    fix_end(moved(cells_[cells - 1].weights, lengths_.back()), 1,
+            blocks_.back().path->point_at(blocks_.back().path->length()), cells);
+  }
+
+  // Three control points from what the curve is at one of its ends; `column`: the first with a weight there.
+  void fix_end(const CubicWeights<S>& w, std::size_t column, const PathPoint<Vector>& at, std::size_t first) {
+    Eigen::Matrix<S, 3, 3> system;
+    Eigen::Matrix<S, 3, axis_count> right;
+    for (int d = 0; d < 3; ++d)
+      for (int q = 0; q < 3; ++q)
+        system(d, q) = w[static_cast<std::size_t>(d)][column + static_cast<std::size_t>(q)];
+    right.row(0) = at.position.transpose();
+    right.row(1) = at.first.transpose();
+    right.row(2) = at.second.transpose();
+    const Eigen::Matrix<S, 3, axis_count> solved = system.partialPivLu().solve(right);
+    for (int q = 0; q < 3; ++q) points_[first + static_cast<std::size_t>(q)] = solved.row(q).transpose();
+  }
+
+  void make_samples() {
+    samples_.clear();
+    std::size_t block = 0;
+    for (std::size_t cell = 0; cell < cell_count(); ++cell) {
+      cells_[cell].first_sample = samples_.size();
+      const S from = knots_[cell], h = lengths_[cell];
+      const auto add = [&](S x, S part) {
+        const std::size_t at = block_at(from + x);
+        samples_.push_back({weights_at(cells_[cell].weights, x), programmed(from + x),
+                            blocks_[at].tolerance.cwiseInverse() / options_.share, part});
+      };
+      for (const S share : {S(0), S(1) / S(3), S(2) / S(3)}) add(share * h, h / S(3));
+      while (block + 1 < blocks_.size() && starts_[block + 1] < from + h) add(starts_[++block] - from, S(0));
+      const std::size_t middle = block_at(from + h / S(2));
+      cells_[cell].third = blocks_[middle].path->point_at(from + h / S(2) - starts_[middle]).third;
+    }
+    cells_.back().first_sample = samples_.size();
+  }
+
+  // Whether the start is well inside; where it is not, corners near by become narrower.
+  bool narrow() {
+    bool inside = true;
+    std::size_t near = 0;
+    S widest = S(0);
+    for (const Corner& corner : corners_) widest = std::max(widest, corner.width);
+    std::vector<char> shrink(corners_.size(), 0);
+    for (std::size_t cell = 0; cell < cell_count(); ++cell) {
+      S worst = S(0);
+      for (std::size_t i = cells_[cell].first_sample; i < cells_[cell + 1].first_sample; ++i) {
+        Vector off = -samples_[i].target;
+        for (std::size_t q = 0; q < 4; ++q) off += samples_[i].weights[q] * points_[cell + q];
+        worst = std::max(worst, off.cwiseProduct(samples_[i].scale).norm());
+      }
+      if (worst < S(0.85)) continue;
+      inside = false;
+      const S s = knots_[cell];
+      while (near < corners_.size() && corners_[near].at < s - S(3) * widest) ++near;
+      for (std::size_t c = near; c < corners_.size() && corners_[c].at < s + S(3) * widest; ++c)
+        if (std::abs(corners_[c].at - s) < S(2.5) * corners_[c].width + lengths_[cell]) shrink[c] = 1;
+    }
+    for (std::size_t c = 0; c < corners_.size(); ++c)
+      if (shrink[c] != 0) corners_[c].width *= S(0.7);
+    return inside;
+  }
+
+  void prepare_memory() {
+    rows_.resize(options_.window);
+    gradient_.resize(options_.window);
+    step_.resize(options_.window);
+    trial_.resize(options_.window + 6);
+  }
+
+  std::span<const BandBlock<P>> blocks_;
+  Options options_;
+  std::vector<S> starts_, knots_, lengths_;
+  std::vector<Corner> corners_;
+  std::vector<Vector> points_, start_;
+  std::vector<BasicBandCell<S, axis_count>> cells_;
+  std::vector<BasicBandSample<S, axis_count>> samples_;
+  std::vector<std::array<Eigen::Matrix<S, axis_count, axis_count>, 4>> rows_;
+  std::vector<Vector> gradient_, step_, trial_;
+};
+
+}  // namespace cncplan::smooth

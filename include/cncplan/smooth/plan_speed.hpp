@@ -1,0 +1,182 @@
+// The fastest motion from rest to rest along cells: phases of constant jerk that provably keep all limits.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "cncplan/smooth/speed_start.hpp"
+
+namespace cncplan::smooth {
+
+template <std::floating_point S>
+struct BasicPlanSpeedOptions {
+  BasicSpeedOptions<S> window;
+  std::size_t window_cells = 400;  ///< coefficients that one window moves
+};
+
+/// Memory of a plan for n cells: n paces and levels, n + 2 plateaus, n + 2 coefficients, and room for
+/// windows.
+template <std::floating_point S>
+struct BasicPlanSpeedMemory {
+  std::span<BasicPace<S>> paces;
+  std::span<S> levels;
+  std::span<BasicPlateau<S>> plateaus;
+  std::span<S> law;
+  std::span<S> window;
+};
+
+/// What became of a plan.
+template <std::floating_point S>
+struct BasicSpeedPlan {
+  BasicRestCell<S> start, end;
+  S duration{};
+  BasicUse<S> use;        ///< of the limits, proven, by the phases as `emit_phases` gives them
+  S slow_down = 1;        ///< by which their clock must run slower to keep the limits; 1 as a rule
+  S start_slow_down = 1;  ///< by which the start of the search had to be made slower, rests included
+  int rounds{};           ///< Newton steps in all
+  std::size_t windows{};
+  std::size_t unconverged{};  ///< windows that stay with a slower law
+};
+
+namespace detail {
+
+/// Leaving rest along a cell, or backwards in time coming to it, with a little less than the limits allow: so
+/// the law that goes on from there has room.
+template <std::floating_point S, int N>
+[[nodiscard]] BasicRestCell<S> rest_cell(const BasicSpeedCell<S, N>& cell,
+                                         const BasicMotionLimits<S, N>& limits) {
+  constexpr S share = S(0.97);
+  BasicRestCell<S> rest(cell.length, share * tangential_limits(std::span(&cell, 1), limits).jerk);
+  for (int round = 0; round < 20; ++round) {
+    const BasicPhase<S> phase{S(0), rest.duration(), S(0), S(0), S(0), rest.jerk};
+    const S use = use_of(phase, cell, limits).slow_down();
+    if (!(use > S(0.995))) break;
+    rest = {cell.length, rest.jerk * std::pow(S(0.98) / use, S(3))};
+  }
+  return rest;
+}
+
+/// The same cell, gone through from its end.
+template <std::floating_point S, int N>
+[[nodiscard]] BasicSpeedCell<S, N> reversed(const BasicSpeedCell<S, N>& cell) {
+  BasicSpeedCell<S, N> back = cell;
+  back.first = -cell.first_at(cell.length);
+  back.second = cell.second_at(cell.length);
+  back.third = -cell.third;
+  return back;
+}
+
+}  // namespace detail
+
+/// Calls `emit(cell, phase)` for the phases of a law, in order; time counts from the start, position from
+/// that of the cell.
+template <std::floating_point S, int N, class Emit>
+void emit_phases(std::span<const BasicSpeedCell<S, N>> cells, std::span<const S> law,
+                 const BasicRestCell<S>& start, const BasicRestCell<S>& end, Emit&& emit) {
+  S time = S(0);
+  const auto at_time = [&](std::size_t cell, BasicPhase<S> phase) {
+    phase.time = time;
+    time += phase.duration;
+    emit(cell, phase);
+  };
+  at_time(0, {S(0), start.duration(), S(0), S(0), S(0), start.jerk});
+  for (std::size_t cell = 1; cell + 1 < cells.size(); ++cell)
+    emit_cell(cell_speed(law, cell - 1, cell > 1 ? cells[cell - 1].length : S(0), cells[cell].length,
+                         cell + 2 < cells.size() ? cells[cell + 1].length : S(0)),
+              cells[cell].length, [&](const BasicPhase<S>& phase) { at_time(cell, phase); });
+  at_time(cells.size() - 1, {S(0), end.duration(), S(0), end.speed, -end.acceleration, end.jerk});
+}
+
+/// The same phase where the clock runs slower by a factor.
+template <std::floating_point S>
+[[nodiscard]] constexpr BasicPhase<S> slowed(const BasicPhase<S>& phase, S by) {
+  return {phase.time * by,
+          phase.duration * by,
+          phase.position,
+          phase.velocity / by,
+          phase.acceleration / (by * by),
+          phase.jerk / (by * by * by)};
+}
+
+/// Plans the speed over cells of which the first and the last, short ones, are those in which motion leaves
+/// rest and comes to it.
+template <std::floating_point S, int N>
+[[nodiscard]] BasicSpeedPlan<S> plan_speed(std::span<const BasicSpeedCell<S, N>> cells,
+                                           const BasicMotionLimits<S, N>& limits,
+                                           const BasicPlanSpeedOptions<S>& options,
+                                           const BasicPlanSpeedMemory<S>& memory) {
+  BasicSpeedPlan<S> plan;
+  const std::size_t inner = cells.size() - 2;
+  const auto law = memory.law.first(inner + 2);
+  const auto paces = memory.paces.first(cells.size());
+  const auto levels = memory.levels.first(inner);
+  std::fill(paces.begin(), paces.end(), BasicPace<S>{});
+  const BasicSpeedProblem<S, N> problem{cells.subspan(1, inner), paces.subspan(1, inner), &limits};
+  const BasicLimits<S> along = tangential_limits(cells, limits);
+  for (std::size_t i = 0; i < inner; ++i) {
+    const S speed = leisurely_speed(problem.cells[i], limits, problem.paces[i]);
+    levels[i] = speed * speed;
+  }
+  plan.start = detail::rest_cell(cells.front(), limits);
+  plan.end = detail::rest_cell(detail::reversed(cells.back()), limits);
+  // A start that keeps the limits: where it does not yet, it becomes slower, in the end everywhere.
+  for (int round = 0; round < 12; ++round) {
+    gentle_law(problem, std::span<const S>(levels), plan.start, plan.end, along, memory.plateaus, law);
+    S worst = S(0);
+    for (std::size_t i = 0; i < inner; ++i) {
+      const BasicUse<S> use =
+          sampled_use(problem.cells[i], limits, problem.speed(std::span<const S>(law), i));
+      const S slow =
+          std::max(use.velocity / problem.paces[i].speed,
+                   std::max(std::sqrt(use.acceleration), std::cbrt(use.jerk)) / problem.paces[i].force);
+      worst = std::max(worst, slow);
+      if (slow < S(1)) continue;
+      for (std::size_t k = i >= 2 ? i - 2 : 0; k < std::min(i + 3, inner); ++k) levels[k] *= S(0.8);
+    }
+    if (worst < S(1)) break;
+    if (round < 11) continue;
+    const S slower = worst * S(1.01);
+    for (S& b : law) b /= slower * slower;
+    plan.start = {cells.front().length, plan.start.jerk / (slower * slower * slower)};
+    plan.end = {cells.back().length, plan.end.jerk / (slower * slower * slower)};
+    plan.start_slow_down = slower;
+  }
+  // Windows move the coefficients that are slower than the feed.
+  for (std::size_t k = 2; k < inner; ++k) {
+    const S feed = problem.cells[k - 1].feed * problem.paces[k - 1].speed;
+    levels[k - 1] = law[k] > feed * feed * (S(1) - S(1e-4)) ? S(0) : S(1);
+  }
+  const BasicWindowMemory<S> window(memory.window);
+  const std::size_t most = std::min(options.window_cells, window.capacity() - 4);
+  for (std::size_t k = 2; k < inner;) {
+    if (!(levels[k - 1] > S(0))) {
+      ++k;
+      continue;
+    }
+    std::size_t end = k;
+    while (end < inner && levels[end - 1] > S(0)) ++end;
+    for (std::size_t first = k; first < end;) {
+      const std::size_t last = std::min(first + most, end);
+      const auto result = optimise(problem, law, first, last, options.window, window);
+      plan.rounds += result.rounds;
+      plan.windows += 1;
+      plan.unconverged += result.converged ? 0 : 1;
+      if (last == end) break;
+      first += most / 2;
+    }
+    k = end;
+  }
+  emit_phases(cells, std::span<const S>(law), plan.start, plan.end,
+              [&](std::size_t cell, const BasicPhase<S>& phase) {
+                plan.use.include(use_of(phase, cells[cell], limits));
+                plan.duration = phase.time + phase.duration;
+              });
+  plan.slow_down = std::max(S(1), plan.use.slow_down());
+  return plan;
+}
+
+}  // namespace cncplan::smooth

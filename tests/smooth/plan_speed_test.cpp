@@ -1,0 +1,136 @@
+// Speed along given cells: against closed forms on straight paths, whatever the window, and off the heap.
+#include "cncplan/smooth/plan_speed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+#include "support/random.hpp"
+
+namespace {
+
+using namespace cncplan;
+using namespace cncplan::smooth;
+
+// Cells that grow from both ends of a straight path.
+std::vector<SpeedCell<3>> straight(double length, double first, double widest, double feed,
+                                   const Vector3& way) {
+  std::vector<double> half{first};
+  double left = length / 2 - first;
+  for (double h = 0.3 * first; left > 0; h = std::min(1.2 * h, widest)) {
+    half.push_back(std::min(h, left));
+    left -= h;
+  }
+  if (half.size() > 2 && half.back() < 0.3 * half[half.size() - 2]) {
+    half[half.size() - 2] += half.back();
+    half.pop_back();
+  }
+  std::vector<SpeedCell<3>> cells;
+  const auto add = [&](double h) { cells.push_back({h, feed, way, Vector3::Zero(), Vector3::Zero(), 0}); };
+  for (const double h : half) add(h);
+  for (auto h = half.rbegin(); h != half.rend(); ++h) add(*h);
+  return cells;
+}
+
+struct Memory {
+  std::vector<BasicPace<double>> paces;
+  std::vector<double> levels, law, window;
+  std::vector<BasicPlateau<double>> plateaus;
+
+  explicit Memory(std::size_t cells)
+      : paces(cells), levels(cells), law(cells + 2), window(11 * 1000), plateaus(cells + 4) {}
+  BasicPlanSpeedMemory<double> spans() { return {paces, levels, plateaus, law, window}; }
+};
+
+// The least time from rest to rest over a length, by the classical seven phases.
+double seven_phases(double length, const Limits& l) {
+  const auto ramp_time = [&](double v) {
+    return v * l.jerk > l.acceleration * l.acceleration ? v / l.acceleration + l.acceleration / l.jerk
+                                                        : 2 * std::sqrt(v / l.jerk);
+  };
+  double low = 0, high = l.velocity;
+  for (int i = 0; i < 200; ++i) {
+    const double v = (low + high) / 2;
+    (v * ramp_time(v) > length ? high : low) = v;
+  }
+  return 2 * ramp_time(low) + (length - low * ramp_time(low)) / low;
+}
+
+TEST_CASE("on a straight path the speed is that of seven phases, for any window") {
+  for (const Limits& l :
+       {Limits{30, 1000, 1e4}, Limits{100, 2000, 4e4}, Limits{50, 1000, 1e5}, Limits{10, 50, 1e3}})
+    for (const double length : {1.0, 10.0, 60.0}) {
+      const double best = seven_phases(length, l);
+      const double rest = std::sqrt(std::pow(0.02 * l.velocity, 3) / (4.5 * l.jerk));
+      const auto cells =
+          straight(length, rest, std::min(0.1 * l.velocity * std::sqrt(l.velocity / l.jerk), length / 60),
+                   l.velocity, Vector3(0.6, 0, 0.8));
+      MotionLimits<3> limits;
+      limits.tool = l;
+      Memory memory(cells.size());
+      for (const std::size_t window : {100, 130, 200, 400, 900}) {
+        INFO("V " << l.velocity << " A " << l.acceleration << " J " << l.jerk << " length " << length
+                  << " window " << window);
+        const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, window}, memory.spans());
+        CHECK(plan.use.slow_down() <= 1);
+        CHECK(plan.duration > best * (1 - 1e-6));
+        CHECK(plan.duration < best * 1.002 + 0.05 * std::sqrt(l.velocity / l.jerk));
+      }
+    }
+}
+
+TEST_CASE("an axis that is weaker than the tool binds") {
+  MotionLimits<3> limits;
+  limits.tool = {30, 1000, 1e4};
+  limits.axes[2] = {12, 200, 1e3};
+  const auto cells = straight(40, 2e-3, 0.16, 30, Vector3(0.6, 0, 0.8));
+  Memory memory(cells.size());
+  const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, 400}, memory.spans());
+  // Along the path Z allows its limits over 0.8.
+  const double best = seven_phases(40, {15, 250, 1250});
+  CHECK(plan.use.slow_down() <= 1);
+  CHECK(plan.duration > best * (1 - 1e-6));
+  CHECK(plan.duration < best * 1.004);
+}
+
+TEST_CASE("phases follow each other without a jump, from rest to rest") {
+  MotionLimits<3> limits;
+  limits.tool = {30, 1000, 1e4};
+  auto cells = straight(20, 2e-3, 0.16, 30, Vector3(1, 0, 0));
+  for (std::size_t i = cells.size() / 3; i < cells.size() / 2; ++i) cells[i].feed = 8;
+  Memory memory(cells.size());
+  const auto plan = plan_speed<double, 3>(cells, limits, {}, memory.spans());
+  CHECK(plan.use.slow_down() <= 1);
+  State last{};
+  double time = 0, largest = 0;
+  std::size_t at = 0;
+  emit_phases<double, 3>(
+      cells, std::span<const double>(memory.law).first(cells.size()), plan.start, plan.end,
+      [&](std::size_t cell, const Phase& phase) {
+        if (cell != at) last.position -= cells[at].length;
+        at = cell;
+        largest = std::max({largest, std::abs(phase.time - time), std::abs(phase.position - last.position),
+                            std::abs(phase.velocity - last.velocity),
+                            std::abs(phase.acceleration - last.acceleration) / 100});
+        last = phase.at(phase.duration);
+        time = phase.time + phase.duration;
+      });
+  CHECK(largest < 1e-8);
+  CHECK(at + 1 == cells.size());
+  CHECK(last.velocity < 1e-8);
+  CHECK(std::abs(last.acceleration) < 1e-6);
+  CHECK(time == Approx(plan.duration));
+}
+
+TEST_CASE("a speed is planned off the heap") {
+  MotionLimits<3> limits;
+  limits.tool = {30, 1000, 1e4};
+  const auto cells = straight(20, 2e-3, 0.16, 30, Vector3(1, 0, 0));
+  Memory memory(cells.size());
+  CHECK(test::heap_allocations_of(
+            [&] { static_cast<void>(plan_speed<double, 3>(cells, limits, {}, memory.spans())); }) == 0);
+}
+
+}  // namespace

@@ -1,0 +1,194 @@
+// Whole runs: what motion does by differences of positions, and how far it is from the programmed path.
+#include "cncplan/smooth/smooth_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cncplan/path/segment.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+namespace {
+
+using namespace cncplan;
+using namespace cncplan::smooth;
+using Segment = path::BasicSegment<double, 3>;
+using Run = BasicSmoothRun<double, 3>;
+
+struct Program {
+  std::vector<Segment> paths;
+  std::vector<double> feeds;
+  double tolerance = 0.01;
+  MotionLimits<3> limits;
+
+  void line(const Vector3& from, const Vector3& to, double feed) {
+    paths.emplace_back(path::BasicLine<double, 3>(from, to));
+    feeds.push_back(feed);
+  }
+  [[nodiscard]] std::vector<BandBlock<Segment>> blocks() const {
+    std::vector<BandBlock<Segment>> result;
+    for (std::size_t i = 0; i < paths.size(); ++i)
+      result.push_back({&paths[i], feeds[i], Vector3::Constant(tolerance)});
+    return result;
+  }
+};
+
+Program corner(double degrees, const Limits& limits = {30, 1000, 1e4}, double tolerance = 0.01) {
+  Program program;
+  program.tolerance = tolerance;
+  program.limits.tool = limits;
+  const double turn = degrees * std::numbers::pi / 180;
+  const Vector3 middle(50, 0, 0), end = middle + 50 * Vector3(std::cos(turn), std::sin(turn), 0);
+  program.line(Vector3::Zero(), middle, limits.velocity);
+  program.line(middle, end, limits.velocity);
+  return program;
+}
+
+// Shares of the limits by differences of positions every 0.1 ms, and distances to lines, both ways.
+struct Found {
+  double velocity = 0, acceleration = 0, jerk = 0, off = 0, missed = 0;
+};
+
+double to_segment(const Vector3& p, const Segment& path) {
+  if (path.arc() != nullptr) return 0;
+  const Vector3 a = path.position_at(0), way = path.position_at(path.length()) - a;
+  return (a + std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way - p).norm();
+}
+
+Found differences(const Run& run, const Program& program) {
+  Found found;
+  const double dt = 1e-4;
+  const auto shares = [&](const Vector3& x, auto limit) {
+    double share = x.norm() / program.limits.tool.*limit;
+    for (int axis = 0; axis < 3; ++axis)
+      share = std::max(share, std::abs(x[axis]) / program.limits.axes[static_cast<std::size_t>(axis)].*limit);
+    return share;
+  };
+  std::vector<Vector3> p;
+  std::vector<std::size_t> block;
+  std::size_t k = 0;
+  for (int i = 0; i * dt < run.duration; ++i) {
+    while (k + 1 < run.phases.size() && run.phases[k + 1].phase.time <= i * dt) ++k;
+    const auto& [phase, piece] = run.phases[k];
+    p.push_back(run.pieces[piece].path.position_at(phase.at(i * dt - phase.time).position));
+    block.push_back(run.pieces[piece].block);
+  }
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (i >= 1) found.velocity = std::max(found.velocity, shares((p[i] - p[i - 1]) / dt, &Limits::velocity));
+    if (i >= 2)
+      found.acceleration = std::max(
+          found.acceleration, shares((p[i] - 2 * p[i - 1] + p[i - 2]) / (dt * dt), &Limits::acceleration));
+    if (i >= 3)
+      found.jerk =
+          std::max(found.jerk,
+                   shares((p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3]) / (dt * dt * dt), &Limits::jerk));
+    double nearest = 1e9;
+    for (std::size_t b = block[i] > 20 ? block[i] - 20 : 0; b < std::min(block[i] + 21, program.paths.size());
+         ++b)
+      nearest = std::min(nearest, to_segment(p[i], program.paths[b]));
+    found.off = std::max(found.off, nearest);
+  }
+  // Vertices are where the curve is farthest from the path: to pieces of chords between samples.
+  for (std::size_t b = 1; b < program.paths.size(); ++b) {
+    const Vector3 vertex = program.paths[b].position_at(0);
+    double nearest = 1e9;
+    for (std::size_t i = 1; i < p.size(); ++i) {
+      const Vector3 way = p[i] - p[i - 1];
+      const double share =
+          way.squaredNorm() > 0 ? std::clamp((vertex - p[i - 1]).dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
+      nearest = std::min(nearest, (p[i - 1] + share * way - vertex).norm());
+    }
+    found.missed = std::max(found.missed, nearest);
+  }
+  return found;
+}
+
+void check(const Run& run, const Program& program) {
+  CHECK(run.use.slow_down() <= 1);
+  CHECK(run.deviation <= 1);
+  const Found found = differences(run, program);
+  CHECK(found.velocity <= 1 + 1e-4);
+  CHECK(found.acceleration <= 1 + 1e-4);
+  CHECK(found.jerk <= 1 + 1e-4);
+  CHECK(found.off <= program.tolerance * (1 + 1e-9));
+  CHECK(found.missed <= program.tolerance * (1 + 1e-6));
+  // From the first point to the last, piece after piece.
+  REQUIRE(!run.pieces.empty());
+  CHECK((run.pieces.front().path.position_at(0) - program.paths.front().position_at(0)).norm() < 1e-9);
+  const auto& last = run.pieces.back().path;
+  CHECK((last.position_at(last.length()) - program.paths.back().position_at(program.paths.back().length()))
+            .norm() < 1e-9);
+  double jump = 0;
+  std::vector<double> lengths(program.paths.size(), 0);
+  for (std::size_t i = 0; i < run.pieces.size(); ++i) {
+    lengths[run.pieces[i].block] += run.pieces[i].path.length();
+    if (i == 0) continue;
+    const auto& before = run.pieces[i - 1].path;
+    jump = std::max(jump, (before.position_at(before.length()) - run.pieces[i].path.position_at(0)).norm());
+  }
+  CHECK(jump < 1e-9);
+  for (std::size_t b = 0; b < lengths.size(); ++b)
+    CHECK(lengths[b] == Approx(program.paths[b].length()).epsilon(1e-9));
+}
+
+TEST_CASE("one corner: limits, tolerance, and the time of the study") {
+  // Losses over length / V of the study's table, 30 / 1000 / 10000 and 0.01 mm.
+  struct Row {
+    double degrees, loss;
+  };
+  for (const auto& [degrees, loss] : {Row{90, 0.077}, Row{30, 0.061}, Row{10, 0.001}, Row{150, 0.0615}}) {
+    INFO("a corner of " << degrees << " degrees");
+    const Program program = corner(degrees);
+    const auto run = smooth_run<Segment>(program.blocks(), program.limits);
+    check(run, program);
+    const double ends = 2 * std::sqrt(30 / 1e4);
+    CHECK(run.duration - 100.0 / 30 - ends < loss + 0.009);
+    CHECK(run.duration - 100.0 / 30 - ends > 0);
+  }
+}
+
+TEST_CASE("the time does not depend on the windows") {
+  Program program = corner(90);
+  program.line(program.paths.back().position_at(50), Vector3(20, 50, 3), 30);
+  program.line(Vector3(20, 50, 3), Vector3(20, 49, 3), 30);
+  program.line(Vector3(20, 49, 3), Vector3(50, 49, 3), 30);
+  const double reference = smooth_run<Segment>(program.blocks(), program.limits).duration;
+  for (const std::size_t window : {150, 210, 250, 600, 1000}) {
+    INFO("window " << window);
+    BasicSmoothOptions<double> options;
+    options.speed_window = window;
+    const auto run = smooth_run<Segment>(program.blocks(), program.limits, options);
+    CHECK(run.duration == Approx(reference).epsilon(1e-3));
+    check(run, program);
+  }
+}
+
+TEST_CASE("random programs keep limits and tolerance") {
+  test::Random random;
+  for (int i = 0; i < 12; ++i) {
+    Program program;
+    program.limits.tool = random.coin() ? Limits{30, 1000, 1e4} : Limits{100, 2000, 4e4};
+    if (random.coin()) program.limits.axes[1] = {20, 600, 5e3};
+    program.tolerance = random.log_uniform(0.003, 0.05);
+    Vector3 at = Vector3::Zero();
+    std::ostringstream points;
+    const int blocks = random.integer(2, 40);
+    for (int b = 0; b < blocks; ++b) {
+      const Vector3 way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.3, 0.3));
+      const Vector3 next = at + random.log_uniform(0.05, 10) * way.normalized();
+      const double feed = random.uniform(5, program.limits.tool.velocity);
+      program.line(at, next, feed);
+      points << "{" << next.transpose() << "} F" << feed << "\n";
+      at = next;
+    }
+    INFO("seed " << test::seed() << " program " << i << " tolerance " << program.tolerance << "\n"
+                 << points.str());
+    check(smooth_run<Segment>(program.blocks(), program.limits), program);
+  }
+}
+
+}  // namespace
