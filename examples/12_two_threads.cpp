@@ -11,8 +11,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "cncplan/cncplan.hpp"
 
@@ -32,22 +34,23 @@ struct Feed {
 
 // The program: round a circle twice in 160 short lines.
 constexpr int block_count = 160;
-plan::Block block(int number) {
+Block<3> block(int number) {
   constexpr double radius = 5.0, turn = 4.0 * std::numbers::pi / block_count;
   const auto corner = [&](int i) {
     return Vector3(radius * std::cos(i * turn), radius * std::sin(i * turn), 0);
   };
-  return {path::Line<3>(corner(number), corner(number + 1)), limits, junction::Kind::line};
+  return {.path = path::Line<3>(corner(number), corner(number + 1)), .feed = limits.velocity};
 }
 
 // Not bound to any time: it runs ahead as far as the queue has room.
 void plan_ahead(Feed& feed, bool starve) {
-  for (int i = 0; i < block_count; ++i) {
-    if (starve && i == block_count / 2) std::this_thread::sleep_for(1500ms);
-    const auto caps =
-        i == 0 ? plan::caps_from_rest(block(0), plan::ShareLimits{})
-               : plan::caps(block(i - 1), block(i), junction::Deviation{0.01}, plan::ShareLimits{});
-    const plan::PlayedBlock next{.caps = caps, .feed = limits.velocity};
+  std::vector<Block<3>> blocks;
+  for (int i = 0; i < block_count; ++i) blocks.push_back(block(i));
+  const plan::JointRules<double, junction::Deviation> rules{{0.01}, 0.01, 0.0};
+  const auto cells = plan::make_cells(std::span<const Block<3>>(blocks), Machine<3>{.limits = limits}, rules);
+  for (std::size_t i = 0; i < cells->caps.size(); ++i) {  // each line is one cell
+    if (starve && i == cells->caps.size() / 2) std::this_thread::sleep_for(1500ms);
+    const plan::PlayedBlock next{.caps = cells->caps[i], .feed = limits.velocity};
     while (!feed.blocks.push(next)) std::this_thread::sleep_for(period);
   }
   feed.complete.store(true, std::memory_order_release);

@@ -2,19 +2,34 @@
 // spans of planned motion go out. Prints each span; a controller would play it.
 //   15_stream_program PROGRAM
 #include <array>
+#include <cmath>
 #include <cncplan/cncplan.hpp>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 
 using namespace cncplan;
+
+const Machine<3> mill{.limits = {.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0},
+                      .rapid_rate = 50.0};
+
+// What look-ahead needs to know of a block behind another, which may be none.
+plan::BlockCaps caps_of(const Block<3>& block, const Block<3>* before) {
+  const double length = block.path.length();
+  const Limits along =
+      plan::limits_along(block.path.bounds(0.0, length), mill, block.feed, mill.limits.velocity, length);
+  if (before == nullptr || before->exact_stop || !(length > 0.0)) return {length, 0.0, along, block.pause};
+  const auto tool = tool_axes(mill);
+  const junction::Geometry joint{plan::tool_side<Machine<3>>(*before, true, tool),
+                                 plan::tool_side<Machine<3>>(block, false, tool), mill.limits};
+  return {length, std::sqrt(junction::Deviation{0.01}.speed_sq(joint)), along, block.pause};
+}
 
 // Look-ahead over a window of blocks, and what becomes of the spans.
 class Stream {
  public:
-  bool push(const plan::Block& block) {
-    const auto caps = first_ ? plan::caps_from_rest(block, plan::ShareLimits{})
-                             : plan::caps(before_, block, junction::Deviation{0.01}, plan::ShareLimits{});
-    first_ = false;
+  bool push(const Block<3>& block) {
+    const auto caps = caps_of(block, before_ ? &*before_ : nullptr);
     before_ = block;
     return print(planner_.push(caps, spans_.begin()));
   }
@@ -36,8 +51,7 @@ class Stream {
   std::array<plan::Gate, window + 1> gates_, held_gates_;
   plan::StreamPlanner<double> planner_{{blocks_, gates_, held_gates_}};
   Spans spans_;
-  plan::Block before_;
-  bool first_ = true;
+  std::optional<Block<3>> before_;
   double time_ = 0.0;
 };
 
@@ -46,14 +60,13 @@ int main(int count, char** arguments) {
   std::ifstream file(arguments[1], std::ios::binary);
   if (!file) return std::fprintf(stderr, "%s cannot be read\n", arguments[1]), 2;
 
-  const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
-  gcode::Reader reader;
-  plan::BlockMaker maker(limits, 50.0);
+  const gcode::Dialect dialect = dialect_of(mill);
+  gcode::Reader reader(dialect);
+  BlockBuilder<Machine<3>> builder(mill, dialect);
   Stream stream;
   const auto read = gcode::read_program(gcode::StreamLines(file), reader, [&](const gcode::Item& item) {
-    const auto block = maker.take(item);
+    const auto block = builder.take(item);
     return block && (!*block || stream.push(**block));
   });
-  const auto last = maker.finish();
-  if (!read || (last && !stream.push(*last)) || !stream.finish()) return 1;
+  if (!read || !stream.finish()) return 1;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/enclosed_bounds.hpp"
 
 namespace cncplan::path {

@@ -9,6 +9,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/error.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/arc_length_table.hpp"
 #include "cncplan/path/enclosed_bounds.hpp"
 

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/arc.hpp"
 #include "cncplan/path/arc_along.hpp"
 #include "cncplan/path/line.hpp"
@@ -130,9 +131,6 @@ class BasicSegment {
   }
   [[nodiscard]] S max_curvature() const {
     return visit([](const auto& p) { return p.max_curvature(); });
-  }
-  [[nodiscard]] S max_curvature_change() const {
-    return visit([](const auto& p) { return p.max_curvature_change(); });
   }
   [[nodiscard]] S next_turning(int axis, S u) const {
     return visit([axis, u](const auto& p) { return p.next_turning(axis, u); });
