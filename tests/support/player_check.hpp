@@ -67,7 +67,7 @@ inline PlayedProgram random_played(Random& random, int count) {
   const double deviation = random.coin() ? 0.01 : 1.0;
   const plan::JointRules<double, junction::Deviation> rules{{deviation}, -1.0, -1.0};
   Vector3 at = Vector3::Zero();
-  Block<3> before;
+  std::vector<Block<3>> pair;  // the block before, and the new one
   for (int i = 0; i < count; ++i) {
     Block<3> block{.path = random_segment(random, at, random.log_uniform(0.01, longest)), .line = i + 1};
     at = block.path.end();
@@ -78,9 +78,8 @@ inline PlayedProgram random_played(Random& random, int count) {
       machine.limits.jerk *= random.uniform(0.3, 1.0);
     }
     if (random.integer(0, 7) == 0) block.pause = 0.01;
-    // behind the block before it, both under the limits of this one
-    std::vector<Block<3>> pair{before, block};
-    if (i == 0) pair.erase(pair.begin());
+    if (pair.size() == 2) pair.erase(pair.begin());
+    pair.push_back(block);  // both under the limits of the new one
     const auto cells = plan::make_cells(std::span<const Block<3>>(pair), machine, rules).value();
     const double slow = random.uniform(0.0, 30.0);
     const bool slowed = random.integer(0, 3) == 0;
@@ -95,7 +94,6 @@ inline PlayedProgram random_played(Random& random, int count) {
       program.motions.push_back({block.path, from, machine.limits});
       from += cells.caps[k].length;
     }
-    before = block;
   }
   return program;
 }
