@@ -5,16 +5,19 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "../examples/generate/programs.hpp"
 #include "cncplan/gcode/read_program.hpp"
-#include "cncplan/plan/motion_block.hpp"
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/plan/block_builder.hpp"
+#include "cncplan/plan/cells.hpp"
 
 namespace cncplan::bench {
 
-inline constexpr cncplan::Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+inline const Machine<3> mill{.limits = {.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0}};
+/// Corners by the tool's deviation, 0.01 mm.
+inline constexpr plan::JointRules<double, junction::Deviation> joint_rules{{0.01}, 0.01, 0.0};
 
 /// The program that CNCPLAN_BALL names; else a sphere finished in 35000 short moves.
 inline const std::string& ball() {
@@ -29,20 +32,18 @@ inline const std::string& ball() {
   return text;
 }
 
-/// Its motions as blocks, in place of those that were there. False if it does not read.
-inline bool read_blocks(const std::string& text, std::vector<cncplan::plan::Block>& blocks) {
+/// Its blocks, in place of those that were there. False if it does not read.
+inline bool read_blocks(const std::string& text, std::vector<Block<3>>& blocks) {
   blocks.clear();
-  gcode::Reader reader;
-  bool made = true;
-  const auto done = gcode::read_program(gcode::TextLines(text), reader, [&](const gcode::Item& item) {
-    if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
-      const auto block = plan::block(*motion, limits, limits.velocity);
-      if (block) blocks.push_back(*block);
-      made = block.has_value();
-    }
-    return made;
+  const gcode::Dialect dialect = dialect_of(mill);
+  gcode::Reader reader(dialect);
+  BlockBuilder<Machine<3>> builder(mill, dialect);
+  const auto read = gcode::read_program(gcode::TextLines(text), reader, [&](const gcode::Item& item) {
+    const auto block = builder.take(item);
+    if (block && *block) blocks.push_back(**block);
+    return block.has_value();
   });
-  return done && made && !blocks.empty();
+  return read && !blocks.empty();
 }
 
 }  // namespace cncplan::bench

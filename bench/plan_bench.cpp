@@ -2,14 +2,13 @@
 #include <benchmark/benchmark.h>
 
 #include <iterator>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "ball.hpp"
 #include "buffer.hpp"
-#include "cncplan/junction/deviation.hpp"
 #include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/sampler.hpp"
+#include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/plan/stream_planner.hpp"
 #include "plan/random_program.hpp"
@@ -19,77 +18,61 @@ namespace {
 using namespace cncplan;
 using bench::ball;
 
-// Everything between text and samples; cleared and filled again, so that only the first round asks for
-// memory.
-struct Job {
-  std::vector<plan::Block> blocks;
-  std::vector<plan::BlockCaps> caps;
-  std::vector<double> lengths;
-  std::vector<plan::Gate> gates;
-  std::vector<plan::Span> spans;
+using Spans = std::vector<plan::Span>;
 
-  bool read(const std::string& text) { return bench::read_blocks(text, blocks); }
+std::vector<Block<3>> ball_blocks(benchmark::State& state) {
+  std::vector<Block<3>> blocks;
+  if (!bench::read_blocks(ball(), blocks)) state.SkipWithError("the program does not read");
+  return blocks;
+}
 
-  bool plan() {
-    caps.clear();
-    lengths.clear();
-    spans.clear();
-    const junction::Deviation deviation{0.01};
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      caps.push_back(i == 0 ? plan::caps_from_rest(blocks[i], plan::ShareLimits{})
-                            : plan::caps(blocks[i - 1], blocks[i], deviation, plan::ShareLimits{}));
-      lengths.push_back(caps.back().length);
-    }
-    gates.resize(blocks.size() + 1);
-    return plan::plan_spans(std::span<const plan::BlockCaps>(caps), plan::SevenPhase{}, std::span(gates),
-                            std::back_inserter(spans))
-        .has_value();
-  }
+auto cells_of(const std::vector<Block<3>>& blocks) {
+  return plan::make_cells(std::span(blocks), bench::mill, bench::joint_rules);
+}
 
-  // The same blocks one by one through a window.
-  bool stream(std::size_t window) {
-    std::vector<plan::BlockCaps> ahead(window);
-    std::vector<plan::Gate> first(window + 1), second(window + 1);
-    spans.clear();
-    plan::StreamPlanner<double> planner({ahead, first, second});
-    const junction::Deviation deviation{0.01};
-    const auto out = std::back_inserter(spans);
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const auto block = i == 0 ? plan::caps_from_rest(blocks[i], plan::ShareLimits{})
-                                : plan::caps(blocks[i - 1], blocks[i], deviation, plan::ShareLimits{});
-      if (!planner.push(block, out)) return false;
-    }
-    return planner.finish(out).has_value();
-  }
+// Looks ahead over all blocks.
+bool plan_whole(const std::vector<Block<3>>& blocks, std::vector<plan::Gate>& gates, Spans& spans) {
+  const auto cells = cells_of(blocks);
+  if (!cells) return false;
+  spans.clear();
+  gates.resize(cells->caps.size() + 1);
+  return plan::plan_spans(std::span<const plan::BlockCaps>(cells->caps), plan::SevenPhase{}, std::span(gates),
+                          std::back_inserter(spans))
+      .has_value();
+}
 
-  std::int64_t sample() {
-    plan::Sampler sampler(blocks, spans, lengths, 1e-3);
-    std::int64_t count = 0;
-    while (const Eigen::Index written = sampler.positions(points(bench::buffer()))) {
-      count += written;
-      benchmark::ClobberMemory();
-    }
-    return count;
-  }
-};
+// The same blocks one by one through a window.
+bool plan_through(std::size_t window, const std::vector<Block<3>>& blocks, Spans& spans) {
+  const auto cells = cells_of(blocks);
+  if (!cells) return false;
+  std::vector<plan::BlockCaps> ahead(window);
+  std::vector<plan::Gate> first(window + 1), second(window + 1);
+  spans.clear();
+  plan::StreamPlanner<double> planner({ahead, first, second});
+  const auto out = std::back_inserter(spans);
+  for (const plan::BlockCaps& caps : cells->caps)
+    if (!planner.push(caps, out)) return false;
+  return planner.finish(out).has_value();
+}
 
 // Caps and spans over blocks in memory. An item is a block.
 void plan_ball(benchmark::State& state) {
-  Job job;
-  if (!job.read(ball())) state.SkipWithError("the program does not read");
+  const auto blocks = ball_blocks(state);
+  std::vector<plan::Gate> gates;
+  Spans spans;
   for (auto _ : state)
-    if (!job.plan()) state.SkipWithError("the program has no plan");
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(job.blocks.size()));
+    if (!plan_whole(blocks, gates, spans)) state.SkipWithError("the program has no plan");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(plan_ball)->Name("plan/ball")->Unit(benchmark::kMillisecond);
 
 // The same, block by block through windows of different sizes. An item is a block.
 void plan_ball_stream(benchmark::State& state, std::size_t window) {
-  Job job;
-  if (!job.read(ball())) state.SkipWithError("the program does not read");
+  const auto blocks = ball_blocks(state);
+  Spans spans;
   for (auto _ : state)
-    if (!job.stream(window)) state.SkipWithError("the program has no plan");
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(job.blocks.size()));
+    if (!plan_through(window, blocks, spans)) state.SkipWithError("the program has no plan");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK_CAPTURE(plan_ball_stream, , 256)->Name("plan/ball/stream")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_ball_stream, , 16)->Name("plan/ball/stream/16")->Unit(benchmark::kMillisecond);
@@ -120,11 +103,16 @@ BENCHMARK(plan_random)->Name("plan/random")->Unit(benchmark::kMillisecond);
 // Text to positions at every millisecond, on one core. An item is a sample; `times_real_time` is how often
 // faster than the machine would move it is.
 void pipeline_ball(benchmark::State& state) {
-  Job job;
   std::int64_t samples = 0;
   for (auto _ : state) {
-    if (!job.read(ball()) || !job.plan()) state.SkipWithError("the program has no plan");
-    samples += job.sample();
+    const auto trajectory = plan_text(ball(), bench::mill);
+    if (!trajectory) return state.SkipWithError("the program has no plan");
+    Eigen::Index written = 0;
+    for (std::int64_t first = 0; first == 0 || written == bench::buffer_points; first += written) {
+      written = trajectory->positions(1e-3, first, points(bench::buffer()));
+      samples += written;
+      benchmark::ClobberMemory();
+    }
   }
   state.SetItemsProcessed(samples);
   state.counters["times_real_time"] =

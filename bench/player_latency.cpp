@@ -1,13 +1,14 @@
 // The time of single ticks of a player on a program of many short moves: median, 99.9 % and maximum over ten
 // million.
 //   [CNCPLAN_BALL=ball.nc] cncplan_player_latency [COUNT]
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 #include <vector>
 
 #include "ball.hpp"
-#include "cncplan/junction/deviation.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "latencies.hpp"
 #include "support/random.hpp"
@@ -16,13 +17,15 @@ namespace {
 
 using namespace cncplan;
 
-std::vector<plan::PlayedBlock> played(const std::vector<plan::Block>& blocks) {
+// The cells of a program, as a player takes them.
+std::vector<plan::PlayedBlock> played(const std::vector<Block<3>>& blocks) {
   std::vector<plan::PlayedBlock> result;
-  const junction::Deviation deviation{0.01};
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto caps = i == 0 ? plan::caps_from_rest(blocks[i], plan::ShareLimits{})
-                             : plan::caps(blocks[i - 1], blocks[i], deviation, plan::ShareLimits{});
-    result.push_back({caps, blocks[i].limits.velocity, blocks[i].kind == junction::Kind::rapid, false, 0});
+  const auto cells = plan::make_cells(std::span(blocks), bench::mill, bench::joint_rules);
+  if (!cells) return result;
+  for (std::size_t i = 0; i < cells->caps.size(); ++i) {
+    const Block<3>& block = blocks[cells->blocks[i]];
+    const double feed = std::min(block.feed, bench::mill.limits.velocity);
+    result.push_back({.caps = cells->caps[i], .feed = feed, .rapid = block.rapid});
   }
   return result;
 }
@@ -57,10 +60,11 @@ void measure(const char* name, const std::vector<plan::PlayedBlock>& program, st
 
 int main(int argc, char** argv) {
   const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 10'000'000;
-  std::vector<plan::Block> blocks;
+  std::vector<Block<3>> blocks;
   if (!bench::read_blocks(bench::ball(), blocks))
     return std::fprintf(stderr, "the program does not read\n"), 1;
   const auto program = played(blocks);
+  if (program.empty()) return std::fprintf(stderr, "the program has no plan\n"), 1;
   bench::Latencies nothing(count);
   for (std::size_t i = 0; i < count; ++i) nothing.time([&] { bench::keep(i); });
   nothing.print("nothing (the clock)");

@@ -2,6 +2,7 @@
 // program takes with those of the library.
 #include <cncplan/cncplan.hpp>
 #include <cstdio>
+#include <vector>
 
 using namespace cncplan;
 
@@ -16,18 +17,18 @@ struct ByAngle {
 static_assert(JunctionPolicy<ByAngle>);
 
 template <class Policy>
-void print(const char* name, const std::vector<plan::Block>& blocks, const Policy& policy) {
-  if (const auto plan = plan::whole_plan(blocks, policy))
-    std::printf("%-24s %8.4f s\n", name, plan->duration);
+void print(const char* name, const std::vector<Block<3>>& blocks, const Policy& policy) {
+  const Machine<3> mill{.limits = {.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0}};
+  if (const auto trajectory = plan_blocks(blocks, mill, policy))
+    std::printf("%-24s %8.4f s\n", name, trajectory->duration());
 }
 
 int main() {
-  const Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
-  std::vector<plan::Block> blocks;
+  std::vector<Block<3>> blocks;
   for (int i = 0; i < 24; ++i) {  // a zigzag whose corners get sharper
     const double x = 8.0 * i, y = i * (i % 2 == 0 ? 1.0 : -1.0);
     const double next = (i + 1) * (i % 2 == 0 ? -1.0 : 1.0);
-    blocks.push_back({path::Line<3>({x, y, 0}, {x + 8.0, next, 0}), limits, junction::Kind::line});
+    blocks.push_back({.path = path::Line<3>({x, y, 0}, {x + 8.0, next, 0})});
   }
   print("exact stop", blocks, junction::ExactStop{});
   print("by angle", blocks, ByAngle{});

@@ -6,12 +6,15 @@
 #include <vector>
 
 #include "cncplan/core/limits.hpp"
+#include "cncplan/plan/machine.hpp"
 #include "support/gnuplot.hpp"
 #include "support/machine_file.hpp"
 
 namespace kk22 {
 
 inline constexpr cncplan::Limits limits{.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0};
+/// Its axes have no limits of their own.
+inline const cncplan::Machine<3> mill{.limits = limits};
 inline constexpr double period = 0.001;  // s
 
 /// Five arcs in a chain, and the way back.

@@ -20,8 +20,8 @@ using namespace cncplan;
 
 namespace {
 
-using Table = MappedMachine<kinematics::PolarChart>;
-using TablePath = plan::TablePath<kinematics::PolarChart, path::Segment<3>>;
+using Table = MappedMachine<kinematics::PolarMap>;
+using TablePath = plan::TablePath<kinematics::PolarMap, path::Segment<3>>;
 using TableBlock = cncplan::Block<3, TablePath>;
 
 // What the paper says of a program: minutes, and Table 4's root mean square errors of the servo axes, mm and
@@ -42,35 +42,40 @@ constexpr std::array<Printed, 3> printed{{
 }};
 
 // A program like the paper's, clamped beside the table's axis.
-std::vector<plan::Block> blocks_of(generate::Kind kind, const support::Machine& machine) {
+std::vector<cncplan::Block<3>> blocks_of(generate::Kind kind, const support::Machine& machine) {
   std::ostringstream stream;
   generate::write(stream, kind, 2022, 17);
   const std::string text = stream.str();
-  gcode::Reader reader;
-  plan::BlockMaker maker(limits, limits.velocity);
-  std::vector<plan::Block> blocks;
+  const gcode::Dialect dialect = dialect_of(mill);
+  gcode::Reader reader(dialect);
+  BlockBuilder<Machine<3>> builder(mill, dialect);
+  std::vector<cncplan::Block<3>> blocks;
   const auto take = [&](gcode::Item item) {
     if (auto* motion = std::get_if<gcode::Motion>(&item))
       for (std::size_t i = 0; i < 2; ++i) motion->offset[i] -= machine.table_center[i];
-    if (const auto block = maker.take(item).value()) blocks.push_back(*block);
+    const auto block = builder.take(item).value();
+    if (block && block->path.length() > 0.0)
+      blocks.push_back(*block);
+    else if (block && !blocks.empty())
+      blocks.back().exact_stop = true;
   };
   if (!gcode::read_program(gcode::TextLines(text), reader, take))
     throw support::Failure(support::Exit::other, "a generated program cannot be read");
-  blocks.push_back(maker.finish().value());
   return blocks;
 }
 
 // The blocks round the table, C without a jump.
-std::vector<TableBlock> on_table(const std::vector<plan::Block>& blocks, double smallest_radius) {
+std::vector<TableBlock> on_table(const std::vector<cncplan::Block<3>>& blocks, double smallest_radius) {
   std::vector<TableBlock> result;
   double table = 0.0;
-  for (const plan::Block& block : blocks) {
+  for (const cncplan::Block<3>& block : blocks) {
     const auto followed = plan::follow_table(
-        block.segment, kinematics::PolarChart{}, smallest_radius, table,
-        [&](const TablePath& path) { result.push_back({.path = path, .feed = block.limits.velocity}); });
+        block.path, kinematics::PolarMap{}, smallest_radius, table, [&](const TablePath& path) {
+          result.push_back({.path = path, .feed = block.feed, .rapid = block.rapid});
+        });
     if (!followed)
       throw support::Failure(support::Exit::other, "a program comes too near to the table's axis");
-    if (block.stop_at_end && !result.empty()) result.back().exact_stop = true;
+    if (block.exact_stop && !result.empty()) result.back().exact_stop = true;
   }
   return result;
 }
@@ -81,7 +86,7 @@ struct Run {
   std::array<step::AxisReport, 3> axes;
 };
 
-Run run(const std::vector<plan::Block>& blocks, const support::Machine& machine) {
+Run run(const std::vector<cncplan::Block<3>>& blocks, const support::Machine& machine) {
   Table table;
   for (std::size_t i = 0; i < table.axes.size(); ++i) table.axes[i] = machine.axis(i);
   table.limits.velocity = limits.velocity;
@@ -106,11 +111,11 @@ void programs(const support::Machine& machine, const std::vector<std::string>& n
     if (std::find(names.begin(), names.end(), paper.name) == names.end()) continue;
     const auto blocks = blocks_of(paper.kind, machine);
     const auto arcs = std::count_if(blocks.begin(), blocks.end(),
-                                    [](const auto& block) { return block.segment.arc() != nullptr; });
+                                    [](const auto& block) { return block.path.arc() != nullptr; });
     const Run ours = run(blocks, machine);
     fmt::print("| {} | {} / {} | {} / {} | {} | {:.1f} | {:.1f} | {:.1e} / {:.1e} |\n", paper.name,
                paper.lines, blocks.size(), paper.arcs, arcs, paper.minutes,
-               published_plan(blocks).duration / 60.0, ours.minutes, paper.samples,
+               published_plan(blocks).duration() / 60.0, ours.minutes, paper.samples,
                std::floor(ours.minutes * 60.0 / period) + 1.0);
     for (std::size_t axis = 0; axis < 3; ++axis)
       errors += fmt::format("| {}, {} | {} | {:.3g} | {:.3g} |\n", paper.name, machine.axes[axis].letter,

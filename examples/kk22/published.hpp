@@ -6,21 +6,24 @@
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
+#include "experiments.hpp"
 
 namespace kk22 {
 
+using MillTrajectory = cncplan::Trajectory<cncplan::Machine<3>, cncplan::Block<3>>;
+
 /// One profile of five phases a block, at the junction speeds of Table 3.
-inline cncplan::plan::Plan published_plan(const std::vector<cncplan::plan::Block>& blocks) {
+inline MillTrajectory published_plan(const std::vector<cncplan::Block<3>>& blocks) {
   namespace plan = cncplan::plan;
-  const auto caps = plan::all_caps(blocks, cncplan::published::JunctionTable{}, plan::CapSpeed{});
-  std::vector<double> speeds(caps.size() + 1);
-  plan::Plan result;
-  cncplan::published::plan_blocks(std::span<const plan::BlockCaps>(caps), plan::FivePhase{},
-                                  std::span(speeds), std::back_inserter(result.spans))
+  namespace published = cncplan::published;
+  const plan::JointRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};  // the table alone
+  const auto cells = plan::make_cells<published::WholeBlocks>(std::span(blocks), mill, rules).value();
+  std::vector<double> speeds(cells.caps.size() + 1);
+  std::vector<plan::Span> spans;
+  published::plan_blocks(std::span<const plan::BlockCaps>(cells.caps), plan::FivePhase{}, std::span(speeds),
+                         std::back_inserter(spans))
       .value();
-  for (const plan::BlockCaps& block : caps) result.lengths.push_back(block.length);
-  for (const plan::Span& span : result.spans) result.duration += span.profile.duration();
-  return result;
+  return {mill, blocks, plan::block_phases(std::span<const plan::Span>(spans), cells)};
 }
 
 }  // namespace kk22

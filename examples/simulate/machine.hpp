@@ -19,9 +19,9 @@ struct Mill : cncplan::Machine<N> {
 };
 
 /// Two slides and a rotary table, programmed in X Y Z. Tool positions are the table's, its axis at X0 Y0.
-struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarChart> {
+struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarMap> {
   using Block =
-      cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarChart, cncplan::path::Segment<3>>>;
+      cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarMap, cncplan::path::Segment<3>>>;
   double smallest_radius = 1.0;  ///< mm; nothing nearer to the table's axis is driven
 };
 

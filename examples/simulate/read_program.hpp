@@ -132,7 +132,7 @@ class Builder {
       const std::size_t first = program_.blocks.size();
       bool within = true;
       const auto followed = cncplan::plan::follow_table(
-          block.path, cncplan::kinematics::PolarChart{}, machine_.smallest_radius, table_,
+          block.path, cncplan::kinematics::PolarMap{}, machine_.smallest_radius, table_,
           [&](const auto& part) { within = within && add(copy(block, typename M::Block::Path(part))); });
       if (!followed) refuse_radius(followed.error().value, motion.line, motion.column);
       for (std::size_t i = first; i + 1 < program_.blocks.size(); ++i) {
@@ -179,8 +179,8 @@ class Builder {
       const cncplan::Vector3 at = block.path.start();
       const double radius = std::hypot(at.x(), at.y());
       if (!(radius >= machine_.smallest_radius)) return refuse_radius(radius, block.line, 1);
-      const auto joints = cncplan::kinematics::PolarChart{{at.x(), at.y(), table_}}.joints(
-          std::array{at.x(), at.y(), at.z()});
+      const auto joints =
+          cncplan::kinematics::PolarMap{{at.x(), at.y(), table_}}.joints(std::array{at.x(), at.y(), at.z()});
       const cncplan::Vector3 place(joints[0], joints[1], joints[2]);
       add(copy(block, cncplan::path::Line<3>(place, place)));
     } else {

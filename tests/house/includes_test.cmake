@@ -23,7 +23,7 @@ endfunction()
 
 set(holds "// What it holds." "#pragma once")
 expect("" step/edge.hpp ${holds} "#include <cmath>" "#include <Eigen/Core>" "#include <tl/expected.hpp>")
-expect("" plan/motion_block.hpp ${holds} "#include \"cncplan/path/table.hpp\"")
+expect("" plan/machine_block.hpp ${holds} "#include \"cncplan/path/table.hpp\"")
 expect("" path/list.hpp "// A list (set-up)." "#pragma once" "#include \"cncplan/path/table.hpp\"" "#include <vector>")
 expect("step/ includes \"cncplan/path/table.hpp\"" step/edge.hpp ${holds} "#include \"cncplan/path/table.hpp\"")
 expect("core/ includes \"cncplan/path/table.hpp\"" core/edge.hpp ${holds} "#  include \"cncplan/path/table.hpp\"")

@@ -6,7 +6,8 @@ using namespace cncplan;
 
 profile::Profile travel;
 path::Line<3> line;
-plan::Block block;
+std::vector<Block<3>> blocks;
+Machine<3> mill;
 gcode::Reader reader;
 std::array<Phase, 7> phases;
 std::array<double, 3> steps_per_mm;
@@ -76,25 +77,34 @@ struct NumbersOnly {
 auto measured = path::measured(NumbersOnly{});
 
 // expect int, NumberOver: same_as
-auto joints_of_int = kinematics::PolarChart{}.joints(std::array<int, 3>{});
+auto joints_of_int = kinematics::PolarMap{}.joints(std::array<int, 3>{});
 
 // expect SpeedNotSquared, JunctionPolicy: policy.speed_sq(junction)
 struct SpeedNotSquared {
   double speed(const junction::Geometry&) const;
 };
-auto policy = plan::caps(block, block, SpeedNotSquared{}, plan::ShareLimits{});
+auto policy = plan_blocks(blocks, mill, SpeedNotSquared{});
 
-// expect SpeedAlone, CurveRule: rule(bend, limits)
-struct SpeedAlone {
-  double operator()(double, const Limits&) const;
+// expect NoAxes, MachineModel: machine.axes
+struct NoAxes {
+  using Scalar = double;
+  static constexpr int axis_count = 3;
 };
-auto rule = plan::caps(block, block, junction::ExactStop{}, SpeedAlone{});
+auto no_axes = plan_text("", NoAxes{});
+
+// expect NoPath, BlockModel: block.path
+struct NoPath {
+  using Scalar = double;
+  using Path = path::Line<3>;
+  static constexpr int axis_count = 3;
+};
+auto no_path = plan_blocks(std::vector<NoPath>{}, mill);
 
 // expect ProfileAtOnce, RampLaw: law(limits)
 struct ProfileAtOnce {
   Expected<profile::Profile> operator()(const Limits&) const;
 };
-auto law = plan::whole_plan(std::vector<plan::BlockCaps>{}, ProfileAtOnce{});
+auto law = plan::trajectory(blocks, mill, plan::JointRules<double, junction::ExactStop>{}, ProfileAtOnce{});
 
 // expect Immovable, QueueItem: movable
 struct Immovable {

@@ -18,9 +18,10 @@
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
-#include "cncplan/plan/block_maker.hpp"
+#include "cncplan/plan/block_builder.hpp"
 #include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/executor.hpp"
+#include "cncplan/plan/cell_maker.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/live_steps.hpp"
 #include "cncplan/plan/move_to.hpp"
@@ -147,44 +148,45 @@ void step_a_traced_curve() {
 
 // Joints of a point, and of one that moves, with their derivatives.
 template <class C>
-double by_chart(const C& chart) {
+double by_map(const C& map) {
   double sum = 0.0;
   for (int i = 0; i <= 100; ++i) {
     const double u = i / 100.0;
-    for (const double joint : chart.joints(std::array{u, 1.0, 2.0})) sum += joint;
-    for (const Jet& joint : chart.joints(std::array{Jet(u, 1.0, 0.0, 0.0), Jet(1.0), Jet(2.0)}))
+    for (const double joint : map.joints(std::array{u, 1.0, 2.0})) sum += joint;
+    for (const Jet& joint : map.joints(std::array{Jet(u, 1.0, 0.0, 0.0), Jet(1.0), Jet(2.0)}))
       sum += joint.first + joint.third;
   }
   return sum;
 }
 
-void map_by_charts() {
+void map_by_maps() {
   const kinematics::TireMold machine{.tool_length = 134.0};
   const auto row = kinematics::tire_mold_row(machine, {244.0, 134.0, 0.0, 0.1}, {245.0, 133.0, 0.2, 0.5});
-  sink = by_chart(kinematics::PolarChart{kinematics::Azimuth(0.0, 1.0, 0.0)}) + by_chart(row) +
+  sink = by_map(kinematics::PolarMap{kinematics::Azimuth(0.0, 1.0, 0.0)}) + by_map(row) +
          row.measured(std::array{Jet(0.5, 1.0, 0.0, 0.0), Jet(), Jet()})[0].first;
 }
 
-// G-code to blocks, and each block with its caps to `take`.
+const Machine<3> mill{.limits = limits, .rapid_rate = 50.0};
+BlockBuilder<Machine<3>> builder(mill, dialect_of(mill));
+
+// G-code to blocks, and the caps of each of their cells to `take`.
 template <class Take>
-void make_blocks(gcode::Reader& program, const Take& take) {
+void make_cells(gcode::Reader& program, const Take& take) {
   std::array<gcode::Item, gcode::max_items_per_line> items;
-  plan::BlockMaker maker(limits, 50.0);
-  plan::Block before;
-  bool first = true;
-  const auto push = [&](const plan::Block& block) {
-    take(block, first ? plan::caps_from_rest(block, plan::ShareLimits{})
-                      : plan::caps(before, block, junction::Deviation{0.01}, plan::ShareLimits{}));
-    before = block;
-    first = false;
-  };
+  plan::CellMaker<Machine<3>, Block<3>, junction::Deviation> maker(mill, {{0.01}, 0.01, 0.0});
   for (const std::string_view line : {"G21 G90 F1200", "G1 X10", "G3 X15 Y5 R5", "G4 P0.01", "G1 Y10", "X0",
                                       "Y0", "X5", "Y5", "X0", "Y0"}) {
     const auto end = program.read_line(line, items.begin());
-    for (const gcode::Item* item = items.begin(); item != *end; ++item)
-      if (const auto block = maker.take(*item); *block) push(**block);
+    for (const gcode::Item* item = items.begin(); item != *end; ++item) {
+      const auto block = builder.take(*item);
+      if (!*block || !maker.begin(**block)) continue;
+      while (!maker.done()) {
+        const auto cell = *maker.next();
+        take(**block, plan::BlockCaps{cell.part.to - cell.part.from, cell.entry, cell.part.limits, 0.0});
+      }
+      if ((*block)->pause > 0.0) take(**block, plan::BlockCaps{0.0, 0.0, limits, (*block)->pause});
+    }
   }
-  push(*maker.finish());
 }
 
 void stream_a_program() {
@@ -192,7 +194,7 @@ void stream_a_program() {
   std::array<plan::Gate, 5> window_gates, held_gates;
   std::array<plan::Span, 8> spans;
   plan::StreamPlanner planner(plan::StreamMemory{window, window_gates, held_gates});
-  make_blocks(reader_of_stream, [&](const plan::Block&, const plan::BlockCaps& caps) {
+  make_cells(reader_of_stream, [&](const Block<3>&, const plan::BlockCaps& caps) {
     sink = planner.push(caps, spans.begin()).has_value() ? 1.0 : 0.0;
   });
   sink = planner.finish(spans.begin()).has_value() ? 1.0 : 0.0;
@@ -244,7 +246,7 @@ constexpr std::array jobs{
     Job{"interpolate: the samples of a helix", sample_a_block},
     Job{"plan: G-code through look-ahead over a window", stream_a_program},
     Job{"plan: G-code run, with its steps, and a jog", run_a_program},
-    Job{"kinematics: joints of points and of motions, by charts", map_by_charts},
+    Job{"kinematics: joints of points and of motions, by maps", map_by_maps},
     Job{"step: the edges of a helix, simulated", step_a_block},
     Job{"step: a curve traced, backlash made up, as ticks and bytes", step_a_traced_curve},
 };

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/path/line.hpp"
-#include "cncplan/plan/block.hpp"
+#include "cncplan/path/segment.hpp"
 #include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
@@ -18,6 +17,10 @@ junction::Geometry bend(const Vector3& before, const Vector3& after) {
   junction.before.curvature = before;
   junction.after.curvature = after;
   return junction;
+}
+
+junction::Geometry bend(const path::Segment<3>& before, const path::Segment<3>& after) {
+  return bend(before.point_at(before.length()).second, after.point_at(0.0).second);
 }
 
 path::Arc arc(const Vector3& start, const Vector3& end, const Vector3& center) {
@@ -49,16 +52,12 @@ TEST_CASE("one circle in two arcs, far from the origin, is not slowed") {
   const auto at = [&](double angle) -> Vector3 {
     return center + 0.5 * Vector3(std::cos(angle), std::sin(angle), 0.0);
   };
-  const plan::Block first{arc(at(0.3), at(1.1), center), test::kk22, junction::Kind::arc};
-  const plan::Block second{arc(at(1.1), at(2.9), center), test::kk22, junction::Kind::arc};
-  const junction::Geometry junction{plan::side(first, true), plan::side(second, false), test::kk22};
-  CHECK(std::sqrt(junction::AccelerationStep{1.0}.speed_sq(junction)) > 1e4);
+  const path::Arc first = arc(at(0.3), at(1.1), center), second = arc(at(1.1), at(2.9), center);
+  CHECK(std::sqrt(junction::AccelerationStep{1.0}.speed_sq(bend(first, second))) > 1e4);
 }
 
 TEST_CASE("a line into an arc runs at the root of step times radius") {
-  const plan::Block line{path::Line<3>({-5, 0, 0}, {0, 0, 0}), test::kk22, junction::Kind::line};
-  const plan::Block curve{arc({0, 0, 0}, {2, 2, 0}, {0, 2, 0}), test::kk22, junction::Kind::arc};
-  const junction::Geometry junction{plan::side(line, true), plan::side(curve, false), test::kk22};
+  const auto junction = bend(path::Line<3>({-5, 0, 0}, {0, 0, 0}), arc({0, 0, 0}, {2, 2, 0}, {0, 2, 0}));
   CHECK(junction::AccelerationStep{50.0}.speed_sq(junction) == Approx(100.0).epsilon(1e-14));
 }
 

@@ -71,11 +71,11 @@ Summary on_the_wall() {
 
 template <class S>
 Summary round_the_table() {
-  using Path = plan::TablePath<BasicPolarChart<S>, path::BasicSegment<S>>;
+  using Path = plan::TablePath<BasicPolarMap<S>, path::BasicSegment<S>>;
   std::vector<BasicBlock<S, 3, Path>> blocks;
   S table{};
   for (const auto& segment : test::wall_artwork<S>())
-    REQUIRE(plan::follow_table(segment, BasicPolarChart<S>{}, S(1), table,
+    REQUIRE(plan::follow_table(segment, BasicPolarMap<S>{}, S(1), table,
                                [&](const Path& path) { blocks.push_back({.path = path, .feed = S(60)}); }));
   return summary(blocks, test::table_machine<S>());
 }

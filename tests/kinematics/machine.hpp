@@ -33,8 +33,8 @@ BasicMachine<S, 4> wall_machine() {
 }
 
 template <std::floating_point S>
-MappedMachine<kinematics::BasicPolarChart<S>> table_machine() {
-  MappedMachine<kinematics::BasicPolarChart<S>> machine;
+MappedMachine<kinematics::BasicPolarMap<S>> table_machine() {
+  MappedMachine<kinematics::BasicPolarMap<S>> machine;
   machine.axes = {axis<S>('R', false, 100, 500, 5000), axis<S>('Z', false, 100, 500, 5000),
                   axis<S>('C', true, std::numbers::pi_v<S> / S(3), 10, 100)};
   machine.limits.velocity = S(150);

@@ -244,12 +244,12 @@ TEST_CASE("paths on the wall measure themselves", "[motion]") {
 }
 
 TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[motion]") {
-  using Path = plan::TablePath<PolarChart, path::Segment<3>>;
-  const MappedMachine<PolarChart> machine = test::table_machine<double>();
+  using Path = plan::TablePath<PolarMap, path::Segment<3>>;
+  const MappedMachine<PolarMap> machine = test::table_machine<double>();
   std::vector<Block<3, Path>> blocks;
   double table = 0;
   const auto follow = [&](const path::Segment<3>& segment, int number) {
-    return plan::follow_table(segment, PolarChart{}, 1.0, table, [&](const Path& path) {
+    return plan::follow_table(segment, PolarMap{}, 1.0, table, [&](const Path& path) {
       blocks.push_back({.path = path, .feed = 30, .line = number});
     });
   };

@@ -8,7 +8,7 @@ using namespace cncplan;
 using namespace cncplan::kinematics;
 
 static_assert(Kinematics<Polar> && Kinematics<BasicPolar<float>>);
-static_assert(path::Map<PolarChart> && path::Map<BasicPolarChart<float>>);
+static_assert(path::Map<PolarMap> && path::Map<BasicPolarMap<float>>);
 
 namespace {
 constexpr double pi = std::numbers::pi;

@@ -10,7 +10,6 @@
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/line.hpp"
-#include "cncplan/plan/curve_limits.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -194,6 +193,17 @@ TEST_CASE("the limits along a path use up a limit of some axis or of the tool") 
   CHECK(cases > 1000);
 }
 
+// docs/planning.md, "On curves", without a length: the bend takes 0.8 of A or half of J.
+Limits on_circle(double k, const Limits& whole) {
+  const auto& [velocity, acceleration, jerk] = whole;
+  const double v = std::min({velocity, std::sqrt(0.8 * acceleration / k), std::cbrt(0.5 * jerk / (k * k))});
+  const double m = v * v * v * k * k;
+  const double least_jerk = (std::sqrt(117 * m * m + 4 * jerk * jerk) - 11 * m) / 2;
+  const double a =
+      std::min(std::sqrt(acceleration * acceleration - v * v * v * v * k * k), std::sqrt(least_jerk * v));
+  return {v, a, std::sqrt(jerk * jerk - 9 * v * v * k * k * a * a) - m};
+}
+
 TEST_CASE("on a circle the limits are those of the vector sums' closed form") {
   test::Random random;
   double worst = 0;
@@ -206,7 +216,7 @@ TEST_CASE("on a circle the limits are those of the vector sums' closed form") {
     REQUIRE(circle);
     const Limits along = plan::limits_along(circle->bounds(0, circle->length()), machine,
                                             machine.limits.velocity, machine.limits.velocity);
-    const Limits closed = plan::ShareLimits{}({1 / radius, 0}, machine.limits);
+    const Limits closed = on_circle(1 / radius, machine.limits);
     for (const auto limit : {&Limits::velocity, &Limits::acceleration, &Limits::jerk})
       worst = std::max(worst, std::abs(along.*limit / closed.*limit - 1));
   }

@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "cncplan/plan/cursor.hpp"
 #include "plan/plan_oracle.hpp"
 #include "plan/planned.hpp"
 #include "plan/random_program.hpp"
@@ -23,6 +22,35 @@ std::vector<plan::BlockCaps> draw(test::Random& random) {
   constexpr LimitSpread spreads[] = {LimitSpread::none, LimitSpread::slight, LimitSpread::wide};
   return test::random_program(random, spreads[random.integer(0, 2)]);
 }
+
+// Where the motion is, at times that do not decrease; in a pause, at the end of the block before.
+struct Place {
+  std::size_t block{};
+  State state;  // position from the start
+};
+class Walk {
+ public:
+  Walk(const std::vector<plan::BlockCaps>& blocks, const std::vector<plan::Span>& spans)
+      : blocks_(blocks), spans_(spans) {}
+
+  Place at(double time) {
+    while (span_ + 1 < spans_.size() && time - start_ >= spans_[span_].profile.duration()) {
+      start_ += spans_[span_].profile.duration();
+      origin_ += spans_[span_++].profile.length();
+    }
+    State state = spans_[span_].profile.at(time - start_);
+    state.position += origin_;
+    while (block_ + 1 < blocks_.size() && state.position >= end_ + blocks_[block_].length)
+      end_ += blocks_[block_++].length;
+    return {block_, state};
+  }
+
+ private:
+  const std::vector<plan::BlockCaps>& blocks_;
+  const std::vector<plan::Span>& spans_;
+  std::size_t span_ = 0, block_ = 0;
+  double start_ = 0.0, origin_ = 0.0, end_ = 0.0;
+};
 
 }  // namespace
 
@@ -74,15 +102,13 @@ TEST_CASE("samples of a plan differ by what the limits allow") {
   for (int draws = 0; draws < 100; ++draws) {
     const auto blocks = draw(random);
     const auto spans = test::spans_of(blocks);
-    std::vector<double> lengths;
-    for (const auto& block : blocks) lengths.push_back(block.length);
     const double total = test::duration(spans);
     constexpr int samples = 5000;
     const double h = total / samples;
-    plan::Cursor cursor(spans, lengths);
-    plan::Place before = cursor.at(0.0);
+    Walk walk(blocks, spans);
+    Place before = walk.at(0.0);
     for (int k = 1; k <= samples; ++k) {
-      const plan::Place here = cursor.at(h * k);
+      const Place here = walk.at(h * k);
       Limits most = blocks[before.block].limits;
       for (std::size_t i = before.block; i <= here.block; ++i) {
         most.velocity = std::max(most.velocity, blocks[i].limits.velocity);
@@ -101,7 +127,6 @@ TEST_CASE("samples of a plan differ by what the limits allow") {
           std::abs(here.state.acceleration - before.state.acceleration) / (h * most.jerk * clock) - 1.0);
       before = here;
     }
-    CHECK(cursor.at(total * 2.0).state.velocity == 0.0);
   }
   CHECK(speed < 1e-9);
   CHECK(acceleration < 1e-9);

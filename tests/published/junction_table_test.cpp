@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cncplan/path/arc_from_radius.hpp"
-#include "cncplan/plan/block.hpp"
+#include "cncplan/plan/cells.hpp"
 #include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
@@ -139,18 +139,19 @@ TEST_CASE("Vmax is the lower of both feeds") {
 
 TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
   const Vector3 points[] = {{0, 0, 0}, {5, 5, 0}, {10, 0, 0}, {10, -10, 0}, {5, -15, 0}, {0, -10, 0}};
-  std::vector<plan::Block> blocks;
+  std::vector<Block<3>> blocks;
   for (std::size_t i = 0; i + 1 < std::size(points); ++i) {
     const auto arc = path::arc_from_radius(points[i], points[i + 1], 5.0, g02, Plane::xy);
     REQUIRE(arc);
-    blocks.push_back({*arc, test::kk22, Kind::arc});
+    blocks.push_back({.path = *arc});
   }
-  blocks.push_back({path::Line<3>(points[5], points[0]), test::kk22, Kind::line});
+  blocks.push_back({.path = path::Line<3>(points[5], points[0])});
+  const auto side = [](const Block<3>& block, bool at_end) {
+    return plan::tool_side<Machine<3>>(block, at_end, tool_axes(Machine<3>{}));
+  };
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
     CAPTURE(i);
-    const junction::Geometry junction{plan::side(blocks[i], true), plan::side(blocks[i + 1], false),
-                                      test::kk22};
-    CHECK(share(junction) == (i < 4 ? 0.5 : 0.0));
+    CHECK(share({side(blocks[i], true), side(blocks[i + 1], false), test::kk22}) == (i < 4 ? 0.5 : 0.0));
   }
 }
 

@@ -10,7 +10,7 @@
 
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/cells.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "support/random.hpp"
 
@@ -32,10 +32,15 @@ struct PlayerFaults {
   long requests{};
 };
 
-/// Blocks to be played, and the motion in space that each stands for.
+/// Cells to be played, and the block and the machine's limits that each stands for.
 struct PlayedProgram {
+  struct Motion {
+    path::Segment<3> path;
+    double from{};  ///< mm from the block's start to the cell's
+    Limits limits;
+  };
   std::vector<plan::PlayedBlock> blocks;
-  std::vector<plan::Block> motions;
+  std::vector<Motion> motions;
 };
 
 /// A line or an arc of about `length` mm from a point on; a third of the arcs are helices.
@@ -55,32 +60,40 @@ inline path::Segment<3> random_segment(Random& random, const Vector3& start, dou
   return arc ? path::Segment<3>(*arc) : path::Segment<3>(path::Line<3>(start, end));
 }
 
-/// Short and long lines, arcs and helices, slow and free junctions, some blocks with lower limits.
+/// Short and long lines, arcs and helices, slow and free junctions, some with lower limits.
 inline PlayedProgram random_played(Random& random, int count) {
   PlayedProgram program;
   const double longest = random.log_uniform(0.05, 10.0);
-  const junction::Deviation policy{random.coin() ? 0.01 : 1.0};
+  const double deviation = random.coin() ? 0.01 : 1.0;
+  const plan::JointRules<double, junction::Deviation> rules{{deviation}, -1.0, -1.0};
   Vector3 at = Vector3::Zero();
+  std::vector<Block<3>> pair;  // the block before, and the new one
   for (int i = 0; i < count; ++i) {
-    plan::Block motion;
-    motion.segment = random_segment(random, at, random.log_uniform(0.01, longest));
-    at = motion.segment.end();
-    motion.limits = {30.0, 1000.0, 10000.0};
+    Block<3> block{.path = random_segment(random, at, random.log_uniform(0.01, longest)), .line = i + 1};
+    at = block.path.end();
+    Machine<3> machine{.limits = {30.0, 1000.0, 10000.0}};
     if (random.integer(0, 5) == 0) {
-      motion.limits.velocity = random.uniform(3.0, 30.0);
-      motion.limits.acceleration *= random.uniform(0.4, 1.0);
-      motion.limits.jerk *= random.uniform(0.3, 1.0);
+      machine.limits.velocity = random.uniform(3.0, 30.0);
+      machine.limits.acceleration *= random.uniform(0.4, 1.0);
+      machine.limits.jerk *= random.uniform(0.3, 1.0);
     }
-    if (random.integer(0, 7) == 0) motion.pause = 0.01;
-    plan::PlayedBlock block;
-    block.caps = i == 0 ? plan::caps_from_rest(motion, plan::ShareLimits{})
-                        : plan::caps(program.motions.back(), motion, policy, plan::ShareLimits{});
-    if (random.integer(0, 3) == 0) block.caps.entry = std::min(block.caps.entry, random.uniform(0.0, 30.0));
-    block.feed = random.uniform(5.0, 30.0);
-    block.rapid = random.integer(0, 6) == 0;
-    block.line = i + 1;
-    program.blocks.push_back(block);
-    program.motions.push_back(motion);
+    if (random.integer(0, 7) == 0) block.pause = 0.01;
+    if (pair.size() == 2) pair.erase(pair.begin());
+    pair.push_back(block);  // both under the limits of the new one
+    const auto cells = plan::make_cells(std::span<const Block<3>>(pair), machine, rules).value();
+    const double slow = random.uniform(0.0, 30.0);
+    const bool slowed = random.integer(0, 3) == 0;
+    const double feed = random.uniform(5.0, 30.0);
+    const bool rapid = random.integer(0, 6) == 0;
+    double from = 0.0;
+    for (std::size_t k = 0; k < cells.caps.size(); ++k) {
+      if (cells.blocks[k] + 1 != pair.size()) continue;
+      plan::PlayedBlock cell{.caps = cells.caps[k], .feed = feed, .rapid = rapid, .line = block.line};
+      if (slowed && from == 0.0) cell.caps.entry = std::min(cell.caps.entry, slow);
+      program.blocks.push_back(cell);
+      program.motions.push_back({block.path, from, machine.limits});
+      from += cells.caps[k].length;
+    }
   }
   return program;
 }
@@ -91,9 +104,9 @@ struct PointMotion {
   Vector3 velocity;
   Vector3 acceleration;
 
-  PointMotion(const plan::Block& motion, const plan::Played& now) {
-    const auto& path = motion.segment;
-    const double u = path.parameter_at(now.along);
+  PointMotion(const PlayedProgram::Motion& motion, const plan::Played& now) {
+    const auto& path = motion.path;
+    const double u = path.parameter_at(motion.from + now.along);
     const Vector3 first = path.derivative(u);
     const Vector3 second = path.second_derivative(u);
     const double speed_sq = first.squaredNorm();
@@ -200,7 +213,7 @@ inline PlayerFaults play(const PlayedProgram& played, Random& random, int mean_g
     position += moved;
     if (now.block == before.block && !turned) {
       // over a tick in one block a difference is a mean, and so within the limit too
-      const plan::Block& motion = played.motions[static_cast<std::size_t>(now.block)];
+      const auto& motion = played.motions[static_cast<std::size_t>(now.block)];
       const PointMotion from(motion, before), to(motion, now);
       grow(faults.sum_acceleration,
            (to.velocity - from.velocity).norm() / period / motion.limits.acceleration - 1);

@@ -1,12 +1,10 @@
 // What the rooms ask of each other's types. A wrong type fails on the name of what it lacks.
 #pragma once
 
-#include <array>
 #include <concepts>
 
 #include "cncplan/core/box.hpp"
 #include "cncplan/core/error.hpp"
-#include "cncplan/core/jet.hpp"
 #include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/path_bounds.hpp"
 #include "cncplan/core/path_point.hpp"
@@ -72,29 +70,6 @@ concept Kinematics = requires(const K& machine, const typename K::Joints& joints
   {
     machine.joint_limits()
     } -> std::same_as<BasicJointLimits<typename K::Scalar, K::Joints::RowsAtCompileTime>>;
-};
-
-/// A smooth map from the points of a program to a machine's joints, on the part of space for which it was
-/// made. Evaluated with jets it yields the joints' derivatives along any path. `reach`: the length of
-/// programmed path, mm, over which the map changes its shape; infinity for one that is linear.
-template <class C>
-concept Chart = requires(const C& chart, const std::array<typename C::Scalar, 3>& point,
-                         const std::array<BasicJet<typename C::Scalar>, 3>& moving) {
-  requires std::floating_point<typename C::Scalar>;
-  requires C::axis_count >
-  0;
-  { chart.reach(point) } -> std::same_as<typename C::Scalar>;
-  { chart.joints(point) } -> std::same_as<std::array<typename C::Scalar, C::axis_count>>;
-  { chart.joints(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, C::axis_count>>;
-};
-
-/// A chart under which the length of the motion is not the one of the programmed path: `measured` is the
-/// point whose travel counts, the tool's tip as a rule.
-template <class C>
-concept MeasuringChart = Chart<C> && requires(const C& chart, const std::array<typename C::Scalar, 3>& point,
-                                              const std::array<BasicJet<typename C::Scalar>, 3>& moving) {
-  { chart.measured(point) } -> std::same_as<std::array<typename C::Scalar, 3>>;
-  { chart.measured(moving) } -> std::same_as<std::array<BasicJet<typename C::Scalar>, 3>>;
 };
 
 }  // namespace cncplan

@@ -7,6 +7,7 @@
 
 #include "cncplan/core/box.hpp"
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 
 namespace cncplan {
 

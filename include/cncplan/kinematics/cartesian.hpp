@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 
 namespace cncplan::kinematics {
 
@@ -51,11 +52,9 @@ using Cartesian = BasicCartesian<double>;
 
 /// Joints that are the programmed coordinates, for motion that is limited axis by axis.
 template <std::floating_point S>
-struct BasicCartesianChart {
+struct BasicCartesianMap {
   using Scalar = S;
   static constexpr int axis_count = 3;
-
-  [[nodiscard]] S reach(const std::array<S, 3>&) const { return std::numeric_limits<S>::infinity(); }
 
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
@@ -63,6 +62,6 @@ struct BasicCartesianChart {
   }
 };
 
-using CartesianChart = BasicCartesianChart<double>;
+using CartesianMap = BasicCartesianMap<double>;
 
 }  // namespace cncplan::kinematics

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/cartesian.hpp"
 
@@ -57,13 +58,11 @@ using Polar = BasicPolar<double>;
 
 /// Joints R, Z, C of programmed points X, Y, Z, with C smooth round an azimuth.
 template <std::floating_point S>
-struct BasicPolarChart {
+struct BasicPolarMap {
   using Scalar = S;
   static constexpr int axis_count = 3;
 
   BasicAzimuth<S> azimuth;
-
-  [[nodiscard]] S reach(const std::array<S, 3>& point) const { return std::hypot(point[0], point[1]); }
 
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
@@ -73,6 +72,6 @@ struct BasicPolarChart {
   }
 };
 
-using PolarChart = BasicPolarChart<double>;
+using PolarMap = BasicPolarMap<double>;
 
 }  // namespace cncplan::kinematics

@@ -13,6 +13,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/frame.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/core/plane.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/core/vector.hpp"
@@ -229,8 +230,6 @@ class BasicArc {
   [[nodiscard]] Vector end_tangent() const { return derivative(angle_).normalized(); }
   [[nodiscard]] S curvature(S u) const { return curvature_at_radius(spiral_, spiral_.radius_at(u)); }
   [[nodiscard]] S max_curvature() const { return path::max_curvature(spiral_, angle_); }
-  /// Bound of how fast the curvature vector changes across the tangent, 1/mm^2; 0 on a circle.
-  [[nodiscard]] S max_curvature_change() const { return path::max_curvature_change(spiral_, angle_); }
 
   /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
   /// A turning within rounding of u or of the end counts as being there.

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/arc.hpp"
 #include "cncplan/path/line.hpp"
 

@@ -11,6 +11,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/frame.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/core/points.hpp"
 
 namespace cncplan::path {
@@ -119,7 +120,6 @@ class BasicLine {
   [[nodiscard]] const Vector& end_tangent() const { return direction_; }
   [[nodiscard]] S curvature(S) const { return S(0); }
   [[nodiscard]] S max_curvature() const { return S(0); }
-  [[nodiscard]] S max_curvature_change() const { return S(0); }
 
   /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
   [[nodiscard]] S next_turning(int /*axis*/, S /*u*/) const { return length_; }

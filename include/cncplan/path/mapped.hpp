@@ -7,6 +7,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/core/jet.hpp"
 
 namespace cncplan::path {
 

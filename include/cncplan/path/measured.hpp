@@ -10,6 +10,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/error.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/arc_length_table.hpp"
 
 namespace cncplan::path {

@@ -9,6 +9,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/arc.hpp"
 #include "cncplan/path/arc_along.hpp"
 #include "cncplan/path/line.hpp"
@@ -132,9 +133,6 @@ class BasicSegment {
   }
   [[nodiscard]] S max_curvature() const {
     return visit([](const auto& p) { return p.max_curvature(); });
-  }
-  [[nodiscard]] S max_curvature_change() const {
-    return visit([](const auto& p) { return p.max_curvature_change(); });
   }
   [[nodiscard]] S next_turning(int axis, S u) const {
     return visit([axis, u](const auto& p) { return p.next_turning(axis, u); });

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/mapped.hpp"
 

@@ -1,12 +1,9 @@
-// Caps: what look-ahead needs to know of each block, from its shape, its feed and the junction before it.
+// Caps: what look-ahead needs to know of a block, or of a part of one.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <concepts>
 
-#include "cncplan/plan/block.hpp"
-#include "cncplan/plan/curve_limits.hpp"
+#include "cncplan/core/limits.hpp"
 
 namespace cncplan::plan {
 
@@ -22,27 +19,5 @@ struct BasicBlockCaps {
 };
 
 using BlockCaps = BasicBlockCaps<double>;
-
-/// The caps of the first block of a program, or of one behind a stop.
-template <std::floating_point S, CurveRule<S> Rule>
-[[nodiscard]] BasicBlockCaps<S> caps_from_rest(const BasicBlock<S>& block, const Rule& rule) {
-  return {block.segment.length(), S(0), limits_on(block.segment, block.limits, rule), block.pause};
-}
-
-/// The caps of a block that follows another: the junction by the policy, the inside by its bend. A block of
-/// no length is a rest.
-template <std::floating_point S, JunctionPolicy<S> Policy, CurveRule<S> Rule>
-[[nodiscard]] BasicBlockCaps<S> caps(const BasicBlock<S>& before, const BasicBlock<S>& block,
-                                     const Policy& policy, const Rule& rule) {
-  BasicBlockCaps<S> result = caps_from_rest(block, rule);
-  if (before.stop_at_end || before.pause > S(0) || !(result.length > S(0))) return result;
-  junction::BasicGeometry<S> junction{side(before, true), side(block, false), block.limits};
-  junction.limits.velocity = std::min(before.limits.velocity, block.limits.velocity);
-  junction.limits.acceleration = std::min(before.limits.acceleration, block.limits.acceleration);
-  junction.limits.jerk = std::min(before.limits.jerk, block.limits.jerk);
-  const S speed_sq = policy.speed_sq(junction);
-  result.entry = speed_sq > S(0) ? std::sqrt(speed_sq) : S(0);
-  return result;
-}
 
 }  // namespace cncplan::plan

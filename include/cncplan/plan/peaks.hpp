@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "cncplan/core/jet.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/plan/trajectory.hpp"
 

@@ -12,14 +12,14 @@
 
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/cells.hpp"
-#include "cncplan/plan/curve_limits.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"
+#include "cncplan/published/cap_speed.hpp"
 
 namespace cncplan::published {
 
-/// The limits of whole pieces of blocks, for `plan::make_cells`: the tool's by `CapSpeed`, along the path
+/// The limits of whole pieces of blocks, for `plan::make_cells`: the tool's by `cap_speed`, along the path
 /// alone; each axis keeps its own all the same.
 template <MachineModel M, BlockModel B>
 class WholeBlocks {
@@ -32,8 +32,7 @@ class WholeBlocks {
     const auto bounds = block.path.bounds(from, to);
     BasicLimits<Scalar> tool = machine.limits;
     tool.velocity = bounds.tool.first > Scalar(0) ? std::min(speed, tool_speed / bounds.tool.first) : speed;
-    tool = plan::CapSpeed{}(
-        plan::BasicBend<Scalar>{bounds.tool.second_across, bounds.tool.third_across, to - from}, tool);
+    tool = cap_speed(bounds.tool.second_across, bounds.tool.third_across, tool);
     M axes = machine;
     axes.limits = {infinity, infinity, infinity};
     const BasicLimits<Scalar> own = plan::limits_along(bounds, axes, tool.velocity, infinity);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/kinematics/tire_mold/tip_velocity.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/tire_mold/profile_piece.hpp"
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 
 namespace cncplan::kinematics {
 

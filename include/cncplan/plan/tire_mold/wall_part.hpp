@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/tire_mold/sidewall.hpp"
 #include "cncplan/path/measured.hpp"

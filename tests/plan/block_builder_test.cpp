@@ -1,0 +1,107 @@
+#include "cncplan/plan/block_builder.hpp"
+
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "cncplan/plan/plan_program.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+
+std::vector<Block<3>> blocks(std::string_view text) {
+  auto program = read_blocks(gcode::TextLines(text), mill, {});
+  REQUIRE(program);
+  return program->blocks;
+}
+
+Block<3> block(const gcode::Motion& motion) {
+  const auto made = BlockBuilder<Machine<3>>(mill, dialect_of(mill)).take(motion);
+  REQUIRE(made);
+  REQUIRE(*made);
+  return **made;
+}
+
+gcode::Motion motion(gcode::MotionKind kind) {
+  gcode::Motion m;
+  m.kind = kind;
+  m.start = {1.0, 2.0, 3.0};
+  m.end = {1.0, 12.0, 3.0};
+  m.offset = {100.0, 0.0, -5.0};
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("a program's blocks, with the stops that come behind a motion") {
+  const auto made =
+      blocks("G1 X10 F600\nX20\nM3 S100\nX30\nG4 P0.5\nG4 P0.25\nX40\nT2\nX50\nM0\nG0 X60\nM30\n");
+  struct Expected {
+    double end, pause;
+    bool stops;
+  };
+  const std::vector<Expected> expected{{10, 0, false},   {20, 0, false}, {30, 0, false}, {30, 0.5, true},
+                                       {30, 0.25, true}, {40, 0, false}, {40, 0, true},  {50, 0, false},
+                                       {50, 0, true},    {60, 0, false}, {60, 0, true}};
+  REQUIRE(made.size() == expected.size());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    CAPTURE(i);
+    CHECK(made[i].path.end() == Vector3(expected[i].end, 0, 0));
+    CHECK(made[i].pause == expected[i].pause);
+    CHECK(made[i].exact_stop == expected[i].stops);
+    if (made[i].path.length() > 0.0 && !made[i].rapid) CHECK(made[i].feed == 10.0);
+  }
+  CHECK(made[9].rapid);
+}
+
+TEST_CASE("a line becomes a block in machine coordinates") {
+  auto m = motion(gcode::MotionKind::line);
+  m.feed = 12.0;
+  const auto made = block(m);
+  CHECK(made.path.start() == Vector3(101, 2, -2));
+  CHECK(made.path.end() == Vector3(101, 12, -2));
+  CHECK(made.feed == 12.0);
+  CHECK_FALSE(made.exact_stop);
+  m.exact_stop = true;
+  CHECK(block(m).exact_stop);
+}
+
+TEST_CASE("both forms of an arc are moved by the offset, and feeds follow their length") {
+  auto m = motion(gcode::MotionKind::arc_center);
+  m.turn = Turn::counterclockwise;
+  m.center = {1.0, 7.0, 3.0};
+  m.feed_mode = gcode::FeedMode::inverse_time;
+  m.feed = 1.0;
+  const auto by_center = block(m);
+  m.kind = gcode::MotionKind::arc_radius;
+  m.radius = 5.0;
+  const auto by_radius = block(m);
+  for (const auto& made : {by_center, by_radius}) {
+    REQUIRE(made.path.arc() != nullptr);
+    CHECK((made.path.arc()->center() - Vector3(101, 7, -2)).norm() < 1e-12);
+    CHECK(made.path.length() == Approx(5.0 * std::numbers::pi).epsilon(1e-12));
+    CHECK(made.feed == Approx(5.0 * std::numbers::pi).epsilon(1e-12));
+  }
+  m.kind = gcode::MotionKind::arc_center;
+  m.extra_turns = 2;
+  CHECK(block(m).path.length() == Approx(25.0 * std::numbers::pi).epsilon(1e-12));
+}
+
+TEST_CASE("making blocks does not touch the heap") {
+  BlockBuilder<Machine<3>> builder(mill, dialect_of(mill));
+  const gcode::Item move = gcode::Motion{.kind = gcode::MotionKind::line, .end = {10.0, 0.0, 0.0}};
+  const gcode::Item dwell = gcode::Dwell{.seconds = 1.0};
+  int made = 0;
+  CHECK(test::heap_allocations_of([&] {
+          for (int i = 0; i < 10; ++i) {
+            made += builder.take(move)->has_value() ? 1 : 0;
+            made += builder.take(dwell)->has_value() ? 1 : 0;
+          }
+        }) == 0);
+  CHECK(made == 20);
+}
