@@ -92,7 +92,9 @@ class Converter {
     std::vector<WallPart> parts;
     if (auto ok = cutter_.cut(move.segment, parts); !ok) refuse_move(artwork_, index_, move, ok.error());
     row_start_ = 0.0;
-    row_length_ = next_length_ = length_of_rows(move.segment);
+    row_length_ = length_of_rows(move.segment);
+    next_cut_ = 1;
+    cuts_ = cuts_of(move.segment);
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (options_.subdivide && !parts[i].kink)
         add_by_length(move, parts[i], i + 1 == parts.size() || parts[i + 1].kink, rows);
@@ -119,7 +121,14 @@ class Converter {
     return options_.subdivide.value_or(0.0) / share;
   }
 
-  // Rows at whole multiples of the length along the move, and where it ends or a kink is.
+  // K17 cuts at whole multiples of the length, and leaves the last cut out: the last row of a move is longer
+  // than the others, and a move of less than two lengths is one row.
+  [[nodiscard]] double cuts_of(const path::Segment<3>& segment) const {
+    constexpr double rounding = 1e-9;
+    return std::floor(segment.length() / row_length_ + rounding) - 1.0;
+  }
+
+  // Rows at the cuts of the move that lie on a part, and where it ends or a kink is.
   void add_by_length(const Move& move, const WallPart& part, bool to_end, std::vector<Joints>& rows) {
     const auto row = [&](double u) {
       const Joints joints = plan::wall_joints(part, u - part.from, (*here_)[3]);
@@ -129,7 +138,8 @@ class Converter {
     };
     constexpr double rounding = 1e-9;
     const double until = part.artwork.length_at(part.to) - rounding;
-    for (; next_length_ < until; next_length_ += row_length_) row(part.artwork.parameter_at(next_length_));
+    for (; next_cut_ <= cuts_ && next_cut_ * row_length_ < until; ++next_cut_)
+      row(part.artwork.parameter_at(next_cut_ * row_length_));
     if (to_end) row(part.to);
   }
 
@@ -240,9 +250,10 @@ class Converter {
   std::size_t index_ = 0;
   std::optional<Joints> here_;
   bool inches_ = false;
-  double row_start_ = 0.0;    // parameter of the move where the row under way began
-  double row_length_ = 0.0;   // mm along the move from row to row
-  double next_length_ = 0.0;  // mm along the move where the next row ends
+  double row_start_ = 0.0;   // parameter of the move where the row under way began
+  double row_length_ = 0.0;  // mm along the move from row to row
+  double next_cut_ = 1.0;    // a count: the next cut of the move is this many lengths along it
+  double cuts_ = 0.0;        // of the move
   Conversion result_;
 };
 
