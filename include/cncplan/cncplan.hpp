@@ -78,6 +78,7 @@
 #include "cncplan/path/arc_length_table.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
 #include "cncplan/path/b_spline.hpp"
+#include "cncplan/path/b_spline_through.hpp"
 #include "cncplan/path/bezier.hpp"
 #include "cncplan/path/circle_crossings.hpp"
 #include "cncplan/path/enclosed_bounds.hpp"
