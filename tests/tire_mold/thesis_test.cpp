@@ -1,5 +1,6 @@
 // The program of the thesis, in its format.
 #include <cmath>
+#include <numbers>
 
 #include "run.hpp"
 #include "support/catch.hpp"
@@ -94,6 +95,59 @@ TEST_CASE("the thesis' program comes out as printed", "[tire_mold]") {
   // only in the row of the cut: the thesis rounds its X and Y before it maps them
   CHECK(coarse <= 3);
   CHECK(worst < 0.0021);
+}
+
+// On the way from X0 Y0 Z0 the thesis prints 23 rows. The four from a radius of 200 on are of this wall.
+TEST_CASE("the rows of the approach are those of the thesis over this wall", "[tire_mold]") {
+  const Folder folder;
+  folder.write("wall.dxf", wall);
+  folder.write("art.nc", "G00 X123.943 Y205.904 S20000 M03\n");
+  const auto run = folder.run(
+      "wall.dxf art.nc --tool-length 20.81415 --start-radius 200 --subdivide 10 --approach --quiet "
+      "--decimals "
+      "5 --samples s.csv");
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  const Cut ours = cut(run.out);
+  const Cut theirs =
+      cut("G00 R293.359 Z115.922 A-38.620 C58.954 S20000 M03\n"
+          "R282.446 Z123.339 A-29.789 C58.954\n"
+          "R270.524 Z128.993 A-20.959 C58.954\n"
+          "R257.875 Z132.751 A-12.128 C58.954\n"
+          "R244.365 Z134.545 A-3.006 C58.954\n");
+  CHECK(ours.letters == theirs.letters);
+  REQUIRE(ours.numbers.size() == theirs.numbers.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < ours.numbers.size(); ++i)
+    worst = std::max(worst, std::abs(ours.numbers[i] - theirs.numbers[i]));
+  CHECK(worst < 0.0015);
+  // the motion takes the same way: it begins at the first row
+  const auto samples = cncplan::test::rows_of(folder.read("s.csv"));
+  REQUIRE(samples.size() > 100);
+  CHECK(samples.front()[1] == Approx(293.3583).margin(1e-3));
+  CHECK(samples.back()[1] == Approx(244.3650).margin(1e-3));
+}
+
+// K17 4.1: the first test piece was a letter on a wooden sphere.
+TEST_CASE("a letter on a sphere, drawn from the pole outwards", "[tire_mold]") {
+  const Folder folder;
+  const std::string files = "'" CNCPLAN_EXAMPLES "/tire_mold/sphere.dxf' '" CNCPLAN_EXAMPLES
+                            "/tire_mold/letter.nc' --tool-length 20 --start-radius 0 --quiet --reverse ";
+  const auto right = folder.run(files);
+  CHECK(right.exit == 2);
+  CHECK(right.err.find("letter.nc:3:5: error: axis A") != std::string::npos);
+  const auto run = folder.run(files + "--side left --samples s.csv");
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  double worst = 0;
+  for (const auto& row : cncplan::test::rows_of(folder.read("s.csv"))) {
+    const double flat = std::hypot(row[9], row[10]), angle = flat / 60, beyond = 80 + row[11];
+    worst = std::max(worst, std::abs(row[1] - beyond * std::sin(angle)));
+    worst = std::max(worst, std::abs(row[2] - (40 + beyond * std::cos(angle))));
+    worst = std::max(worst, std::abs(row[3] + angle * 180 / std::numbers::pi));
+  }
+  CHECK(worst < 1e-9);
+  CHECK(folder.run(files + "--side up").exit == 2);
 }
 
 TEST_CASE("what is no motion keeps its line and its words", "[tire_mold]") {
