@@ -171,6 +171,7 @@
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/profile/solver.hpp"
 #include "cncplan/profile/stretch.hpp"
+#include "cncplan/published/arc_chords.hpp"
 #include "cncplan/published/axis_timer.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "cncplan/published/center_selection.hpp"
