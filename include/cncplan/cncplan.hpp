@@ -94,6 +94,7 @@
 #include "cncplan/path/spiral.hpp"
 #include "cncplan/path/spiral_crossings.hpp"
 #include "cncplan/path/straight_in_joints.hpp"
+#include "cncplan/plan/arc_words.hpp"
 #include "cncplan/plan/block.hpp"
 #include "cncplan/plan/block_builder.hpp"
 #include "cncplan/plan/block_checks.hpp"
