@@ -65,6 +65,7 @@ std::string json_summary(const ProgramText& program, const Options& options, con
     json["net_steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).net_steps; });
     json["step_error_max"] = per_axis(
         machine, [&](std::size_t i) { return steps(i).max_error * machine.axes[i].drive.steps_per_unit; });
+    json["mse"] = per_axis(machine, [&](std::size_t i) { return steps(i).mean_square_error; });
     json["rmse"] = per_axis(machine, [&](std::size_t i) { return steps(i).rms_error; });
   }
   json["plan_s"] = m.plan_seconds;

@@ -39,6 +39,8 @@ bool says_where(const gcode::Word& word, bool arc) {
   }
 }
 
+constexpr double cut_rounding = 1e-9;  // lengths of rows
+
 // Takes effect when the motion of its line is over.
 bool comes_last(const gcode::Word& word) {
   return word.letter == 'M' && (word.number <= 2 || word.number == 30 || word.number == 60);
@@ -79,20 +81,23 @@ class Converter {
   // The rows of a move; the first move of all has one, its end.
   void map(const Move& move, std::vector<Joints>& rows) {
     ++result_.points;
-    const Vector3 end = move.segment.end();
-    if (!here_) {
-      const path::Segment<3> standing{path::Line<3>(end, end)};
-      std::vector<WallPart> none;
-      if (auto ok = cutter_.cut(standing, none); !ok) refuse_move(artwork_, index_, move, ok.error());
-      const auto joints = sidewall_.joints(end);
-      if (!joints) refuse_move(artwork_, index_, move, joints.error());
-      add(move, *joints, rows);
-      return;
-    }
+    const auto segment = here_ ? move.segment : first_way(move.segment, sidewall_, machine_, options_);
     std::vector<WallPart> parts;
-    if (auto ok = cutter_.cut(move.segment, parts); !ok) refuse_move(artwork_, index_, move, ok.error());
+    if (auto ok = cutter_.cut(segment, parts); !ok) refuse_move(artwork_, index_, move, ok.error());
+    if (!here_) {
+      if (parts.empty()) {  // it stands at its end
+        const auto joints = sidewall_.joints(segment.end());
+        if (!joints) refuse_move(artwork_, index_, move, joints.error());
+        add(move, *joints, rows);
+        return;
+      }
+      add(move, plan::wall_joints(parts.front(), 0.0, 0.0), rows);
+    }
     row_start_ = 0.0;
-    row_length_ = next_length_ = length_of_rows(move.segment);
+    row_length_ = length_of_rows(segment);
+    left_out_ = move.segment.length() - segment.length();
+    next_cut_ = std::floor(left_out_ / row_length_ + cut_rounding) + 1.0;
+    cuts_ = cuts_of(move.segment);
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (options_.subdivide && !parts[i].kink)
         add_by_length(move, parts[i], i + 1 == parts.size() || parts[i + 1].kink, rows);
@@ -119,7 +124,13 @@ class Converter {
     return options_.subdivide.value_or(0.0) / share;
   }
 
-  // Rows at whole multiples of the length along the move, and where it ends or a kink is.
+  // K17 cuts at whole multiples of the length, and leaves the last cut out: the last row of a move is longer
+  // than the others, and a move of less than two lengths is one row.
+  [[nodiscard]] double cuts_of(const path::Segment<3>& segment) const {
+    return std::floor(segment.length() / row_length_ + cut_rounding) - 1.0;
+  }
+
+  // Rows at the cuts of the move that lie on a part, and where it ends or a kink is.
   void add_by_length(const Move& move, const WallPart& part, bool to_end, std::vector<Joints>& rows) {
     const auto row = [&](double u) {
       const Joints joints = plan::wall_joints(part, u - part.from, (*here_)[3]);
@@ -129,7 +140,8 @@ class Converter {
     };
     constexpr double rounding = 1e-9;
     const double until = part.artwork.length_at(part.to) - rounding;
-    for (; next_length_ < until; next_length_ += row_length_) row(part.artwork.parameter_at(next_length_));
+    const auto cut = [&] { return next_cut_ * row_length_ - left_out_; };
+    for (; next_cut_ <= cuts_ && cut() < until; ++next_cut_) row(part.artwork.parameter_at(cut()));
     if (to_end) row(part.to);
   }
 
@@ -240,9 +252,11 @@ class Converter {
   std::size_t index_ = 0;
   std::optional<Joints> here_;
   bool inches_ = false;
-  double row_start_ = 0.0;    // parameter of the move where the row under way began
-  double row_length_ = 0.0;   // mm along the move from row to row
-  double next_length_ = 0.0;  // mm along the move where the next row ends
+  double row_start_ = 0.0;   // parameter of the move where the row under way began
+  double row_length_ = 0.0;  // mm along the move from row to row
+  double next_cut_ = 1.0;    // a count: the next cut of the move is this many lengths along it
+  double cuts_ = 0.0;        // of the move
+  double left_out_ = 0.0;    // mm of the move before the part that is mapped
   Conversion result_;
 };
 
@@ -251,6 +265,16 @@ class Converter {
 bool leads_to_mold(const Move& move) {
   const Vector3 way = move.segment.chord();
   return way.x() != 0.0 || way.y() != 0.0;
+}
+
+path::Segment<3> first_way(const path::Segment<3>& segment, const kinematics::Sidewall& sidewall,
+                           const Machine& machine, const Options& options) {
+  const Vector3 start = segment.start(), end = segment.end();
+  const double from = std::hypot(start.x(), start.y()), to = std::hypot(end.x(), end.y());
+  const double entry = std::max(sidewall.start_radius(), smallest_radius(machine));
+  if (!options.approach || segment.arc() != nullptr || to <= entry) return path::Line<3>(end, end);
+  const double share = std::max(0.0, (entry - from) / (to - from));
+  return path::Line<3>(start + share * (end - start), end);
 }
 
 void refuse_move(const Artwork& artwork, std::size_t line, const Move& move, const Error& error) {

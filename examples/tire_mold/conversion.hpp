@@ -25,6 +25,12 @@ struct Conversion {
 /// Whether a move is the first that leads somewhere over the mold: what comes before it is not mapped.
 [[nodiscard]] bool leads_to_mold(const Move& move);
 
+/// What is mapped of the first move: its end; with `--approach`, if it is straight, its way from where it
+/// comes over the profile. It begins on the origin's axis, so its radius grows evenly.
+[[nodiscard]] cncplan::path::Segment<3> first_way(const cncplan::path::Segment<3>& segment,
+                                                  const cncplan::kinematics::Sidewall& sidewall,
+                                                  const Machine& machine, const Options& options);
+
 /// Says where and why a segment cannot be mapped.
 [[noreturn]] void refuse_move(const Artwork& artwork, std::size_t line, const Move& move,
                               const cncplan::Error& error);

@@ -32,11 +32,11 @@ constexpr std::size_t drawn_points = 20000;
 
 int run(const Options& options) {
   const Machine machine = machine_of(options.machine);
-  const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse});
+  const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse, options.side});
   const cncplan::kinematics::Sidewall sidewall(chain.pieces, options.start_radius, options.tool_length);
   const Artwork artwork = read_artwork(options.artwork, artwork_dialect(machine));
   const Conversion conversion = convert(artwork, sidewall, machine, options);
-  const Motion motion = plan_motion(artwork, sidewall, machine);
+  const Motion motion = plan_motion(artwork, sidewall, machine, options);
   Measures measures{chain.length(), chain.pieces.size(), cncplan::peaks(motion), {}, 0};
 
   if (options.plot) support::make_folder(*options.plot);

@@ -27,13 +27,14 @@ cncplan::Block<3> flat_block(const Move& move, int line) {
 }
 
 plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall& sidewall,
-                             const Machine& machine) {
+                             const Machine& machine, const Options& options) {
   plan::WallProgram program(sidewall, smallest_radius(machine));
   bool over_mold = false;
   for (std::size_t i = 0; i < artwork.lines.size(); ++i) {
     const Line& line = artwork.lines[i];
-    for (const Move& move : line.moves) {
-      if (!std::exchange(over_mold, over_mold || leads_to_mold(move))) continue;
+    for (Move move : line.moves) {
+      if (!over_mold && !leads_to_mold(move)) continue;
+      if (!std::exchange(over_mold, true)) move.segment = first_way(move.segment, sidewall, machine, options);
       if (const auto ok = program.append(flat_block(move, static_cast<int>(i) + 1)); !ok)
         refuse_move(artwork, i, move, ok.error());
     }
@@ -44,8 +45,9 @@ plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall&
 
 }  // namespace
 
-Motion plan_motion(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine) {
-  const auto program = program_of(artwork, sidewall, machine);
+Motion plan_motion(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
+                   const Options& options) {
+  const auto program = program_of(artwork, sidewall, machine, options);
   auto planned = plan_blocks(program.blocks(), planned_machine(machine));
   if (planned) return std::move(*planned);
   planned.error().file = artwork.file;

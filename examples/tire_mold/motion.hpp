@@ -9,6 +9,7 @@
 #include "artwork.hpp"
 #include "cncplan/cncplan.hpp"
 #include "machine.hpp"
+#include "options.hpp"
 
 namespace tire_mold {
 
@@ -19,7 +20,7 @@ using Peaks = cncplan::BasicPeaks<double, 4>;
 
 /// Plans the artwork from its first point on. Throws `Failure`.
 [[nodiscard]] Motion plan_motion(const Artwork& artwork, const cncplan::kinematics::Sidewall& sidewall,
-                                 const Machine& machine);
+                                 const Machine& machine, const Options& options);
 
 /// The point of the artwork at a set point: X, Y and Z, mm. Over a kink that of the kink.
 [[nodiscard]] std::array<double, 3> flat_point(const Motion& motion, const Sample& sample);

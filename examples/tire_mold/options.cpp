@@ -20,6 +20,10 @@ std::optional<Options> parse_options(int argc, char** argv) {
       ->required()
       ->check(support::not_negative());
   app.add_flag("--reverse", options.reverse, "turn the profile round");
+  std::string side = "right";
+  app.add_option("--side", side, "of the profile, in its direction, that the tool stands on")
+      ->check(CLI::IsMember({"left", "right"}))
+      ->capture_default_str();
   app.option_defaults()->always_capture_default();
   auto* tolerance =
       app.add_option("--tolerance", options.tolerance, "largest distance of a row from the wall, mm")
@@ -32,10 +36,13 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--subdivide", options.subdivide, "rows of this length along the artwork instead, mm")
       ->check(support::positive())
       ->excludes(tolerance);
+  app.add_flag("--approach", options.approach,
+               "map the way of the first move too, from where it comes over the profile");
   app.add_option("--out", options.out,
                  "write the 4-axis program here; with --json and without this it is not written");
   support::add_run_options(app, options);
   if (!support::parse(app, argc, argv)) return std::nullopt;
+  if (side == "left") options.side = cncplan::kinematics::Side::left;
   support::refuse_shared_files({{"PROFILE", options.profile},
                                 {"ART", options.artwork},
                                 {"--machine", options.machine},

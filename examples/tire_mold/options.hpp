@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "cncplan/kinematics/tire_mold/profile_piece.hpp"
 #include "support/arguments.hpp"
 
 namespace tire_mold {
@@ -14,9 +15,11 @@ struct Options : support::RunOptions {
   double tool_length = 0.0;   ///< mm
   double start_radius = 0.0;  ///< mm, the artwork radius on the profile's first point
   bool reverse = false;
+  cncplan::kinematics::Side side = cncplan::kinematics::Side::right;
   double tolerance = 0.01;          ///< mm
   std::optional<double> subdivide;  ///< mm
   double chain_tolerance = 0.001;   ///< mm
+  bool approach = false;
   int decimals = 3;
   std::optional<std::string> out;
 };

@@ -1,5 +1,7 @@
 #include "cncplan/kinematics/tire_mold/sidewall.hpp"
 
+#include <Eigen/Geometry>
+
 #include "cncplan/kinematics/tire_mold/profile_chain.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 #include "cncplan/path/mapped.hpp"
@@ -64,6 +66,43 @@ TEST_CASE("the machine's forward kinematics lead back to the wall", "[sidewall]"
   }
   CHECK(tip < 1e-12 * 500);
   CHECK(along < 1e-13);
+}
+
+// Flat text is read from above. Seen from the tool it stays as it is where the tool stands on the left, and
+// is mirrored on the right: there it is read on what the mold presses.
+TEST_CASE("text on the left of a profile is legible on the piece, on the right on its cast", "[sidewall]") {
+  test::Random random;
+  const TireMold machine{.tool_length = 20};
+  const std::vector<Drawn> disc{DrawnLine{{0, 50}, {80, 50}}}, sphere{DrawnArc{{0, 40}, 60, pi / 6, pi / 3}};
+  int wrong = 0;
+  double worst = 0;
+  for (const bool ball : {false, true})
+    for (const Side side : {Side::left, Side::right}) {
+      const std::span<const Drawn> drawn = ball ? sphere : disc;
+      const auto chain = chain_profile(drawn, {.reverse = ball, .side = side});
+      REQUIRE(chain);
+      const Sidewall sidewall(chain->pieces, 0, 20);
+      const double up = side == Side::left ? 1 : -1;
+      for (int i = 0; i < 1000; ++i) {
+        const double r = random.uniform(5, 60), c = random.uniform(-3, 3), z = random.uniform(-1, 5);
+        const Vector3 point(r * std::cos(c), r * std::sin(c), z);
+        const auto pose = [&](double x, double y) {
+          return machine.forward(*sidewall.joints(point + Vector3(x, y, 0)));
+        };
+        const Pose here = pose(0, 0);
+        const Vector3 to_x = pose(1e-3, 0).position - here.position;
+        const Vector3 to_y = pose(0, 1e-3).position - here.position;
+        wrong += to_x.cross(to_y).dot(here.direction) * up > 0 ? 0 : 1;
+        // the tool stands away from the sphere's centre, or towards it; up from the disc, or down
+        const double angle = ball ? r / 60 : 0;
+        const Vector3 outward(std::sin(angle) * std::cos(c), std::sin(angle) * std::sin(c), std::cos(angle));
+        worst = std::max(worst, (here.direction - up * outward).norm());
+        const Vector3 on = ball ? Vector3(0, 0, 40) + 60 * outward : Vector3(point.x(), point.y(), 50);
+        worst = std::max(worst, (here.position - on - z * up * outward).norm());
+      }
+    }
+  CHECK(wrong == 0);
+  CHECK(worst < 1e-12);
 }
 
 TEST_CASE("the wall ends somewhere, and the origin has no angle", "[sidewall]") {

@@ -53,11 +53,17 @@ double basis(int degree, double x) {  // support [0, degree + 1]
 }  // namespace
 
 TEST_CASE("The basis matrices are the printed ones") {
+  using Row2 = std::array<std::int64_t, 2>;
   using Row3 = std::array<std::int64_t, 3>;
   using Row4 = std::array<std::int64_t, 4>;
+  using Row5 = std::array<std::int64_t, 5>;
+  CHECK(path::b_spline_matrix<1>() == std::array{Row2{-1, 1}, Row2{1, 0}});
   CHECK(path::b_spline_matrix<2>() == std::array{Row3{1, -2, 1}, Row3{-2, 2, 0}, Row3{1, 1, 0}});
   CHECK(path::b_spline_matrix<3>() ==
         std::array{Row4{-1, 3, -3, 1}, Row4{3, -6, 3, 0}, Row4{-3, 0, 3, 0}, Row4{1, 4, 1, 0}});
+  CHECK(path::b_spline_matrix<4>() == std::array{Row5{1, -4, 6, -4, 1}, Row5{-4, 12, -12, 4, 0},
+                                                 Row5{6, -6, -6, 6, 0}, Row5{-4, -12, 12, 4, 0},
+                                                 Row5{1, 11, 11, 1, 0}});
 }
 
 TEMPLATE_TEST_CASE_SIG("Weights are those of the recursion of Cox and de Boor, at any degree", "",

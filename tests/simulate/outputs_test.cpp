@@ -59,6 +59,8 @@ TEST_CASE("the summary has all keys, each of its kind") {
     CHECK(json["net_steps"][axis].is_number_integer());
     CHECK(json["step_error_max"][axis].is_number_float());
     CHECK(json["rmse"][axis].is_number_float());
+    const double rmse = json["rmse"][axis];
+    CHECK(json["mse"][axis].get<double>() == Approx(rmse * rmse));
   }
   CHECK(json["limits"]["velocity"] == 25.0);
   CHECK(json["limits"]["acceleration"] == 900.0);
@@ -75,7 +77,7 @@ TEST_CASE("steps are in the summary where they are asked for") {
     const auto json = folder.run(test::example("pocket") + " --json " + options).json();
     const auto table = folder.run(test::example("pocket") + " " + options).out;
     const bool has = json.contains("steps");
-    for (const char* key : {"net_steps", "step_error_max", "rmse", "steps_s"})
+    for (const char* key : {"net_steps", "step_error_max", "mse", "rmse", "steps_s"})
       CHECK(json.contains(key) == has);
     CHECK((table.find("edges") != std::string::npos) == has);
     return has;

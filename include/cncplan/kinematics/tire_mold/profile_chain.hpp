@@ -66,6 +66,7 @@ using ProfileChain = BasicProfileChain<double>;
 struct ChainOptions {
   double tolerance = 0.001;  ///< mm, >= 0: ends as near as this are one point
   bool reverse = false;      ///< from the last point to the first
+  Side side = Side::right;   ///< of the chain in its direction, on which the tool stands
 };
 
 namespace detail {
@@ -134,7 +135,7 @@ class Chainer {
       pieces_.push_back(std::visit([](const auto& shape) { return piece_of(shape); }, entity));
   }
 
-  [[nodiscard]] Expected<BasicProfileChain<S>, ChainError> chain(bool reverse) {
+  [[nodiscard]] Expected<BasicProfileChain<S>, ChainError> chain(bool reverse, Side side) {
     if (pieces_.empty())
       return tl::unexpected(ChainError{{ErrorCode::not_positive, "number of entities", 0.0, 0.0}, 0, {}});
     for (std::size_t i = 0; i < pieces_.size(); ++i)
@@ -153,7 +154,7 @@ class Chainer {
       std::reverse(links->begin(), links->end());
       for (Link& link : *links) link.turned = !link.turned;
     }
-    return joined(*links, closed);
+    return joined(*links, closed, side);
   }
 
  private:
@@ -241,7 +242,7 @@ class Chainer {
     return error;
   }
 
-  [[nodiscard]] BasicProfileChain<S> joined(const std::vector<Link>& links, bool closed) const {
+  [[nodiscard]] BasicProfileChain<S> joined(const std::vector<Link>& links, bool closed, Side side) const {
     BasicProfileChain<S> chain;
     chain.closed = closed;
     for (const auto& [entity, turned] : links) {
@@ -258,6 +259,7 @@ class Chainer {
     for (std::size_t i = 0; i < n; ++i) {
       chain.pieces[i] = fitted(chain.pieces[i], meets[i], meets[i + 1]);
       chain.pieces[i].from = from;
+      chain.pieces[i].side = side;
       from += chain.pieces[i].length;
     }
     return chain;
@@ -277,7 +279,7 @@ class Chainer {
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicProfileChain<S>, ChainError> chain_profile(std::span<const BasicDrawn<S>> drawn,
                                                                        const ChainOptions& options = {}) {
-  return detail::Chainer<S>(drawn, static_cast<S>(options.tolerance)).chain(options.reverse);
+  return detail::Chainer<S>(drawn, static_cast<S>(options.tolerance)).chain(options.reverse, options.side);
 }
 
 }  // namespace cncplan::kinematics

@@ -21,10 +21,13 @@ struct InPlane {
   T z;
 };
 
+/// The side of a profile, seen in its direction, that a tool stands on.
+enum class Side { left, right };
+
 /// Begins at `start` in the direction `heading` and turns evenly by `turning` rad/mm: a line where that is
-/// zero, an arc otherwise. The normal is the tangent turned by -90 degrees, so along a chain it stays on one
-/// side (K17 Eqs. 3.7-3.33). A kink is a piece too: its radius and length are zero, and only
-/// the normal turns.
+/// zero, an arc otherwise. The normal is the tangent turned by 90 degrees to the tool's side, so along a
+/// chain it stays on one side (K17 Eqs. 3.7-3.33, whose lines have it on the right). A kink is a piece too:
+/// its radius and length are zero, and only the normal turns.
 template <std::floating_point S>
 struct BasicProfilePiece {
   BasicVector2<S> start = BasicVector2<S>::Zero();
@@ -33,6 +36,7 @@ struct BasicProfilePiece {
   S radius{};   ///< mm, signed as `turning`; 0 for a line and for a kink
   S length{};   ///< mm
   S from{};     ///< mm of the chain before it
+  Side side = Side::right;
 
   [[nodiscard]] bool is_kink() const { return turning != S(0) && radius == S(0); }
   [[nodiscard]] S end_heading() const { return heading + turning * length; }
@@ -57,6 +61,7 @@ struct BasicProfilePiece {
   [[nodiscard]] InPlane<T> normal(const T& q) const {
     using std::cos, std::sin;
     const T angle = T(heading) + q * T(turning);
+    if (side == Side::left) return {-sin(angle), cos(angle)};
     return {sin(angle), -cos(angle)};
   }
 
@@ -64,7 +69,8 @@ struct BasicProfilePiece {
   /// start, and from there without a jump.
   template <NumberOver<S> T>
   [[nodiscard]] T tilt(const T& q) const {
-    return T(std::remainder(heading - std::numbers::pi_v<S>, S(2) * std::numbers::pi_v<S>)) + q * T(turning);
+    const S upwards = side == Side::left ? S(0) : std::numbers::pi_v<S>;  // the heading whose normal is up
+    return T(std::remainder(heading - upwards, S(2) * std::numbers::pi_v<S>)) + q * T(turning);
   }
 
   friend bool operator==(const BasicProfilePiece&, const BasicProfilePiece&) = default;
@@ -84,7 +90,7 @@ template <std::floating_point S>
 [[nodiscard]] BasicProfilePiece<S> kink(const BasicProfilePiece<S>& before,
                                         const BasicProfilePiece<S>& after) {
   return {after.start, before.end_heading(), std::copysign(S(1), kink_angle(before, after)), S(0), S(0),
-          after.from};
+          after.from,  before.side};
 }
 
 }  // namespace cncplan::kinematics
