@@ -148,7 +148,7 @@ class Measured {
         third_sq += x.third.largest() * x.third.largest();
       }
       const Scalar third = std::sqrt(third_sq), middle = std::sqrt(middle_sq), half = width / Scalar(2);
-      const Scalar second = detail::grown(middle, half, third, std::sqrt(second_sq));
+      const Scalar second = cncplan::detail::grown(middle, half, third, std::sqrt(second_sq));
       const Scalar least = std::max(middle - half * third, Scalar(0));
       const Scalar across_sq = third_sq - least * least * least * least;
       result = result.joined(
