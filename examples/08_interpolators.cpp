@@ -92,7 +92,7 @@ std::vector<Vector3> positions(const P& path, const Walk& way) {
 
 template <CurveByLength P>
 profile::Profile profile_for(Method method, const P& path, double curvature) {
-  Limits capped = plan::CapSpeed{}({curvature}, limits);
+  const Limits capped = published::cap_speed(curvature, 0.0, limits);
   if (method == Method::constant) return published::constant_speed(path.length(), capped.velocity);
   return profile::seven_phase(path.length(), {.start = 0.0, .end = 0.0}, capped).value();
 }
