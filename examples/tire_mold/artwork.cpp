@@ -43,14 +43,15 @@ void check_codes(const std::string& file, int number, const Line& line) {
 // Puts what a line asks for into it.
 class Taker {
  public:
-  Taker(const std::string& file, Line& line) : file_(file), line_(line) {}
+  Taker(const std::string& file, BlockBuilder<Machine<3>>& builder, Line& line)
+      : file_(file), builder_(builder), line_(line) {}
 
   void operator()(gcode::Motion motion) {
     motion.offset = {};
-    const auto segment = plan::segment(motion);
-    if (!segment) support::refuse(file_, {segment.error(), motion.line, motion.column, {}});
+    const auto block = builder_.take(gcode::Item(motion));
+    if (!block) support::refuse(file_, block.error());
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
-    line_.moves.push_back({*segment, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
+    line_.moves.push_back({(*block)->path, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
   }
   void operator()(const gcode::Dwell& dwell) { line_.pause += dwell.seconds; }
   void operator()(const gcode::Stop&) { line_.stops = true; }
@@ -61,6 +62,7 @@ class Taker {
 
  private:
   const std::string& file_;
+  BlockBuilder<Machine<3>>& builder_;
   Line& line_;
 };
 
@@ -72,6 +74,7 @@ Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
     throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
   Artwork artwork{file, {}};
   gcode::Reader reader(dialect);
+  BlockBuilder<Machine<3>> builder(Machine<3>{}, dialect);
   std::vector<gcode::Item> items;
   for (std::string text; std::getline(stream, text);) {
     if (text.ends_with('\r')) text.pop_back();
@@ -83,7 +86,7 @@ Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
     line.text = text;
     if (!finished) line.words = words_of(text);
     check_codes(file, reader.line(), line);
-    Taker take(file, line);
+    Taker take(file, builder, line);
     for (const gcode::Item& item : items) std::visit(take, item);
   }
   return artwork;
