@@ -135,6 +135,13 @@ std::vector<Event> read_events(const std::string& file) {
   return events;
 }
 
+std::string event_text(const Event& event) {
+  const auto* const kind =
+      std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.request == event.request; });
+  return kind->value == Value::none ? std::string(kind->name)
+                                    : fmt::format("{} {:.6g}", kind->name, event.value);
+}
+
 double highest_feed(const std::vector<Event>& events) {
   double highest = 1.0;
   for (const Event& event : events)

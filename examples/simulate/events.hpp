@@ -23,6 +23,9 @@ struct Event {
 /// The largest share of the feed that is asked for, 1 at least.
 [[nodiscard]] double highest_feed(const std::vector<Event>& events);
 
+/// As its row has it: the event and its value.
+[[nodiscard]] std::string event_text(const Event& event);
+
 /// Passes a request on.
 void ask(cncplan::plan::Player& player, const Event& event);
 

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 
+#include "html_report.hpp"
 #include "options.hpp"
 #include "plots.hpp"
 #include "problems.hpp"
@@ -84,7 +85,7 @@ void check_size(const Measures& measures, const Options& options, const support:
 void check_options(const Options& options, const support::Machine& machine) {
   const auto refuse = [](const char* why) { throw Failure(Exit::bad_input, why); };
   if (options.check && (options.motions || options.blocks || options.samples || options.steps ||
-                        options.plot || options.events))
+                        options.plot || options.report || options.events))
     refuse("--check plans nothing: it goes without outputs and events");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
     refuse("--tool-length is for machines with a tilting axis");
@@ -115,7 +116,7 @@ int run(const Options& options, const support::Machine& file, const M& machine) 
   const auto program = read_program(options, file, machine, problems);
   if (options.check) {  // says all that is wrong, and by kind; plans nothing
     if (options.json)
-      support::print(kinds_json(problems, program.lines, program.warnings));
+      support::print(kinds_json(problems, program.lines, program.warnings.size()));
     else if (!options.quiet)
       support::print(kinds_table(problems));
   }
@@ -132,6 +133,7 @@ int run(const Options& options, const support::Machine& file, const M& machine) 
   if (std::ostream* out = files.open(options.blocks)) write_blocks(*out, program, measures);
   std::ostream* const samples = files.open(options.samples);
   std::ostream* const steps = files.open(options.steps);
+  std::ostream* const page = files.open(options.report);
   if (samples != nullptr) write_samples_header(*samples, file);
 
   Progress progress(!options.quiet, measures.duration * (options.makes_steps() ? 2.0 : 1.0));
@@ -155,6 +157,8 @@ int run(const Options& options, const support::Machine& file, const M& machine) 
     run.step([&](const cncplan::step::Edge& edge) { progress.reach(measures.duration + edge.time); });
   }
 
+  if (page != nullptr) report::write(*page, html_report(options, file, program, measures, run.trajectory()));
+
   files.finish();
   if (options.plot) draw(*options.plot, options.quiet, file, drawn);
   files.commit();
@@ -170,6 +174,7 @@ int run(const Options& options) {
   support::Machine file;
   if (options.machine) file = support::read_machine(*options.machine);
   check_options(options, file);
+  if (options.report) report::check_libraries();
   if (file.kinematics == Kinematics::tire_mold) {
     auto machine = machine_of<Rows>(file, options.limits);
     machine.tool_length = options.tool_length.value_or(0.0);

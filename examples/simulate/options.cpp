@@ -100,7 +100,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                                 {"--motions", options.motions},
                                 {"--blocks", options.blocks},
                                 {"--samples", options.samples},
-                                {"--steps", options.steps}});
+                                {"--steps", options.steps},
+                                {"--report", options.report}});
   support::refuse_shared_files({{"--plot", options.plot}});  // a folder: another output may be in it
   return options;
 }

@@ -20,6 +20,13 @@ void draw(const std::string& folder, bool quiet, const support::Machine& machine
       "set size ratio -1\nset xlabel 'X mm'\nset ylabel 'Y mm'\n"
       "set cblabel 'speed mm/s'\nset palette defined (0 '#2166ac', 0.5 '#66bd63', 1 '#d73027')\n"
       "plot $samples using 2:3:5 with lines linewidth 2 palette\n");
+  // each of X, Y and Z at the same scale, 120 degrees apart
+  plot->picture("path_isometric.svg");
+  (*plot)(
+      "unset xlabel\nunset ylabel\nunset xtics\nunset ytics\n"
+      "plot $samples using (($2-$3)/sqrt(2)):(($2+$3)/sqrt(6)+$4*sqrt(2./3)):5 with lines linewidth 2 "
+      "palette\n"
+      "set xtics\nset ytics\n");
   plot->picture("profile.svg");
   (*plot)(
       "set size noratio\nset multiplot layout 3,1\nset xlabel 't s'\nunset "

@@ -26,7 +26,7 @@ struct ProgramText {
   std::vector<Origin> motions;         ///< the first one is the start: no way
   std::vector<std::size_t> motion_of;  ///< of each block; one that rests has the motion before it
   std::size_t lines = 0;
-  std::size_t warnings = 0;
+  std::vector<std::string> warnings;  ///< FILE:LINE:COLUMN: warning: TEXT
 
   /// FILE:LINE:COLUMN of a block.
   [[nodiscard]] std::string place(std::size_t block) const {

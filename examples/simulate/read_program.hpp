@@ -55,8 +55,8 @@ class Builder {
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) return move(*motion);
     if (const auto* warning = std::get_if<gcode::Warning>(&item)) {
       if (smoothed_ && warning->about.error.field == gcode::tolerance_of_g64) return;
-      ++program_.warnings;
-      fmt::print(stderr, "{}\n", gcode::to_text(program_.file, warning->about, "warning"));
+      program_.warnings.push_back(gcode::to_text(program_.file, warning->about, "warning"));
+      fmt::print(stderr, "{}\n", program_.warnings.back());
       return;
     }
     if (const auto block = read_.take(item); block && *block) rest(**block);

@@ -76,14 +76,14 @@ std::string json_summary(const ProgramText& program, const Options& options, con
                     {"jerk", options.limits.jerk},
                     {"period", options.period}};
   json["completed"] = m.completed;
-  json["warnings"] = program.warnings;
+  json["warnings"] = program.warnings.size();
   return json.dump(2) + "\n";
 }
 
-std::string table_summary(const ProgramText& program, const support::Machine& machine, const Measures& m) {
-  std::string text;
-  const auto row = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("{:<28}{}\n", name, value);
+std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText& program, const Measures& m) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  const auto row = [&rows](const char* name, std::string value) {
+    rows.emplace_back(name, std::move(value));
   };
   row("lines, motions, arcs",
       fmt::format("{}, {}, {}", program.lines, count_motions(program), count_arcs(program)));
@@ -99,6 +99,13 @@ std::string table_summary(const ProgramText& program, const support::Machine& ma
   row(stepped ? "plan, interpolate, step" : "plan, interpolate",
       fmt::format("{:.4f} s, {:.4f} s{}", m.plan_seconds, m.interpolate_seconds,
                   stepped ? fmt::format(", {:.4f} s", m.steps_seconds) : ""));
+  return rows;
+}
+
+std::string table_summary(const ProgramText& program, const support::Machine& machine, const Measures& m) {
+  std::string text;
+  for (const auto& [name, value] : summary_rows(program, m)) text += fmt::format("{:<28}{}\n", name, value);
+  const bool stepped = !m.steps.empty();
   text += fmt::format("\n{:<6}{:>12}{:>14}", "axis", "peak /s", "peak /s^2");
   if (stepped) text += fmt::format("{:>12}{:>12}{:>14}{:>14}", "edges", "net", "error steps", "rmse");
   text += '\n';

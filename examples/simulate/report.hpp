@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "measures.hpp"
 #include "options.hpp"
@@ -11,6 +13,10 @@ namespace simulate {
 
 [[nodiscard]] std::string json_summary(const ProgramText& program, const Options& options,
                                        const support::Machine& machine, const Measures& measures);
+/// Names and values of what was measured of the whole run, in order.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText& program,
+                                                                            const Measures& measures);
+/// These, and a row for each axis.
 [[nodiscard]] std::string table_summary(const ProgramText& program, const support::Machine& machine,
                                         const Measures& measures);
 

@@ -46,6 +46,7 @@ class Run {
   }
 
   [[nodiscard]] const Measures& measures() const { return measures_; }
+  [[nodiscard]] const Trajectory& trajectory() const { return trajectory_; }
 
   /// Hands every sample to `take`, in order.
   void sample(const std::function<void(const Sample&)>& take) {

@@ -46,6 +46,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--samples", options.samples, "write the samples, CSV");
   app.add_option("--steps", options.steps, "write step and direction signals, VCD");
   app.add_option("--plot", options.plot, "draw pictures into this folder, SVG");
+  app.add_option("--report", options.report, "write a report that a browser shows, HTML");
   app.add_flag("--json", options.json, "print the summary as JSON");
   app.add_flag("--quiet", options.quiet, "no progress bar and no table");
 }

@@ -20,6 +20,7 @@ struct RunOptions {
   std::optional<std::string> samples;
   std::optional<std::string> steps;
   std::optional<std::string> plot;
+  std::optional<std::string> report;
   bool json = false;
   bool quiet = false;
 };

@@ -5,6 +5,7 @@
 
 #include "conversion.hpp"
 #include "drawing.hpp"
+#include "html_report.hpp"
 #include "motion.hpp"
 #include "options.hpp"
 #include "plots.hpp"
@@ -31,6 +32,7 @@ void write_sample(std::ostream& out, const Machine& machine, const Motion& motio
 constexpr std::size_t drawn_points = 20000;
 
 int run(const Options& options) {
+  if (options.report) report::check_libraries();
   const Machine machine = machine_of(options.machine);
   const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse, options.side});
   const cncplan::kinematics::Sidewall sidewall(chain.pieces, options.start_radius, options.tool_length);
@@ -45,6 +47,7 @@ int run(const Options& options) {
   std::ostream* const out = files.open(options.out);
   std::ostream* const samples = files.open(options.samples);
   std::ostream* const steps = files.open(options.steps);
+  std::ostream* const page = files.open(options.report);
   if (out != nullptr) *out << conversion.text;
   std::vector<Sample> drawn;
   if (samples != nullptr) {
@@ -67,6 +70,8 @@ int run(const Options& options) {
     });
     vcd.finish();
   }
+  if (page != nullptr)
+    report::write(*page, html_report(options, sidewall, conversion, motion, machine, measures));
   files.finish();
   if (options.plot) draw(*options.plot, sidewall, conversion, machine, motion, drawn);
   files.commit();

@@ -48,7 +48,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                                 {"--machine", options.machine},
                                 {"--out", options.out},
                                 {"--samples", options.samples},
-                                {"--steps", options.steps}});
+                                {"--steps", options.steps},
+                                {"--report", options.report}});
   return options;
 }
 

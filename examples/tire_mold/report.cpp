@@ -63,16 +63,20 @@ std::string json_summary(const Conversion& conversion, const Motion& motion, con
   return json.dump(2) + "\n";
 }
 
+std::vector<std::pair<std::string, std::string>> summary_rows(const Conversion& conversion,
+                                                              const Motion& motion,
+                                                              const Measures& measures) {
+  return {{"points, rows", fmt::format("{}, {}", conversion.points, conversion.rows.size())},
+          {"profile", fmt::format("{} entities, {:.4f} mm", measures.entities, measures.profile_length)},
+          {"largest chord error", fmt::format("{:.4g} mm", conversion.chord_error)},
+          {"time", fmt::format("{:.3f} s", motion.duration())}};
+}
+
 std::string table_summary(const Conversion& conversion, const Motion& motion, const Machine& machine,
                           const Measures& measures) {
   std::string text;
-  const auto row = [&text](std::string_view name, const std::string& value) {
+  for (const auto& [name, value] : summary_rows(conversion, motion, measures))
     text += fmt::format("{:<24}{}\n", name, value);
-  };
-  row("points, rows", fmt::format("{}, {}", conversion.points, conversion.rows.size()));
-  row("profile", fmt::format("{} entities, {:.4f} mm", measures.entities, measures.profile_length));
-  row("largest chord error", fmt::format("{:.4g} mm", conversion.chord_error));
-  row("time", fmt::format("{:.3f} s", motion.duration()));
   text += fmt::format("\n{:<6}{:>12}{:>12}{:>12}{:>12}{:>16}{:>12}\n", "axis", "from", "to", "peak /s",
                       "limit /s", "peak /s^2", "limit /s^2");
   for (std::size_t i = 0; i < 4; ++i) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "conversion.hpp"
 #include "machine.hpp"
@@ -19,6 +21,11 @@ struct Measures {
 
 [[nodiscard]] std::string json_summary(const Conversion& conversion, const Motion& motion,
                                        const Machine& machine, const Measures& measures);
+/// Names and values of what was measured of the whole, in order.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> summary_rows(const Conversion& conversion,
+                                                                            const Motion& motion,
+                                                                            const Measures& measures);
+/// These, and a row for each axis.
 [[nodiscard]] std::string table_summary(const Conversion& conversion, const Motion& motion,
                                         const Machine& machine, const Measures& measures);
 

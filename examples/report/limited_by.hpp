@@ -1,0 +1,75 @@
+// Why a planned motion is no faster at each place.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "cncplan/cncplan.hpp"
+
+namespace report {
+
+enum class LimitedBy : std::uint8_t {
+  rest,           ///< it stands still
+  feed,           ///< the programmed feed, or the highest that the machine allows along the path
+  axis_velocity,  ///< a straight path, on which an axis is as fast as it may be
+  curvature,      ///< a bend, which takes acceleration and jerk at constant speed
+  acceleration,   ///< it speeds up with constant acceleration
+  jerk,           ///< it speeds up with changing acceleration
+  junction,       ///< it slows down towards the end of a block
+  look_ahead,     ///< it slows down towards a lower feed or a bend, or is held below its feed
+};
+
+inline constexpr std::array<std::string_view, 8> limited_by_names{
+    "rest", "feed", "axis velocity", "curvature", "acceleration", "jerk", "junction", "look-ahead"};
+
+namespace detail {
+
+template <class T>
+[[nodiscard]] LimitedBy at_constant_speed(const T& trajectory, const typename T::Phase& at) {
+  constexpr double rounding = 1e-6;
+  const auto& machine = trajectory.machine();
+  const auto& block = trajectory.program()[at.block];
+  const double v = at.phase.velocity;
+  if (!(v > 0.0)) return LimitedBy::rest;
+  const auto counted = cncplan::length_of(block.path, machine);
+  if (v >= (1 - rounding) * cncplan::plan::wanted_speed(block, machine, counted)) return LimitedBy::feed;
+  const double middle = at.phase.at(at.phase.duration / 2).position;
+  const auto path = block.path.point_at(middle);
+  for (int i = 0; i < path.first.size(); ++i) {
+    const auto& axis = machine.axes[static_cast<std::size_t>(i)];
+    if (std::abs(path.first[i]) * v >= (1 - rounding) * cncplan::least_velocity(axis))
+      return LimitedBy::axis_velocity;
+  }
+  return path.second.norm() > 0.0 ? LimitedBy::curvature : LimitedBy::look_ahead;
+}
+
+}  // namespace detail
+
+/// Of each phase of a trajectory.
+template <class T>
+[[nodiscard]] std::vector<LimitedBy> limited_by(const T& trajectory) {
+  const auto phases = trajectory.phases();
+  std::vector<LimitedBy> result(phases.size());
+  for (std::size_t i = phases.size(); i-- > 0;) {
+    const auto& [phase, block] = phases[i];
+    const auto change = [](const cncplan::Phase& p) { return p.at(p.duration).velocity - p.velocity; };
+    if (phase.acceleration == 0.0 && phase.jerk == 0.0) {
+      result[i] = detail::at_constant_speed(trajectory, phases[i]);
+    } else if (!(change(phase) < 0.0)) {
+      result[i] = phase.jerk != 0.0 ? LimitedBy::jerk : LimitedBy::acceleration;
+    } else {  // where does it slow down to?
+      const bool last = i + 1 == phases.size();
+      const bool goes_on = !last && change(phases[i + 1].phase) < 0.0;
+      result[i] = goes_on                                ? result[i + 1]
+                  : last || phases[i + 1].block != block ? LimitedBy::junction
+                                                         : LimitedBy::look_ahead;
+    }
+  }
+  return result;
+}
+
+}  // namespace report

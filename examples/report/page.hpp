@@ -1,0 +1,15 @@
+// The parts of the page that shows a report.
+#pragma once
+
+#include <string_view>
+
+namespace report {
+
+/// `page` is the frame, in which `{{NAME}}` stands for another part: `style`, `three`, `dygraphs`, `scripts`,
+/// `licences`. Empty for other names.
+[[nodiscard]] std::string_view page_part(std::string_view name);
+
+/// Debian packages that were not there when the program was built, each behind a space.
+[[nodiscard]] std::string_view missing_packages();
+
+}  // namespace report

@@ -1,0 +1,34 @@
+// Colours of the path: a scale from dark to light that the colour-blind read as well (viridis), and distinct
+// colours for kinds (Okabe and Ito).
+
+const scaleStops = [[68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137],
+                    [53, 183, 121], [109, 205, 89], [180, 222, 44], [253, 231, 37]];
+const distinct = [[153, 153, 153], [0, 114, 178], [86, 180, 233], [0, 158, 115], [230, 159, 0], [213, 94, 0],
+                  [204, 121, 167], [60, 60, 60]];
+
+// r, g, b from 0 to 1; x from 0 to 1. The light end is left out: it does not show on white.
+function scaleColor(x) {
+  const at = Math.min(Math.max(x, 0), 1) * (scaleStops.length - 2.8);
+  const i = Math.floor(at), part = at - i;
+  return scaleStops[i].map((c, k) => (c + part * (scaleStops[i + 1][k] - c)) / 255);
+}
+function distinctColor(index) { return distinct[index % distinct.length].map(c => c / 255); }
+function cssColor(rgb) { return `rgb(${rgb.map(c => Math.round(255 * c)).join(',')})`; }
+
+const kindNames = ['rapid', 'line', 'arc'];
+
+// Each way to colour: a value at a state, from 0 to `top(motion)` or to the largest that is there; or a kind.
+function colorModes(limitNames) {
+  const limit = k => motion => motion.limits[k];
+  return [
+    {name: 'speed', unit: 'mm/s', value: s => s.v},
+    {name: 'share of limit', unit: '', value: (s, m) => m.share(s), top: () => 1},
+    {name: 'acceleration', unit: 'mm/s²', value: s => norm(s.acceleration), top: limit(1)},
+    {name: 'jerk', unit: 'mm/s³', value: s => norm(s.jerk), top: limit(2)},
+    {name: 'curvature', unit: '1/mm', value: s => norm(s.second)},
+    {name: 'speed against programmed feed', unit: '',
+     value: (s, m) => { const w = m.block.wanted[s.block]; return w > 0 && isFinite(w) ? s.v / w : 1; }, top: () => 1},
+    {name: 'what limits the speed', names: limitNames, kind: (s, m) => m.phase.limitedBy[s.phase] ?? 0},
+    {name: 'rapid, line, arc', names: kindNames, kind: (s, m) => [5, 1, 3][m.kindOf(s)], colors: [5, 1, 3]},
+  ];
+}

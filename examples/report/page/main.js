@@ -1,0 +1,116 @@
+// Puts the page together. Every change of the cursor goes through `setTime`.
+
+const cncplan = (() => {
+  const byId = id => document.getElementById(id);
+  const report = JSON.parse(byId('data').textContent);
+  const lines = report.text.split('\n').slice(0, report.keptLines);
+  const motions = report.plans.map(plan => new Motion(plan, report.axes, report.limits));
+  const modes = colorModes(report.limitedByNames);
+  const charts = new Charts(byId('charts'), report.marks);
+  const program = new ProgramText(byId('program'), lines);
+  let motion = motions[0], view = null, time = 0, mode = modes[0], room = motion.room();
+
+  function note(id, text) { byId(id).append(element('p', {textContent: text})); }
+  try {
+    view = new View(byId('view'), report.drawings);
+  } catch (error) {  // without WebGL
+    note('notes', `There is no view in space: ${error.message}`);
+  }
+
+  function setTime(t) {
+    const state = motion.at(t, room);
+    time = state.time;
+    view?.put(state);
+    charts.put(time, state);
+    program.mark(motion.lineOf(state));
+    showState(report, motion, state);
+    byId('slider').value = time;
+    if (document.activeElement !== byId('time')) byId('time').value = Number(time.toFixed(6));
+  }
+  function goToLine(line) {
+    const start = motion.startOfLine(line);
+    setTime(start ?? motion.duration);
+  }
+  function setMode(index) {
+    mode = modes[index];
+    byId('color').selectedIndex = index;
+    showLegend(mode, view?.color(mode) ?? 0);
+  }
+  function showMotion(index) {
+    motion = motions[index];
+    room = motion.room();
+    const sums = sweep(motion, lines.length);
+    byId('slider').max = motion.duration;
+    view?.show(motion);
+    charts.show(motion);
+    program.show(sums.byLine);
+    showSummary(report, motion);
+    showLimited(report, motion, sums);
+    showCostliest(lines, sums, motion, goToLine);
+    showHistogram(sums);
+    setMode(modes.indexOf(mode));
+    setTime(Math.min(time, motion.duration));
+  }
+  // The motion before or behind that of the cursor.
+  function stepMotion(by) {
+    const line = motion.lineOf(motion.at(time, room));
+    if (by > 0) return goToLine(line + 1);
+    let i = motion.phaseAt(time);
+    while (i > 0 && motion.block.line[motion.phase.block[i]] >= line) --i;
+    goToLine(motion.block.line[motion.phase.block[i]]);
+  }
+
+  const player = new Player(byId('play'), byId('rate'), () => motion.duration, () => time, setTime);
+  charts.hovered = t => { if (!player.playing) setTime(t); };
+  program.chosen = goToLine;
+  if (view) view.picked = setTime;
+  byId('slider').addEventListener('input', event => setTime(Number(event.target.value)));
+  byId('time').addEventListener('change', event => setTime(Number(event.target.value)));
+  byId('color').append(...modes.map(one => element('option', {textContent: one.name})));
+  byId('color').addEventListener('change', event => setMode(event.target.selectedIndex));
+  byId('help-button').addEventListener('click', () => { byId('help').hidden = !byId('help').hidden; });
+  byId('fit').addEventListener('click', () => view?.orbit.fit(view.box));
+  for (const button of document.querySelectorAll('[data-view]'))
+    button.addEventListener('click', () => view?.orbit.look(button.dataset.view));
+  byId('plan-label').hidden = motions.length < 2;
+  byId('plan').append(...motions.map(one => element('option', {textContent: one.name})));
+  byId('plan').addEventListener('change', event => showMotion(event.target.selectedIndex));
+
+  const views = [...document.querySelectorAll('[data-view]')];
+  const keys = {
+    ' ': () => player.toggle(),
+    ArrowRight: event => setTime(time + (event.shiftKey ? 0.1 : 0.001)),
+    ArrowLeft: event => setTime(time - (event.shiftKey ? 0.1 : 0.001)),
+    ArrowDown: () => stepMotion(1),
+    ArrowUp: () => stepMotion(-1),
+    Home: () => setTime(0),
+    End: () => setTime(motion.duration),
+    f: () => byId('fit').click(),
+    c: () => setMode((modes.indexOf(mode) + 1) % modes.length),
+    '+': () => charts.zoomAbout(time, 0.5),
+    '-': () => charts.zoomAbout(time, 2),
+    0: () => charts.zoom(...charts.all),
+    '?': () => byId('help-button').click(),
+  };
+  document.addEventListener('keydown', event => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('input, select')) return;
+    if (event.key === ' ' && event.target.closest('button, summary')) return;  // which it presses
+    const act = keys[event.key] ?? keys[event.key.toLowerCase()];
+    if (act) act(event);
+    else if (views[event.key - 1]) views[event.key - 1].click();
+    else return;
+    event.preventDefault();
+  });
+
+  for (const text of report.warnings) note('warnings', text);
+  if (report.keptLines < report.lines)
+    note('notes', `The program has ${report.lines} lines; the text is that of the first ${report.keptLines}.`);
+  if (motion.sampled)
+    note('notes', `The program is too long to be kept whole: the motion is drawn from instant to instant, ` +
+         `${shortNumber(motion.duration / motion.count)} s apart; between them values are approximate.`);
+  if (motion.count === 0 || !(motion.duration > 0)) note('notes', 'Nothing moves.');
+  showPeaks(report);
+  showMotion(0);
+  return {report, lines, motions, view, charts, program, player, setTime, goToLine, setMode,
+          state: () => motion.at(time), time: () => time};
+})();

@@ -1,0 +1,164 @@
+// The path in space: each phase drawn as short lines, coloured by what it does there.
+
+class View {
+  constructor(element, drawings) {
+    this.element = element;
+    this.pending = false;
+    this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(window.devicePixelRatio);
+    this.renderer.setClearColor(0xffffff);
+    element.appendChild(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.orbit = new Orbit(element, () => this.render());
+    this.orbit.clicked = event => this.pick(event);
+    this.picked = () => {};
+    for (const drawing of drawings) this.addDrawing(drawing);
+    this.addTool();
+    new ResizeObserver(() => this.resize()).observe(element);
+    this.resize();
+  }
+
+  addDrawing(drawing) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(decode(Float32Array, drawing.points), 3));
+    this.scene.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0xbbbbbb})));
+  }
+  addTool() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3), 3));
+    const material = size => ({size, sizeAttenuation: false, depthTest: false});
+    this.tool = new THREE.Group();
+    this.tool.add(new THREE.Points(geometry, new THREE.PointsMaterial({color: 0xffffff, ...material(14)})));
+    this.tool.add(new THREE.Points(geometry, new THREE.PointsMaterial({color: 0xd55e00, ...material(9)})));
+    this.tool.renderOrder = 2;
+    for (const part of this.tool.children) part.renderOrder = 2;
+    this.scene.add(this.tool);
+  }
+
+  // How many lines a phase is drawn as: by how much it turns, and how long it is.
+  linesOf(motion, i, diagonal, room) {
+    const seconds = motion.durationOf(i), start = motion.phase.time[i];
+    const length = seconds * (motion.phase.v[i] + seconds * (motion.phase.a[i] / 2 + seconds * motion.phase.j[i] / 6));
+    const bend = norm(motion.inPhase(i, start + seconds / 2, room).second);
+    return Math.max(1, Math.min(200, Math.ceil(Math.max(bend * length / 0.1, 60 * length / diagonal))));
+  }
+
+  show(motion) {
+    this.motion = motion;
+    const room = motion.room(), box = new THREE.Box3(), point = new THREE.Vector3();
+    for (const at of motion.piece.at) box.expandByPoint(point.fromArray(motion.points, at));
+    const diagonal = Math.max(box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length(), 1e-9);
+    const times = [], phases = [];
+    for (let i = 0; i < motion.count; ++i) {
+      const parts = this.linesOf(motion, i, diagonal, room), seconds = motion.durationOf(i);
+      for (let k = 0; k < parts; ++k) {
+        times.push(motion.phase.time[i] + seconds * k / parts, motion.phase.time[i] + seconds * (k + 1) / parts);
+        phases.push(i);
+      }
+    }
+    this.times = Float64Array.from(times);
+    this.phases = Uint32Array.from(phases);
+    const positions = new Float32Array(3 * times.length), distances = new Float32Array(times.length);
+    const solid = [], dashed = [];
+    for (let k = 0; k < times.length; ++k) {
+      const state = motion.inPhase(phases[k >> 1], times[k], room);
+      positions.set(state.position.subarray(0, 3), 3 * k);
+      box.expandByPoint(point.fromArray(positions, 3 * k));
+      distances[k] = state.s;
+      (motion.kindOf(state) === 0 ? dashed : solid).push(k);
+    }
+    this.box = box;
+    this.positions = positions;
+    this.colors = new THREE.BufferAttribute(new Float32Array(3 * times.length), 3);
+    const attribute = (values, n) => new THREE.BufferAttribute(values, n);
+    const position = attribute(positions, 3), distance = attribute(distances, 1);
+    const lines = (indices, material) => {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', position);
+      if (material.vertexColors) geometry.setAttribute('color', this.colors);
+      geometry.setAttribute('lineDistance', distance);
+      if (indices) geometry.setIndex(attribute(Uint32Array.from(indices), 1));
+      return new THREE.LineSegments(geometry, material);
+    };
+    if (this.path) this.scene.remove(this.path);
+    this.path = new THREE.Group();
+    const dash = diagonal / 150;
+    this.path.add(lines(solid, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors})));
+    this.path.add(lines(dashed, new THREE.LineDashedMaterial(
+        {vertexColors: THREE.VertexColors, dashSize: dash, gapSize: dash})));
+    this.current = lines(null, new THREE.LineBasicMaterial({color: 0x000000, depthTest: false}));
+    this.current.renderOrder = 1;
+    this.path.add(this.current);
+    for (const part of this.path.children) part.frustumCulled = false;
+    this.scene.add(this.path);
+    this.orbit.fit(box);
+  }
+
+  // Gives back what the legend tells.
+  color(mode) {
+    const motion = this.motion, room = motion.room(), n = this.times.length, colors = this.colors.array;
+    const each = visit => {
+      for (let k = 0; k < n; ++k) visit(k, motion.inPhase(this.phases[k >> 1], this.times[k], room));
+    };
+    let top = 0;
+    if (mode.kind) {
+      each((k, state) => colors.set(distinctColor(mode.kind(state, motion)), 3 * k));
+    } else {
+      const values = new Float64Array(n);
+      each((k, state) => { values[k] = mode.value(state, motion); });
+      top = mode.top ? mode.top(motion) : Infinity;
+      if (!isFinite(top)) top = values.reduce((a, b) => Math.max(a, b), 0);
+      for (let k = 0; k < n; ++k) colors.set(scaleColor(top > 0 ? values[k] / top : 0), 3 * k);
+    }
+    this.colors.needsUpdate = true;
+    this.render();
+    return top;
+  }
+
+  // Puts the tool where it is, and marks the motion that it is in.
+  put(state) {
+    this.tool.position.fromArray(state.position);
+    const line = this.motion.lineOf(state), of = k => this.motion.block.line[this.motion.phase.block[this.phases[k]]];
+    let first = lastNotAbove(this.phases, state.phase), end = first + 1;
+    const count = this.phases.length, most = 5000;
+    for (let k = 0; first > 0 && k < most && of(first - 1) === line; ++k) --first;
+    for (let k = 0; end < count && k < most && of(end) === line; ++k) ++end;
+    this.current.geometry.setDrawRange(2 * first, count > 0 ? 2 * (end - first) : 0);
+    this.render();
+  }
+
+  // The instant whose place is nearest to the pointer, if it is near.
+  pick(event) {
+    const box = this.element.getBoundingClientRect(), camera = this.orbit.camera;
+    const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
+    const x = event.clientX - box.left, y = event.clientY - box.top, p = this.positions;
+    const across = k => [
+      (1 + m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) * box.width / 2,
+      (1 - m[1] * p[k] - m[5] * p[k + 1] - m[9] * p[k + 2] - m[13]) * box.height / 2];
+    let nearest = 10, time;
+    for (let k = 0; k < this.times.length; k += 2) {
+      const [x0, y0] = across(3 * k), [x1, y1] = across(3 * k + 3);
+      const dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy;
+      const part = square > 0 ? Math.min(Math.max(((x - x0) * dx + (y - y0) * dy) / square, 0), 1) : 0;
+      const distance = Math.hypot(x0 + part * dx - x, y0 + part * dy - y);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      time = this.times[k] + part * (this.times[k + 1] - this.times[k]);
+    }
+    if (time !== undefined) this.picked(time);
+  }
+
+  resize() {
+    this.renderer.setSize(this.element.clientWidth, this.element.clientHeight);
+    this.orbit.update();
+  }
+  render() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      this.draw();
+    });
+  }
+  draw() { this.renderer.render(this.scene, this.orbit.camera); }
+}

@@ -1,0 +1,63 @@
+// A planned program as one HTML file that needs nothing beside it.
+#pragma once
+
+#include <array>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cncplan/cncplan.hpp"
+#include "report/motion_data.hpp"
+#include "support/machine_file.hpp"
+
+namespace report {
+
+/// An axis: its name, where its values are among the channels, and the most that the plan asks of it. mm or
+/// degrees.
+struct ReportAxis {
+  std::string name;
+  std::size_t channel{};
+  support::MachineAxis machine;
+  std::array<double, 3> peak{};  ///< velocity, acceleration, jerk
+};
+
+/// What happens on the way and is no motion of the program.
+struct Mark {
+  double time{};  ///< s
+  std::string text;
+};
+
+/// Something to see beside the path, mm.
+struct Drawing {
+  std::string name;
+  std::vector<cncplan::Vector3> points;  ///< ends of lines, two by two
+};
+
+struct Plan {
+  std::string name;
+  MotionData motion;
+};
+
+struct Report {
+  std::string file;                                          ///< the program's name
+  std::string text;                                          ///< of any encoding
+  std::vector<std::pair<std::string, std::string>> summary;  ///< names and values, in order
+  std::vector<std::string> warnings;
+  cncplan::Limits limits;     ///< along the path
+  cncplan::Limits tool_peak;  ///< of the tool's vectors
+  std::vector<ReportAxis> axes;
+  std::vector<Mark> marks;
+  std::vector<Drawing> drawings;
+  std::vector<Plan> plans;  ///< of the same text; the first one is shown first
+};
+
+/// Refuses where the build had no libraries to make the page of. Throws `Failure`.
+void check_libraries();
+
+void write(std::ostream& out, const Report& report);
+
+/// A file's bytes. Throws `Failure`.
+[[nodiscard]] std::string read_text(const std::string& file);
+
+}  // namespace report

@@ -1,0 +1,75 @@
+// A run as the report that a browser shows.
+#pragma once
+
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "cncplan/cncplan.hpp"
+#include "events.hpp"
+#include "machine.hpp"
+#include "measures.hpp"
+#include "options.hpp"
+#include "program.hpp"
+#include "report.hpp"
+#include "report/channels.hpp"
+#include "report/report.hpp"
+#include "report/tip_point.hpp"
+
+namespace simulate {
+
+/// Which channel of the report each axis is: X, Y and Z of a machine that moves these are the tool's.
+[[nodiscard]] inline std::vector<std::size_t> channels_of(const support::Machine& file) {
+  std::vector<std::size_t> result;
+  std::size_t next = 3;
+  for (const MachineAxis& axis : file.axes) {
+    const std::size_t known = std::string_view("XYZ").find(axis.letter);
+    const bool of_tool = file.kinematics == Kinematics::cartesian && known != std::string_view::npos;
+    result.push_back(of_tool ? known : next++);
+  }
+  return result;
+}
+
+template <class M, class Trajectory>
+[[nodiscard]] report::MotionData motion_of(const support::Machine& file, const Program<M>& program,
+                                           const Trajectory& trajectory) {
+  const auto channels = channels_of(file);
+  const M& machine = trajectory.machine();
+  const auto channels_at = [&](const typename M::Block& block, double s) {
+    const auto axes = block.path.point_at(s);
+    if constexpr (std::is_same_v<M, Rows>)
+      return report::channel_point(file, channels, report::tip_point(machine.tool_length, axes), axes);
+    else
+      return report::channel_point(file, channels,
+                                   cncplan::tool_point(block.path, s, cncplan::tool_axes(machine)), axes);
+  };
+  return report::motion_data(trajectory, channels_at, [&](std::size_t block) {
+    const Origin& motion = program.motions[program.motion_of[block]];
+    return report::Place{motion.line, motion.kind, motion.offset};
+  });
+}
+
+/// What there is to be seen of a run.
+template <class M, class Trajectory>
+[[nodiscard]] report::Report html_report(const Options& options, const support::Machine& file,
+                                         const Program<M>& program, const Measures& measures,
+                                         const Trajectory& trajectory) {
+  report::Report result{.file = program.file,
+                        .text = report::read_text(program.file),
+                        .summary = summary_rows(program, measures),
+                        .warnings = program.warnings,
+                        .limits = options.limits,
+                        .tool_peak = measures.tool_peak,
+                        .axes = report::report_axes(file, channels_of(file), measures.axis_velocity,
+                                                    measures.axis_acceleration, measures.axis_jerk),
+                        .marks = {},
+                        .drawings = {},
+                        .plans = {}};
+  if (options.events)
+    for (const Event& event : read_events(*options.events))
+      result.marks.push_back({event.time, event_text(event)});
+  result.plans.push_back({"plan", motion_of(file, program, trajectory)});
+  return result;
+}
+
+}  // namespace simulate

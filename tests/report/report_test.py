@@ -1,0 +1,236 @@
+"""Reports of cncplan_simulate in a real browser: report_test.py SIMULATE EXAMPLES CASE...
+
+Values at the cursor are compared with the rows of --samples, which the page has never seen."""
+
+import csv
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser
+
+SIMULATE, EXAMPLES = sys.argv[1:3]
+NEAR = 1e-6  # of a value or of one, whichever is larger
+
+
+def check(holds, text):
+    if not holds:
+        raise AssertionError(text)
+
+
+class Run:
+    """A program run in a folder of its own, and its report opened."""
+
+    def __init__(self, program, *options):
+        self.folder = tempfile.TemporaryDirectory(prefix="cncplan-report-")
+        if isinstance(program, bytes):
+            self.program = os.path.join(self.folder.name, "part.ngc")
+            with open(self.program, "wb") as file:
+                file.write(program)
+        else:
+            self.program = program
+        self.page = os.path.join(self.folder.name, "part.html")
+        samples = os.path.join(self.folder.name, "part.csv")
+        subprocess.run([SIMULATE, self.program, "--report", self.page, "--samples", samples, "--quiet", *options],
+                       check=True, stderr=subprocess.DEVNULL)
+        with open(samples, newline="") as file:
+            self.samples = [{name: float(x) for name, x in row.items()} for row in csv.DictReader(file)]
+        self.browser = Browser()
+        self.seconds = self.browser.open(self.page)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.browser.__exit__()
+        self.folder.cleanup()
+
+    def value(self, expression):
+        return self.browser.value(expression)
+
+    def cells(self):
+        """Names and full values of the table at the cursor."""
+        return self.value("""(() => { const all = {}, rows = document.getElementById('state').rows;
+            for (let r = 0; r + 1 < rows.length; r += 2) [...rows[r].cells].forEach((cell, k) => {
+              all[cell.textContent.split(',')[0].trim()] = Number(rows[r + 1].cells[k].dataset.value); });
+            return all; })()""")
+
+    def check_opened(self):
+        check(not self.browser.complaints, f"the console says {self.browser.complaints}")
+        check(self.value("typeof cncplan") == "object", "the scripts have not run")
+
+    def check_lines(self, count):
+        shown = int(self.value("document.getElementById('program').getAttribute('aria-rowcount')"))
+        check(shown == count, f"{shown} lines are shown of {count}")
+        height = self.value("document.getElementById('program-space').offsetHeight")
+        check(height == 20 * count, f"{count} lines are {height} px high")
+
+    def check_samples(self, count=60):
+        chosen = random.Random(1).sample(self.samples, min(count, len(self.samples))) + [self.samples[0], self.samples[-1]]
+        for row in chosen:
+            self.value(f"cncplan.setTime({row['t']!r})")
+            seen = self.cells()
+            for name, expected in row.items():
+                found = seen.get(name.upper() if name in "xyz" else name)
+                check(found is not None, f"no {name} among {list(seen)}")
+                check(abs(found - expected) <= NEAR * max(1.0, abs(expected)),
+                      f"t={row['t']!r}: {name} is {expected!r}, and {found!r} on the page")
+
+
+def text_of(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def check_page(run, program):
+    run.check_opened()
+    run.check_lines(len(re.findall(rb"[^\r\n]*(?:\r\r\n|\r\n|\n|\r)|[^\r\n]+$", program)))
+    run.check_samples()
+
+
+def example(name):
+    """An example program with all that the page does."""
+    path = os.path.join(EXAMPLES, "programs", name + ".ngc")
+    with Run(path) as run:
+        check_page(run, text_of(path))
+        check_clicks(run)
+        check_colors(run)
+        check_keys_and_play(run)
+        check_charts(run)
+        run.check_opened()
+
+
+def check_clicks(run):
+    """A line that is clicked, by its place on the screen, takes the cursor to its first sample."""
+    line = run.value("cncplan.motions[0].block.line.filter(l => l > 1)[2] ?? 2")
+    run.value(f"document.getElementById('program').scrollTop = {20 * (line - 3)}")
+    run.value("new Promise(done => requestAnimationFrame(() => setTimeout(done, 50)))")
+    x, y = run.value(f"""(() => {{ const row = document.querySelector('.line[data-line="{line}"]');
+        row.scrollIntoView({{block: 'center'}}); const box = row.getBoundingClientRect();
+        return [box.left + 20, box.top + 10]; }})()""")
+    run.browser.click(x, y)
+    check(run.cells()["line"] == line, f"line {line} was clicked, and the cursor is at {run.cells()['line']}")
+    marked = run.value("document.querySelector('.line.current')?.dataset.line")
+    check(marked == str(line), f"line {line} was clicked and {marked} is marked")
+    # in space: where the path is at half the time
+    half = run.value("cncplan.setTime(0), cncplan.motions[0].duration / 2")
+    run.value("scrollTo(0, 0)")
+    x, y = run.value(f"""(() => {{ const state = cncplan.motions[0].at({half!r}), box = document.getElementById('view').getBoundingClientRect();
+        const p = new THREE.Vector3().fromArray(state.position).project(cncplan.view.orbit.camera);
+        return [box.left + (1 + p.x) * box.width / 2, box.top + (1 - p.y) * box.height / 2]; }})()""")
+    check(y < 990, "the path is not on the screen")
+    place = run.value(f"[...cncplan.motions[0].at({half!r}).position].slice(0, 3)")
+    run.browser.click(x, y)
+    there = run.value("""(() => { const c = cncplan.view.orbit.camera, box = document.getElementById('view').getBoundingClientRect();
+        const p = new THREE.Vector3().fromArray(cncplan.state().position).project(c);
+        return [box.left + (1 + p.x) * box.width / 2, box.top + (1 - p.y) * box.height / 2]; })()""")
+    check(run.value("cncplan.time()") > 0 and abs(there[0] - x) < 11 and abs(there[1] - y) < 11,
+          f"a click on {place} took the cursor elsewhere")
+
+
+def check_colors(run):
+    pictures = set()
+    for mode in range(run.value("document.getElementById('color').length")):
+        run.value(f"cncplan.setMode({mode})")
+        pictures.add(run.value("cncplan.view.colors.array.join()"))
+    check(len(pictures) >= 5, f"all ways to colour give {len(pictures)} pictures")
+    run.value("cncplan.view.draw()")
+    drawn = run.value("""(() => { const gl = cncplan.view.renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
+        const p = new Uint8Array(4 * w * h); gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
+        let n = 0; for (let i = 0; i < p.length; i += 4) if (p[i] + p[i + 1] + p[i + 2] < 600) ++n; return n; })()""")
+    check(drawn > 200, f"the path is {drawn} pixels of the view")
+
+
+def check_keys_and_play(run):
+    run.value("document.activeElement.blur(), cncplan.setTime(0)")
+    run.browser.key("ArrowRight")
+    check(abs(run.cells()["t"] - 0.001) < 1e-12, "the right arrow is no sample's step")
+    run.browser.key("End")
+    check(run.cells()["t"] == run.samples[-1]["t"], "End is not the end")
+    run.value("document.getElementById('rate').value = '0.1'")
+    run.browser.key("Home")
+    run.browser.key(" ", " ")
+    run.value("new Promise(done => setTimeout(done, 700))")
+    first = run.cells()["t"]
+    check(first > 0, "play does not move")
+    run.value("new Promise(done => setTimeout(done, 300))")
+    check(run.cells()["t"] > first, "play does not go on")
+    run.browser.key(" ", " ")
+    stopped = run.cells()["t"]
+    run.value("new Promise(done => setTimeout(done, 200))")
+    check(run.cells()["t"] == stopped, "pause does not rest")
+    height = run.value("cncplan.view.orbit.height *= 3, cncplan.view.orbit.height")
+    run.browser.key("f")
+    check(run.value("cncplan.view.orbit.height") < height, "F does not fit")
+
+
+def check_charts(run):
+    """The pointer over a chart takes the cursor along; a key zooms all of them."""
+    box = run.value("""(() => { const p = document.querySelector('.plot'); p.scrollIntoView({block: 'center'});
+        const b = p.getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()""")
+    run.browser.move(box[0] + 0.6 * box[2], box[1] + 0.5 * box[3])
+    t = run.value("cncplan.charts.charts[0].graph.toDataXCoord(0.6 * document.querySelector('.plot').clientWidth)")
+    check(abs(run.cells()["t"] - t) < 0.01 * run.samples[-1]["t"], f"the cursor is at {run.cells()['t']}, the pointer at {t}")
+    run.browser.key("+")
+    ranges = run.value("cncplan.charts.charts.map(c => c.graph.xAxisRange().join())")
+    check(len(set(ranges)) == 1 and ranges[0] != f"0,{run.samples[-1]['t']}", f"the charts show {ranges}")
+    # the drawn speed is that of the samples
+    rows = run.value("chartRows(cncplan.motions[0], cncplan.charts.charts[0].series, 0, cncplan.motions[0].duration)")
+    most = max(row["v"] for row in run.samples)
+    check(most <= max(row[1] for row in rows) + NEAR, "the chart leaves out the highest speed")
+
+
+def nothing():
+    program = b"G21\n(nothing moves)\nM2\n"
+    with Run(program) as run:
+        check_page(run, program)
+        check("Nothing moves" in run.value("document.getElementById('notes').textContent"), "the page does not say so")
+
+
+def one_motion():
+    program = b"G1 X10 F600\n"
+    with Run(program) as run:
+        check_page(run, program)
+
+
+def hostile_text():
+    """A comment that ends scripts, markup, and bytes that are Latin-1."""
+    program = "G21\r\n(</script><script>document.title='broken'</script>)\r\nG1 X5 F600 (Stra\xdfe <b>&amp;</b> 5\xb5m)\r\nG0 Y3\r\n".encode("latin-1")
+    with Run(program) as run:
+        check_page(run, program)
+        check(run.value("document.title") != "broken", "a comment has run as a script")
+        shown = run.value("[...document.querySelectorAll('.line .text')].map(e => e.textContent)")
+        check(shown == program.decode("latin-1").split("\r\n")[:-1], f"the text shown is {shown}")
+
+
+def many_lines():
+    lines = b"".join(b"G1 X%.3f Y%.3f F1200\n" % (i % 700 * 0.1, i // 700 * 0.1) for i in range(100000))
+    with Run(lines, "--vmax", "50") as run:
+        check_page(run, lines)
+        check(run.seconds < 15, f"the page took {run.seconds:.1f} s to open")
+
+
+def rotary():
+    """Axes beside X, Y and Z, in degrees."""
+    program = b"G1 X10 A90 F600\nG2 X20 Y10 I10 A120\nG0 A0 Z5\n"
+    machine = os.path.join(tempfile.gettempdir(), f"cncplan-rotary-{os.getpid()}.toml")
+    with open(machine, "w") as file:
+        for letter in "XYZA":
+            file.write(f'[[axis]]\nletter = "{letter}"\nkind = "{"rotary" if letter == "A" else "linear"}"\n')
+    try:
+        with Run(program, "--machine", machine) as run:
+            check_page(run, program)
+    finally:
+        os.remove(machine)
+
+
+CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_figure7"),
+         "short lines": lambda: example("short_lines"), "nothing": nothing, "one motion": one_motion,
+         "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary}
+
+for case in sys.argv[3:]:
+    CASES[case]()
+    print(f"{case}: passed")
