@@ -38,7 +38,7 @@ template <class T>
   const auto counted = cncplan::length_of(block.path, machine);
   if (v >= (1 - rounding) * cncplan::plan::wanted_speed(block, machine, counted)) return LimitedBy::feed;
   const double middle = at.phase.at(at.phase.duration / 2).position;
-  const auto path = block.path.point_at(middle);
+  const auto path = trajectory.path(at.block).point_at(middle);
   for (int i = 0; i < path.first.size(); ++i) {
     const auto& axis = machine.axes[static_cast<std::size_t>(i)];
     if (std::abs(path.first[i]) * v >= (1 - rounding) * cncplan::least_velocity(axis))

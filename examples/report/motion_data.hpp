@@ -134,7 +134,7 @@ void add_whole(MotionData& data, const T& trajectory, const ChannelsAt& channels
   const auto blocks = trajectory.program();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     add_block(data, place_of(i), trajectory.start_length(i), wanted_speed(trajectory, i));
-    add_pieces(data, 0.0, blocks[i].path.length(), [&](double s) { return channels_at(blocks[i], s); });
+    add_pieces(data, 0.0, blocks[i].path.length(), [&](double s) { return channels_at(i, s); });
   }
   const auto limited = limited_by(trajectory);
   for (std::size_t i = 0; i < limited.size(); ++i) {
@@ -157,7 +157,7 @@ void add_samples(MotionData& data, const T& trajectory, std::size_t count, const
   const double period = data.duration / static_cast<double>(count);
   const auto position_at = [&](const typename T::SetPoint& p) {
     const double within = p.along.position - trajectory.start_length(p.block);
-    return channels_at(trajectory.program()[p.block], within).position;
+    return channels_at(p.block, within).position;
   };
   std::size_t phase = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -184,8 +184,8 @@ void add_samples(MotionData& data, const T& trajectory, std::size_t count, const
 /// Phases and blocks that are kept whole, and the instants that a longer program is reduced to.
 inline constexpr std::size_t most_phases = 400000;
 
-/// The columns of a trajectory. channels_at(block, s): the channels and their derivatives by length;
-/// place_of(block index): its place in the text.
+/// The columns of a trajectory. channels_at(number of a block, s): the channels and their derivatives by
+/// length; place_of(block index): its place in the text.
 template <class T, class ChannelsAt, class PlaceOf>
 [[nodiscard]] MotionData motion_data(const T& trajectory, const ChannelsAt& channels_at,
                                      const PlaceOf& place_of) {
@@ -193,7 +193,7 @@ template <class T, class ChannelsAt, class PlaceOf>
   data.duration = trajectory.duration();
   data.end_length = trajectory.length();
   if (!trajectory.program().empty())
-    data.channels = static_cast<std::size_t>(channels_at(trajectory.program()[0], 0.0).position.size());
+    data.channels = static_cast<std::size_t>(channels_at(0, 0.0).position.size());
   data.sampled = trajectory.phases().size() > most_phases || trajectory.program().size() > most_phases;
   if (data.sampled)
     detail::add_samples(data, trajectory, most_phases / 2, channels_at, place_of);

@@ -35,13 +35,17 @@ template <class M, class Trajectory>
                                            const Trajectory& trajectory) {
   const auto channels = channels_of(file);
   const M& machine = trajectory.machine();
-  const auto channels_at = [&](const typename M::Block& block, double s) {
-    const auto axes = block.path.point_at(s);
+  const auto channels_at = [&](std::size_t block, double s) {
+    const auto path = trajectory.path(block);
+    const auto axes = path.point_at(s);
     if constexpr (std::is_same_v<M, Rows>)
       return report::channel_point(file, channels, report::tip_point(machine.tool_length, axes), axes);
     else
-      return report::channel_point(file, channels,
-                                   cncplan::tool_point(block.path, s, cncplan::tool_axes(machine)), axes);
+      return report::channel_point(
+          file, channels,
+          path.exact() ? cncplan::tool_point(path.programmed(), s, cncplan::tool_axes(machine))
+                       : path.tool_point_at(s),
+          axes);
   };
   return report::motion_data(trajectory, channels_at, [&](std::size_t block) {
     const Origin& motion = program.motions[program.motion_of[block]];

@@ -51,7 +51,8 @@ class Taker {
     const auto block = builder_.take(gcode::Item(motion));
     if (!block) support::refuse(file_, block.error());
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
-    line_.moves.push_back({(*block)->path, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
+    line_.moves.push_back(
+        {(*block)->path, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
   }
   void operator()(const gcode::Dwell& dwell) { line_.pause += dwell.seconds; }
   void operator()(const gcode::Stop&) { line_.stops = true; }

@@ -70,8 +70,8 @@ report::Report html_report(const Options& options, const kinematics::Sidewall& s
     for (Eigen::Index k = 0; k < 4; ++k) result[k] = machine.shown(static_cast<std::size_t>(k), values[k]);
     return result;
   };
-  const auto channels_at = [&](const plan::WallBlock& block, double s) {
-    const auto axes = block.path.point_at(s);
+  const auto channels_at = [&](std::size_t block, double s) {
+    const auto axes = motion.program()[block].path.point_at(s);
     return report::channel_point(machine, channels, report::tip_point(options.tool_length, axes), axes);
   };
   const auto place_of = [&](std::size_t i) {
