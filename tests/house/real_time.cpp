@@ -200,16 +200,17 @@ void stream_a_program() {
   sink = planner.finish(spans.begin()).has_value() ? 1.0 : 0.0;
 }
 
-constexpr Machine<3> mill{.axes = {{{.letter = 'X',
-                                     .velocity = 50,
-                                     .acceleration = 1000,
-                                     .jerk = 20000,
-                                     .motors = {{.steps_per_unit = 400}}},
-                                    {.letter = 'Y', .velocity = 50, .acceleration = 1000, .jerk = 20000},
-                                    {.letter = 'Z', .velocity = 20, .acceleration = 300, .jerk = 5000}}},
-                          .limits = limits};
-BlockReader mill_reader(mill);
-Executor<Machine<3>, 16> executor(mill);
+constexpr Machine<3> stepping_mill{
+    .axes = {{{.letter = 'X',
+               .velocity = 50,
+               .acceleration = 1000,
+               .jerk = 20000,
+               .motors = {{.steps_per_unit = 400}}},
+              {.letter = 'Y', .velocity = 50, .acceleration = 1000, .jerk = 20000},
+              {.letter = 'Z', .velocity = 20, .acceleration = 300, .jerk = 5000}}},
+    .limits = limits};
+BlockReader mill_reader(stepping_mill);
+Executor<Machine<3>, 16> executor(stepping_mill);
 
 void run_a_program() {
   LiveSteps steps(executor);
