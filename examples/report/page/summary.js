@@ -35,7 +35,7 @@ function bar(share) {
 }
 
 function showSummary(report, motion) {
-  const rows = [...report.summary, ['time', timeText(motion.duration)],
+  const rows = [...report.summary,
                 ['mean speed', `${shortNumber(motion.duration > 0 ? motion.length / motion.duration : 0)} mm/s`]];
   fillTable(document.getElementById('summary'), rows);
 }
