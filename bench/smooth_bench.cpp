@@ -15,18 +15,16 @@ using namespace cncplan;
 // The blocks of the program as one run. An item is a block; `seconds` is the motion's duration.
 void smooth_ball_best(benchmark::State& state) {
   using Segment = path::BasicSegment<double, 3>;
-  Machine<3> mill;
-  mill.limits = bench::limits;
-  const auto program = read_blocks(gcode::TextLines(bench::ball()), mill, PlanOptions{});
+  const Limits& tool = bench::mill.limits;
+  const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, PlanOptions{});
   if (!program) return state.SkipWithError("the program does not read");
   std::vector<smooth::BandBlock<Segment>> blocks;
   for (const auto& block : program->blocks)
     if (block.path.length() > 0)
-      blocks.push_back({&block.path,
-                        block.rapid ? bench::limits.velocity : std::min(block.feed, bench::limits.velocity),
+      blocks.push_back({&block.path, block.rapid ? tool.velocity : std::min(block.feed, tool.velocity),
                         Vector3::Constant(0.01)});
   smooth::MotionLimits<3> limits;
-  limits.tool = bench::limits;
+  limits.tool = tool;
   double seconds = 0;
   for (auto _ : state) seconds = smooth::smooth_run<Segment>(blocks, limits).duration;
   state.counters["seconds"] = seconds;

@@ -10,13 +10,12 @@ using namespace cncplan;
 
 // An item is a block; `seconds` is the motion's duration.
 void smooth_ball_fast(benchmark::State& state) {
-  const Machine<3> mill{.limits = bench::limits};
   const PlanOptions options{.tolerance = 0.01};
-  const auto program = read_blocks(gcode::TextLines(bench::ball()), mill, options);
+  const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, options);
   if (!program) return state.SkipWithError("the program does not read");
   double seconds = 0;
   for (auto _ : state) {
-    const auto planned = plan_blocks(program->blocks, mill, options);
+    const auto planned = plan_blocks(program->blocks, bench::mill, options);
     if (!planned) return state.SkipWithError("the program has no plan");
     seconds = planned->duration();
   }
@@ -27,13 +26,12 @@ BENCHMARK(smooth_ball_fast)->Name("smooth/ball/fast")->Unit(benchmark::kMillisec
 
 // The same without the speed: which junctions, and how large their kernels are.
 void smooth_ball_sizes(benchmark::State& state) {
-  const Machine<3> mill{.limits = bench::limits};
   const PlanOptions options{.tolerance = 0.01};
-  const auto program = read_blocks(gcode::TextLines(bench::ball()), mill, options);
+  const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, options);
   if (!program) return state.SkipWithError("the program does not read");
   const std::span<const Block<3>> blocks(program->blocks);
   for (auto _ : state)
-    benchmark::DoNotOptimize(plan::smoothing(blocks, mill, plan::smoothing_rules<double>(options)));
+    benchmark::DoNotOptimize(plan::smoothing(blocks, bench::mill, plan::smoothing_rules<double>(options)));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(smooth_ball_sizes)->Name("smooth/ball/sizes")->Unit(benchmark::kMillisecond);

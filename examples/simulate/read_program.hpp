@@ -179,10 +179,10 @@ class Builder {
       const cncplan::Vector3 at = block.path.start();
       const double radius = std::hypot(at.x(), at.y());
       if (!(radius >= machine_.smallest_radius)) return refuse_radius(radius, block.line, 1);
-      const auto joints =
-          cncplan::kinematics::PolarMap{{at.x(), at.y(), table_}}.joints(std::array{at.x(), at.y(), at.z()});
-      const cncplan::Vector3 place(joints[0], joints[1], joints[2]);
-      add(copy(block, cncplan::path::Line<3>(place, place)));
+      using cncplan::kinematics::PolarMap;
+      const cncplan::path::Part<cncplan::path::Segment<3>> here(block.path, 0.0, 0.0);
+      add(copy(block, cncplan::plan::TablePath<PolarMap, cncplan::path::Segment<3>>(
+                          PolarMap{{at.x(), at.y(), table_}}, here)));
     } else {
       add(copy(block, *block.path.line()));
     }

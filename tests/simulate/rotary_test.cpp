@@ -99,6 +99,20 @@ TEST_CASE("C goes on past whole turns") {
   CHECK(run.json()["steps"]["C"].get<int>() == Approx(144000).margin(2));
 }
 
+TEST_CASE("a dwell on the rotary table: samples stand where the tool does") {
+  const Folder folder;
+  folder.write("machine.toml", table_machine());
+  const auto run = folder.run_text("G0 X20\nG4 P0.055\nG1 Y10 F600\nG4 P0.055\nX10\n",
+                                   "--json --machine machine.toml --period 0.01 --samples s.csv");
+  REQUIRE(run.exit == 0);
+  const Table samples(folder / "s.csv");
+  double stride = 0.0;
+  for (std::size_t i = 1; i < samples.rows(); ++i)
+    stride = std::max(
+        stride, std::hypot(samples["x"][i] - samples["x"][i - 1], samples["y"][i] - samples["y"][i - 1]));
+  CHECK(stride <= 0.3 * (1 + 1e-9));  // 30 mm/s
+}
+
 TEST_CASE("near the table's axis a path is slowed, inside the radius refused with its line") {
   const Folder folder;
   folder.write("table.toml", table_machine("table_center = [-50, -6]\n"));
