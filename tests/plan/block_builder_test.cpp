@@ -67,6 +67,7 @@ TEST_CASE("a line becomes a block in machine coordinates") {
   CHECK(made.path.end() == Vector3(101, 12, -2));
   CHECK(made.feed == 12.0);
   CHECK_FALSE(made.exact_stop);
+  m.path_mode = gcode::PathMode::exact_stop;
   m.exact_stop = true;
   CHECK(block(m).exact_stop);
 }

@@ -101,7 +101,7 @@ TEST_CASE("C goes on past whole turns") {
 
 TEST_CASE("a dwell on the rotary table: samples stand where the tool does") {
   const Folder folder;
-  folder.write("machine.toml", table_machine());
+  folder.write("machine.toml", table_machine("table_center = [-50, 0]\n"));
   const auto run = folder.run_text("G0 X20\nG4 P0.055\nG1 Y10 F600\nG4 P0.055\nX10\n",
                                    "--json --machine machine.toml --period 0.01 --samples s.csv");
   REQUIRE(run.exit == 0);

@@ -73,7 +73,7 @@ TEST_CASE("on the exact path G64's tolerance is said once to be ignored") {
 
 TEST_CASE("a program's own G64 P wins over --tolerance") {
   const test::Folder folder;
-  const std::string program = "G64 P0.01\nG1 X10\nG64 P0.1\nX20 Y10\nG61 X30\nY20\nG64\nX40\nY30\n";
+  const std::string program = "G64 P0.002\nG1 X50\nG64 P0.1\nX100 Y10\nG61 X150\nY20\nG64\nX200\nX250 Y30\n";
   const auto run = folder.run_text(program, "--json --period 1e-4 --samples s.csv --tolerance 0.03");
   REQUIRE(run.exit == 0);
   CHECK(run.err.empty());
@@ -84,13 +84,12 @@ TEST_CASE("a program's own G64 P wins over --tolerance") {
       gap = std::min(gap, std::hypot(samples["x"][i] - x, samples["y"][i] - y));
     return gap;
   };
-  // from the corner to the middle of what rounds it: more than the distance from the path, by 1 / cos(half
-  // turn)
-  CHECK(nearest(10, 0) > 0.002);
-  CHECK(nearest(10, 0) <= 0.01 / std::cos(std::acos(-1.0) / 8) + 1e-6);
-  CHECK(nearest(30, 10) < 2e-6);  // exact, at rest
-  CHECK(nearest(40, 20) > 0.01);
-  CHECK(nearest(40, 20) <= 0.03 * std::sqrt(2.0) + 1e-6);
+  // from the corner to the middle of what rounds it: more than the distance from the path by a hundredth
+  CHECK(nearest(50, 0) > 0.001);
+  CHECK(nearest(50, 0) <= 0.00205);
+  CHECK(nearest(150, 10) < 2e-6);  // exact, at rest
+  CHECK(nearest(200, 20) > 0.005);
+  CHECK(nearest(200, 20) <= 0.0305);
 }
 
 TEST_CASE("option --tolerance: within limits as samples show, within the tolerance, without a jump") {

@@ -24,7 +24,7 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 20;
+inline constexpr std::size_t max_items_per_line = max_passed + 19;
 
 /// What the warning of a G64 with P names: the reader hands the tolerance out with each motion, and whether
 /// it has an effect is for the planner to say.
