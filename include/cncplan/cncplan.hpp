@@ -146,6 +146,7 @@
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/reversal.hpp"
 #include "cncplan/plan/set_point.hpp"
+#include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/smoothing.hpp"
 #include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"

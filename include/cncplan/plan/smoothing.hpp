@@ -92,6 +92,29 @@ struct Junction {
   }
 };
 
+}  // namespace detail
+
+/// How far the tool may leave a block, mm; 0 where it may not.
+template <BlockModel B, std::floating_point S>
+[[nodiscard]] S tolerance_of(const B& block, const SmoothingRules<S>& rules) {
+  return block.exact_path ? S(0) : block.tolerance.value_or(rules.tolerance);
+}
+
+/// How the motion passes from one block to the next, both of a length > 0, without a rest between them.
+template <BlockModel B, MachineModel M>
+[[nodiscard]] Passing passing_between(const B& before, const B& after, const M& machine,
+                                      const SmoothingRules<typename M::Scalar>& rules) {
+  using S = typename M::Scalar;
+  if (length_of(before.path, machine) != length_of(after.path, machine)) return Passing::stop;
+  const S turn = detail::Junction<M, B>(before, after, tool_axes(machine)).turn;
+  const bool exact = !(std::min(tolerance_of(before, rules), tolerance_of(after, rules)) > S(0)) ||
+                     (rules.exact_between_rapids_and_feeds && before.rapid != after.rapid);
+  if (exact) return turn > flattest_stop<S> ? Passing::stop : Passing::policy;
+  return turn > sharpest_smooth_turn<S> ? Passing::stop : Passing::smooth;
+}
+
+namespace detail {
+
 /// Makes the corrections of a program, one part from rest to rest after the other.
 template <MachineModel M, BlockModel B>
 class Smoother {
@@ -113,7 +136,7 @@ class Smoother {
       auto& own = result_.blocks[i];
       own.start = place;
       if (block.path.length() > S(0)) {
-        own.passing = rests ? Passing::stop : passing(blocks_[before], block);
+        own.passing = rests ? Passing::stop : passing_between(blocks_[before], block, machine_, rules_);
         if (own.passing != Passing::smooth) finish(place);
         if (own.passing == Passing::smooth) add_junction(before, i);
         moving_.push_back(i);
@@ -130,18 +153,7 @@ class Smoother {
  private:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-  [[nodiscard]] S tolerance(const B& block) const {
-    return block.exact_path ? S(0) : block.tolerance.value_or(rules_.tolerance);
-  }
-
-  [[nodiscard]] Passing passing(const B& before, const B& after) const {
-    if (length_of(before.path, machine_) != length_of(after.path, machine_)) return Passing::stop;
-    const Junction<M, B> junction(before, after, tool_);
-    const bool exact = !(std::min(tolerance(before), tolerance(after)) > S(0)) ||
-                       (rules_.exact_between_rapids_and_feeds && before.rapid != after.rapid);
-    if (exact) return junction.turn > flattest_stop<S> ? Passing::stop : Passing::policy;
-    return junction.turn > sharpest_smooth_turn<S> ? Passing::stop : Passing::smooth;
-  }
+  [[nodiscard]] S tolerance(const B& block) const { return tolerance_of(block, rules_); }
 
   // Of a block as it is programmed.
   [[nodiscard]] BasicLimits<S> top_limits(const B& block) const {

@@ -80,10 +80,13 @@ class Trajectory {
   [[nodiscard]] DrivenPath path(std::size_t block) const& {
     return smoothing_.path(blocks_[block].path, block, tool_);
   }
+  /// The corrections of all blocks; empty where nothing is smoothed by corrections.
+  [[nodiscard]] const Smoothing& smoothing() const& { return smoothing_; }
   /// Every phase, in order of time.
   [[nodiscard]] std::span<const Phase> phases() const& { return phases_; }
   void program() const&& = delete;
   void path(std::size_t) const&& = delete;
+  void smoothing() const&& = delete;
   void phases() const&& = delete;
 
   /// s, from rest to rest.

@@ -9,6 +9,8 @@
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/interval.hpp"
+#include "cncplan/core/jet.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/smooth/cubic_spline.hpp"
 
@@ -55,6 +57,20 @@ class BasicCubic {
     result.second = a.second.cwiseAbs().cwiseMax(b.second.cwiseAbs());
     result.third = a.third.cwiseAbs();
     result.tool = tool_bounds(a, b, to - from);
+    return result;
+  }
+
+  /// Position and derivatives by length between two lengths, each as an interval.
+  [[nodiscard]] std::array<BasicJet<BasicInterval<S>>, static_cast<std::size_t>(N)> enclosure(S from,
+                                                                                              S to) const {
+    const BasicInterval<S> s(from, to), half = s / BasicInterval<S>(2), third = s / BasicInterval<S>(3);
+    std::array<BasicJet<BasicInterval<S>>, static_cast<std::size_t>(N)> result;
+    for (int axis = 0; axis < N; ++axis) {
+      const BasicInterval<S> p(start_.position[axis]), v(start_.first[axis]), a(start_.second[axis]),
+          j(start_.third[axis]);
+      result[static_cast<std::size_t>(axis)] = {p + s * (v + half * (a + third * j)), v + s * (a + half * j),
+                                                a + s * j, j};
+    }
     return result;
   }
 

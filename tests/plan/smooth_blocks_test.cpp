@@ -1,0 +1,228 @@
+// Programs planned at the level best: limits by differences of positions, distances by brute force.
+#include "cncplan/plan/smooth_blocks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cncplan/plan/peaks.hpp"
+#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan/step_edges.hpp"
+#include "plan/smoothed_motion.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::test;
+
+namespace {
+
+const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+
+std::vector<ProgramBlock<Machine<3>>> blocks_of(const std::string& text, const Machine<3>& machine = mill,
+                                                const PlanOptions& options = {}) {
+  auto program = read_blocks(gcode::TextLines(text), machine, options);
+  REQUIRE(program);
+  return std::move(program->blocks);
+}
+
+template <class T>
+bool is_cubic(const T& block) {
+  return block.path.template as<smooth::Cubic<3>>() != nullptr;
+}
+template <class T>
+std::ptrdiff_t cubics(const T& trajectory) {
+  const auto program = trajectory.program();
+  return std::count_if(program.begin(), program.end(), [](const auto& block) { return is_cubic(block); });
+}
+
+// When the motion comes to a block of the program.
+template <class T>
+double start_of(const T& trajectory, std::size_t source) {
+  const auto program = trajectory.program();
+  const auto piece =
+      std::find_if(program.begin(), program.end(), [&](const auto& block) { return block.source >= source; });
+  return trajectory.start_time(static_cast<std::size_t>(piece - program.begin()));
+}
+
+void check(const std::vector<ProgramBlock<Machine<3>>>& blocks, double tolerance = 0.01,
+           const Machine<3>& machine = mill) {
+  const PlanOptions options{.tolerance = tolerance};
+  const auto best = plan_smooth(blocks, machine, options);
+  REQUIRE(best);
+  const Used most = used(*best, machine);
+  CHECK(most.velocity <= 1 + 1e-6);
+  CHECK(most.acceleration <= 1 + 1e-5);
+  CHECK(most.jerk <= 1 + 1e-4);
+  CHECK(corner_velocity_step(*best) < 1e-6);
+  const Polyline path = programmed(blocks), curve = driven(*best, 8);
+  CHECK(farthest(curve, path) <= tolerance * (1 + 1e-6));
+  CHECK(farthest(path, curve) <= tolerance * (1 + 1e-6));
+  CHECK((best->at(best->duration()).position - path.back()).norm() < 1e-9);
+  CHECK((best->at(0).position - path.front()).norm() < 1e-9);
+  CHECK(best->completed());
+  double length = 0;
+  for (const auto& block : blocks) length += block.path.length();
+  CHECK(best->length() == Approx(length).epsilon(1e-9));
+  // Phases follow each other, and so do blocks, of the program too.
+  double time = 0;
+  std::size_t before = 0;
+  for (const auto& [phase, block] : best->phases()) {
+    CHECK(phase.time == Approx(time).margin(1e-9));
+    CHECK(block >= before);
+    time = phase.time + phase.duration;
+    before = block;
+  }
+  CHECK(best->duration() == Approx(time));
+  std::size_t source = 0;
+  for (const auto& block : best->program()) {
+    CHECK(block.source >= source);
+    source = block.source;
+    CHECK(block.line == blocks[source].line);
+    CHECK(block.rapid == blocks[source].rapid);
+  }
+  const auto fast = plan_blocks(blocks, machine, options);
+  REQUIRE(fast);
+  CHECK(best->duration() <= fast->duration() * (1 + 1e-9));
+}
+
+}  // namespace
+
+TEST_CASE("best: corners keep limits and tolerance, and are faster than smoothed by corrections",
+          "[smooth-blocks]") {
+  for (const char* end : {"X60 Y1", "X55 Y9", "X50 Y10", "X42 Y6"}) {
+    INFO("a corner to " << end);
+    check(blocks_of(std::string("F1800 G1 X50\n") + end + "\n"));
+  }
+  const auto blocks = blocks_of("F1800 G1 X50\nY50\n");
+  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  REQUIRE(best);
+  CHECK(cubics(*best) == static_cast<std::ptrdiff_t>(best->program().size()));
+  CHECK(best->duration() < 100.0 / 30 + 2 * std::sqrt(30 / 1e4) + 0.086);  // the study's table
+}
+
+TEST_CASE("best: lines and arcs, rapids and feed moves", "[smooth-blocks]") {
+  SECTION("line, tangent arc, line") { check(blocks_of("F1800 G1 X30\nG3 X30 Y10 J5\nG1 X0\n")); }
+  SECTION("kinked line and arc") { check(blocks_of("F1800 G1 X10\nG2 X20 Y0 I5 J-2\nG1 X30 Y3\n")); }
+  SECTION("an arc alone") { check(blocks_of("F1800 G3 X0 Y4 J2\n")); }
+  SECTION("rapids") {
+    Machine<3> slow = mill;
+    slow.rapid_rate = 25;
+    check(blocks_of("F600 G0 X10 Y3\nG1 X20\nY5\nG0 X0\n", slow), 0.02, slow);
+  }
+}
+
+TEST_CASE("best: stops, pauses and exact blocks divide the program", "[smooth-blocks]") {
+  const auto blocks = blocks_of(
+      "F1800 G1 X10\nX20 Y5\nX30\nG4 P0.25\nX40 Y5\nX50\nY0\nG61.1 X60\nY10\nG61 X70\nX75\nG64 X80\nX90 "
+      "Y0\n");
+  check(blocks);
+  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  REQUIRE(best);
+  const auto program = best->program();
+  CHECK(cubics(*best) > 0);
+  // At rest where the program stops, and there exactly.
+  double rest = 0;
+  for (const auto& [phase, block] : best->phases())
+    if (phase.velocity == 0 && phase.jerk == 0 && phase.acceleration == 0) rest += phase.duration;
+  CHECK(rest == Approx(0.25));
+  for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
+    if (!blocks[b].exact_stop && !(blocks[b].pause > 0)) continue;
+    const auto point = best->at(start_of(*best, b + 1));
+    INFO("behind block " << b);
+    CHECK(point.velocity.norm() < 1e-6);
+    CHECK((point.position - blocks[b].path.end()).norm() < 1e-9);
+  }
+  for (const auto& block : program)
+    if (blocks[block.source].exact_path || blocks[block.source].path.length() == 0) CHECK(!is_cubic(block));
+}
+
+TEST_CASE("best: the way back is exact", "[smooth-blocks]") {
+  const auto blocks = blocks_of("F1800 G1 X5\nX10 Z-10\nX5 Z0\nX0\n");
+  check(blocks);
+  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  REQUIRE(best);
+  const auto there = best->at(start_of(*best, 2));
+  CHECK((there.position - Vector3(10, 0, -10)).norm() < 1e-9);
+  CHECK(there.velocity.norm() < 1e-6);
+}
+
+TEST_CASE("best: what has no such plan is planned as plan_blocks does", "[smooth-blocks]") {
+  const auto blocks = blocks_of("F1800 G1 X10\nY10\nG4 P0.1\nX20\nG3 X30 Y20 J10\n");
+  Machine<3> no_jerk = mill, far_axes = mill;
+  no_jerk.limits.jerk = std::numeric_limits<double>::infinity();
+  far_axes.axes[0].letter = 'Y';
+  far_axes.axes[1].letter = 'X';
+  const auto same = [&](const Machine<3>& machine, const PlanOptions& options) {
+    const auto best = plan_smooth(blocks, machine, options);
+    const auto fast = plan_blocks(blocks, machine, options);
+    REQUIRE(best.has_value() == fast.has_value());
+    if (!best) return;
+    CHECK(cubics(*best) == 0);
+    REQUIRE(best->duration() == fast->duration());
+    for (double t = 0; t < fast->duration(); t += 0.01)
+      CHECK((best->at(t).position - fast->at(t).position).norm() < 1e-12);
+  };
+  same(mill, {.tolerance = 0});
+  same(no_jerk, {.tolerance = 0.01});
+  same(far_axes, {.tolerance = 0.01});
+  // Along the end of travel there is no room for a curve on both sides.
+  Machine<3> narrow = mill;
+  narrow.axes[1].low = 0;
+  const auto wall = blocks_of("F1800 G1 X10 Y0\nX11 Y0.1\nX12 Y0\nX20\n", narrow);
+  const auto planned = plan_smooth(wall, narrow, {.tolerance = 0.01});
+  if (planned)
+    for (const auto& point : planned->samples(1e-3)) CHECK(point.position[1] > -1e-9);
+}
+
+TEST_CASE("best: errors say the block", "[smooth-blocks]") {
+  const std::vector<ProgramBlock<Machine<3>>> apart{
+      {.path = path::Line<3>(Vector3(0, 0, 0), Vector3(1, 0, 0)), .feed = 10, .line = 1},
+      {.path = path::Line<3>(Vector3(1, 0, 0), Vector3(2, 1, 0)), .feed = 10, .line = 2},
+      {.path = path::Line<3>(Vector3(3, 1, 0), Vector3(4, 0, 0)), .feed = 10, .line = 3}};
+  const auto planned = plan_smooth(apart, mill, {.tolerance = 0.01});
+  REQUIRE(!planned);
+  CHECK(planned.error().error().code == ErrorCode::discontinuous);
+  CHECK(planned.error().block == 2u);
+  CHECK(planned.error().about.line == 3);
+}
+
+TEST_CASE("best: random programs", "[smooth-blocks]") {
+  test::Random random;
+  for (int round = 0; round < 6; ++round) {
+    std::ostringstream text;
+    text << "F1800 G1\n";
+    Vector3 at = Vector3::Zero();
+    const int count = random.integer(2, 20);
+    for (int i = 0; i < count; ++i) {
+      const Vector3 way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.3, 0.3));
+      at += random.log_uniform(0.1, 10) * way.normalized();
+      text << "X" << at[0] << " Y" << at[1] << " Z" << at[2] << " F" << random.integer(300, 1800) << "\n";
+      if (random.integer(0, 6) == 0) text << "G4 P0.05\n";
+    }
+    INFO("seed " << test::seed() << " round " << round << "\n" << text.str());
+    check(blocks_of(text.str()), random.log_uniform(0.003, 0.05));
+  }
+}
+
+TEST_CASE("best: step edges end where the program does", "[smooth-blocks]") {
+  Machine<3> machine = mill;
+  for (auto& axis : machine.axes) axis.motors = {{.steps_per_unit = 100}};
+  const auto blocks = blocks_of("F1800 G1 X10\nX13 Y5\nG3 X23 Y5 I5\nG1 X30 Y1 Z-2\n", machine);
+  const auto best = plan_smooth(blocks, machine, {.tolerance = 0.01});
+  REQUIRE(best);
+  std::array<int, 3> steps{};
+  double time = 0;
+  for (const auto& edge : best->step_edges()) {
+    CHECK(edge.time >= time);
+    time = edge.time;
+    steps[static_cast<std::size_t>(edge.axis)] += edge.direction;
+  }
+  CHECK(steps == std::array{3000, 100, -200});
+  CHECK(time <= best->duration());
+}
