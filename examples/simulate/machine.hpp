@@ -18,6 +18,12 @@ struct Mill : cncplan::Machine<N> {
   using Block = cncplan::Block<N>;
 };
 
+/// The same, driven along pieces of curves within a tolerance.
+template <int N>
+struct SmoothMill : Mill<N> {
+  using Block = cncplan::SmoothBlock<N>;
+};
+
 /// Two slides and a rotary table, programmed in X Y Z. Tool positions are the table's, its axis at X0 Y0.
 struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarMap> {
   using Block =

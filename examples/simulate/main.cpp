@@ -9,6 +9,8 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <type_traits>
+#include <utility>
 
 #include "html_report.hpp"
 #include "options.hpp"
@@ -17,6 +19,7 @@
 #include "read_program.hpp"
 #include "report.hpp"
 #include "run.hpp"
+#include "stopwatch.hpp"
 #include "support/failure.hpp"
 #include "support/gnuplot.hpp"
 #include "support/main_program.hpp"
@@ -93,6 +96,8 @@ void check_options(const Options& options, const support::Machine& machine) {
                           options.interpolator == Interpolator::exact;
   if (options.events && !as_planned)
     refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
+  if (options.events && options.smooth == Smooth::best)
+    refuse("--smooth best is for motion without events: its speed is planned as a whole");
   if (options.tolerance > 0.0 && machine.kinematics != Kinematics::cartesian)
     refuse(
         "--tolerance above 0 is for machines whose axes are the program's: paths on a table or a mold are "
@@ -110,20 +115,9 @@ constexpr std::size_t drawn_points = 20000;
 constexpr std::size_t told_problems = 20;
 constexpr std::size_t checked_problems = 100;
 
+// Samples, steps and all else that is wanted of a run.
 template <class M>
-int run(const Options& options, const support::Machine& file, const M& machine) {
-  Problems problems(options.program, options.check ? checked_problems : told_problems);
-  const auto program = read_program(options, file, machine, problems);
-  if (options.check) {  // says all that is wrong, and by kind; plans nothing
-    if (options.json)
-      support::print(kinds_json(problems, program.lines, program.warnings.size()));
-    else if (!options.quiet)
-      support::print(kinds_table(problems));
-  }
-  problems.refuse();
-  if (options.check) return static_cast<int>(Exit::done);
-
-  Run<M> run(options, file, machine, program);
+int write_out(const Options& options, const support::Machine& file, const Program<M>& program, Run<M> run) {
   const Measures& measures = run.measures();
   check_size(measures, options, file);
   if (options.plot) support::make_folder(*options.plot);
@@ -168,6 +162,48 @@ int run(const Options& options, const support::Machine& file, const M& machine) 
   else if (!options.quiet)
     support::print(table_summary(program, file, measures));
   return static_cast<int>(Exit::done);
+}
+
+// A mill's program within a tolerance, at the level `best`.
+template <int N>
+int run_smoothly(const Options& options, const support::Machine& file, const Mill<N>& mill,
+                 const Program<Mill<N>>& program) {
+  double seconds = 0.0;
+  const auto planned = [&] {
+    const Stopwatch watch(seconds);
+    return cncplan::plan_smooth(
+        program.blocks, SmoothMill<N>{mill},
+        {.tolerance = options.tolerance,
+         .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree});
+  }();
+  if (!planned) {
+    auto error = planned.error();
+    error.file = program.file;
+    throw Failure(Exit::bad_input, cncplan::to_text(error));
+  }
+  Program<SmoothMill<N>> pieces{program, {planned->program().begin(), planned->program().end()}};
+  pieces.motion_of.clear();
+  for (const auto& piece : pieces.blocks) pieces.motion_of.push_back(program.motion_of[piece.source]);
+  return write_out(options, file, pieces, Run<SmoothMill<N>>(options, file, pieces, *planned, seconds));
+}
+
+template <class M>
+int run(const Options& options, const support::Machine& file, const M& machine) {
+  Problems problems(options.program, options.check ? checked_problems : told_problems);
+  const auto program = read_program(options, file, machine, problems);
+  if (options.check) {  // says all that is wrong, and by kind; plans nothing
+    if (options.json)
+      support::print(kinds_json(problems, program.lines, program.warnings.size()));
+    else if (!options.quiet)
+      support::print(kinds_table(problems));
+  }
+  problems.refuse();
+  if (options.check) return static_cast<int>(Exit::done);
+
+  if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
+    if (options.tolerance > 0.0 && !options.events && options.smooth != Smooth::fast)
+      return run_smoothly(options, file, machine, program);
+  return write_out(options, file, program, Run<M>(options, file, machine, program));
 }
 
 int run(const Options& options) {

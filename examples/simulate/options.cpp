@@ -77,6 +77,14 @@ std::optional<Options> parse_options(int argc, char** argv) {
          "mm that the tool may leave the path, so that it moves without a jump of velocity or acceleration; "
          "0, or not given: the exact path, corners by --junction")
       ->check(support::not_negative());
+  app.add_option_function<std::string>(
+         "--smooth",
+         [&options](const std::string& level) {
+           options.smooth = level == "best" ? Smooth::best : Smooth::fast;
+         },
+         "with --tolerance, fast: closed form; best: the fastest motion; best if not given, fast with "
+         "--events")
+      ->check(CLI::IsMember({"fast", "best"}));
   app.add_option("--junction", junction,
                  "corners of the exact path: table, table-absolute, stop, tangent=MM/S, deviation=MM, "
                  "acceleration-step=MM/S^2; several joined by +; deviation=0.01 if not given");
@@ -94,6 +102,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                "make and count step edges where neither --steps nor --machine asks for them");
   if (!support::parse(app, argc, argv)) return std::nullopt;
   settle_corners(options, junction, tolerance);
+  if (options.smooth && !(options.tolerance > 0.0))
+    throw support::Failure(support::Exit::bad_input, "--smooth goes with a --tolerance above 0");
   support::refuse_shared_files({{"PROGRAM", options.program},
                                 {"--machine", options.machine},
                                 {"--events", options.events},

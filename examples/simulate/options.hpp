@@ -13,6 +13,7 @@ namespace simulate {
 enum class Law { five, seven };
 enum class Planning { span, block };
 enum class Interpolator { exact, taylor, constant };
+enum class Smooth { fast, best };
 
 struct Options : support::RunOptions {
   std::string program;
@@ -22,6 +23,7 @@ struct Options : support::RunOptions {
   Planning planning = Planning::span;
   Interpolator interpolator = Interpolator::exact;
   double tolerance = 0.0;             ///< mm from the path, within which it is smoothed; 0: the exact path
+  std::optional<Smooth> smooth{};     ///< of the path within the tolerance; the best that goes, if not given
   double corner_tolerance = -1.0;     ///< mm, of exact corners that count as rounded; negative: none do
   double rotary_tolerance = 0.05;     ///< degrees
   std::optional<double> tool_length;  ///< mm

@@ -45,6 +45,14 @@ class Run {
     measure();
   }
 
+  /// With a trajectory that was planned in so many seconds; the program's blocks are its.
+  Run(const Options& options, const support::Machine& file, const Program<M>& program, Trajectory trajectory,
+      double seconds)
+      : options_(options), file_(file), program_(program), trajectory_(std::move(trajectory)) {
+    measures_.plan_seconds = seconds;
+    measure();
+  }
+
   [[nodiscard]] const Measures& measures() const { return measures_; }
   [[nodiscard]] const Trajectory& trajectory() const { return trajectory_; }
 
@@ -212,7 +220,12 @@ class Run {
 
   // Of a sample from the programmed path: an error where that is driven, else what smoothing takes.
   void measure_distance(std::size_t block, double distance) {
-    double& largest = trajectory_.path(block).exact() ? measures_.contour_error : measures_.deviation;
+    bool programmed = trajectory_.path(block).exact();
+    if constexpr (requires(const Block& b) { b.source; }) {
+      const auto& path = trajectory_.program()[block].path;
+      programmed = programmed && (path.line() != nullptr || path.arc() != nullptr);
+    }
+    double& largest = programmed ? measures_.contour_error : measures_.deviation;
     largest = std::max(largest, distance);
   }
 
