@@ -74,7 +74,8 @@ TEST_CASE("on the exact path G64's tolerance is said once to be ignored") {
 TEST_CASE("a program's own G64 P wins over --tolerance") {
   const test::Folder folder;
   const std::string program = "G64 P0.002\nG1 X50\nG64 P0.1\nX100 Y10\nG61 X150\nY20\nG64\nX200\nX250 Y30\n";
-  const auto run = folder.run_text(program, "--json --period 1e-4 --samples s.csv --tolerance 0.03");
+  const auto run =
+      folder.run_text(program, "--json --period 1e-4 --samples s.csv --tolerance 0.03 --smooth fast");
   REQUIRE(run.exit == 0);
   CHECK(run.err.empty());
   const test::Table samples(folder / "s.csv");
@@ -96,9 +97,10 @@ TEST_CASE("option --tolerance: within limits as samples show, within the toleran
   const test::Folder folder;
   const std::string program = "G1 X10\nX10.1 Y0.05\nX20 Y9\nG3 X30 Y19 R10\nG1 X30 Y30\nX29 Y30\nX10\nY0\n";
   const double tolerance = GENERATE(0.002, 0.01, 0.1);
-  CAPTURE(tolerance);
-  const auto run = folder.run_text(
-      program, "--json --period 1e-4 --samples s.csv --tolerance " + std::to_string(tolerance));
+  const std::string level = GENERATE("fast", "best");
+  CAPTURE(tolerance, level);
+  const auto run = folder.run_text(program, "--json --period 1e-4 --samples s.csv --smooth " + level +
+                                                " --tolerance " + std::to_string(tolerance));
   REQUIRE(run.exit == 0);
   const auto json = run.json();
   const test::Table samples(folder / "s.csv");
@@ -124,6 +126,17 @@ TEST_CASE("option --tolerance: within limits as samples show, within the toleran
   CHECK(json["corner_velocity_step"].get<double>() < 1e-9);
   CHECK(json["tool_peak"]["jerk"].get<double>() <= 10000 * (1 + 1e-9));
   CHECK(json["tool_peak"]["jerk"].get<double>() >= jerk * (1 - 1e-4));
+}
+
+TEST_CASE("option --smooth goes with a tolerance, and its best level with no events") {
+  const test::Folder folder;
+  folder.write("part.ngc", "G1 X10\nX20 Y1\n");
+  folder.write("events.csv", "0.1,hold\n0.2,resume\n");
+  CHECK(folder.run("part.ngc --smooth fast").exit == 2);
+  CHECK(folder.run("part.ngc --smooth fine --tolerance 0.01").exit == 2);
+  CHECK(folder.run("part.ngc --smooth best --tolerance 0.01 --events events.csv").exit == 2);
+  CHECK(folder.run("part.ngc --smooth best --tolerance 0.01 --quiet").exit == 0);
+  CHECK(folder.run("part.ngc --tolerance 0.01 --quiet --events events.csv").exit == 0);
 }
 
 TEST_CASE("dwells count in the time, wherever they stand") {
