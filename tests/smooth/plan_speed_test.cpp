@@ -70,7 +70,7 @@ TEST_CASE("on a straight path the speed is that of seven phases, for any window"
       MotionLimits<3> limits;
       limits.tool = l;
       Memory memory(cells.size());
-      for (const std::size_t window : {100, 130, 200, 400, 900}) {
+      for (const std::size_t window : {100U, 130U, 200U, 400U, 900U}) {
         INFO("V " << l.velocity << " A " << l.acceleration << " J " << l.jerk << " length " << length
                   << " window " << window);
         const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, window}, memory.spans());
