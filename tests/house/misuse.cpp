@@ -74,7 +74,7 @@ struct NumbersOnly {
   double parameter_end() const;
   std::array<double, 3> point(double) const;
 };
-auto measured = path::measured(NumbersOnly{});
+path::Measured<NumbersOnly>* measured;
 
 // expect int, NumberOver: same_as
 auto joints_of_int = kinematics::PolarMap{}.joints(std::array<int, 3>{});
@@ -90,7 +90,7 @@ struct NoAxes {
   using Scalar = double;
   static constexpr int axis_count = 3;
 };
-auto no_axes = plan_text("", NoAxes{});
+BlockBuilder<NoAxes>* no_axes;
 
 // expect NoPath, BlockModel: block.path
 struct NoPath {
@@ -98,7 +98,7 @@ struct NoPath {
   using Path = path::Line<3>;
   static constexpr int axis_count = 3;
 };
-auto no_path = plan_blocks(std::vector<NoPath>{}, mill);
+Trajectory<Machine<3>, NoPath>* no_path;
 
 // expect ProfileAtOnce, RampLaw: law(limits)
 struct ProfileAtOnce {
