@@ -71,7 +71,8 @@ void Problems::add(const gcode::Motion& motion, const Error& error) {
 void Problems::refuse() const {
   if (found_.empty()) return;
   const auto text = [this](const Problem& problem) {
-    return fmt::format("{}:{}:{}: error: {}", file_, problem.line, problem.column, problem.text);
+    return fmt::format("{}:{}:{}: error: {}", problem.file.empty() ? file_ : problem.file, problem.line,
+                       problem.column, problem.text);
   };
   for (auto problem = found_.begin(); problem != found_.end() - 1; ++problem)
     fmt::print(stderr, "{}\n", text(*problem));

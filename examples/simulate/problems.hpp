@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
@@ -15,6 +16,7 @@ struct Problem {
   int column{};
   std::string kind;
   std::string text;
+  std::string file{};  ///< of a subprogram that was called; else empty
 };
 
 class Problems {
@@ -22,8 +24,12 @@ class Problems {
   Problems(std::string file, std::size_t most) : file_(std::move(file)), most_(most) {}
 
   void add(Problem problem) {
-    if (has_room()) found_.push_back(std::move(problem));
+    if (!has_room()) return;
+    problem.file = called_;
+    found_.push_back(std::move(problem));
   }
+  /// The file that is being read where it is not the program itself; else empty.
+  void stand_in(std::string_view called) { called_ = called; }
   void add(const cncplan::gcode::Diagnostic& diagnostic);
   /// A motion that has no path; an arc by its centre with its radii, and whether its I J K fit when they are
   /// read the other way.
@@ -40,6 +46,7 @@ class Problems {
  private:
   std::string file_;
   std::size_t most_;
+  std::string_view called_;
   std::vector<Problem> found_;
 };
 

@@ -8,15 +8,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <variant>
 
+#include "cncplan/gcode/language/find_file.hpp"
+#include "cncplan/gcode/language/program_lines.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
-#include "cncplan/gcode/subprograms.hpp"
 #include "machine.hpp"
 #include "options.hpp"
 #include "problems.hpp"
@@ -235,17 +234,6 @@ void begin_at(Program<M>& program, int line) {
   for (std::size_t& of : program.motion_of) of -= motion;
 }
 
-/// Whether M98 is in the text: only such a program is held in memory. Leaves the stream at its beginning.
-inline bool calls_subprograms(std::ifstream& stream) {
-  bool found = false;
-  cncplan::gcode::StreamLines lines(stream);
-  for (auto line = lines.next(); line && !found; line = lines.next())
-    found = line->find("M98") != std::string_view::npos || line->find("m98") != std::string_view::npos;
-  stream.clear();
-  stream.seekg(0);
-  return found;
-}
-
 /// Reads a program; warnings go to standard error. Text that is not understood and motions that cannot be
 /// made or leave the machine's travel are problems: the program cannot be run where there is one. Throws
 /// `Failure` for a file that cannot be read.
@@ -260,24 +248,22 @@ template <class M>
   program.file = options.program;
   gcode::Reader reader(file.dialect);
   Builder<M> build(file, machine, options.tolerance > 0.0, program, problems);
-  const auto read = [&](auto&& lines) {
-    gcode::read_program(
-        lines, reader,
-        [&](const gcode::Item& item) {
-          build(item);
-          return problems.has_room();
-        },
-        [&](const gcode::Diagnostic& problem) {
-          problems.add(problem);
-          return problems.has_room();
-        });
-  };
-  if (calls_subprograms(stream)) {
-    const std::string text(std::istreambuf_iterator<char>(stream), {});
-    read(gcode::SubprogramLines(text));
-  } else {
-    read(gcode::StreamLines(stream));
-  }
+  gcode::StreamLines text(stream);
+  gcode::ProgramLines lines(text, reader,
+                            gcode::files_of(std::filesystem::path(options.program).parent_path()));
+  gcode::read_program(
+      lines, reader,
+      [&](const gcode::Item& item) {
+        problems.stand_in(lines.file());
+        build(item);
+        return problems.has_room();
+      },
+      [&](const gcode::Diagnostic& problem) {
+        problems.stand_in(lines.file());
+        problems.add(problem);
+        return problems.has_room();
+      });
+  problems.stand_in({});
   program.lines = static_cast<std::size_t>(reader.line());
   if (!problems.found().empty()) return program;
   build.finish();

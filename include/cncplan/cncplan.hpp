@@ -57,7 +57,6 @@
 #include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/spindle.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
-#include "cncplan/gcode/subprograms.hpp"
 #include "cncplan/gcode/word.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
 #include "cncplan/gcode/writer.hpp"

@@ -1,6 +1,7 @@
 // What is refused: the code, one line that says why and where, and no file left behind.
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,9 +69,12 @@ TEST_CASE("bad programs: file, line, column and what is wrong") {
 
 TEST_CASE("every rejected program fails with the sentence on its first line") {
   const test::Folder folder;
+  // Refused by the reader alone: a program may have the language's words.
+  const std::set<std::string> language{"assignment",   "expression",     "named_variable", "o_word",
+                                       "o_word_named", "subprogram_end", "variable"};
   int programs = 0;
   for (const auto& entry : std::filesystem::directory_iterator(CNCPLAN_REJECTED)) {
-    if (entry.path().extension() != ".ngc") continue;
+    if (entry.path().extension() != ".ngc" || language.contains(entry.path().stem().string())) continue;
     const std::string text = test::text_of(entry.path());
     const std::string expected = text.substr(2, text.find('\n') - 2);
     INFO(entry.path().filename());

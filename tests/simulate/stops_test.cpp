@@ -139,6 +139,19 @@ TEST_CASE("option --smooth goes with a tolerance, and its best level with no eve
   CHECK(folder.run("part.ngc --tolerance 0.01 --quiet --events events.csv").exit == 0);
 }
 
+TEST_CASE("parameters, loops and files of subprograms are carried out, and faults are told in their file") {
+  const test::Folder folder;
+  folder.write("cut.ngc", "o<cut> sub\nG1 X[#<_x> + #1]\no<cut> endsub\n");
+  folder.write("part.ngc", "#2 = 3\no1 repeat [#2]\no<cut> call [10]\no1 endrepeat\nM30\n");
+  const auto json = folder.run("part.ngc --json").json();
+  CHECK(json["motions"] == 3);
+  CHECK(json["length_mm"].get<double>() == Approx(30));
+  folder.write("cut.ngc", "o<cut> sub\nG1 X1 X2\no<cut> endsub\n");
+  const auto run = folder.run("part.ngc --json");
+  CHECK(run.exit == 2);
+  CHECK(run.err.find("cut.ngc:2:") != std::string::npos);
+}
+
 TEST_CASE("dwells count in the time, wherever they stand") {
   const double moving = time_of("G1 X10\nG4 P0\nX20\n");
   CHECK(time_of("G1 X10\nG4 P0.25\nX20\n") == Approx(moving + 0.25).epsilon(1e-12));

@@ -139,7 +139,7 @@ class Block {
     const auto fail = [&word](ErrorCode error) {
       return Diagnostic{{error, name(word.letter), word.number, 0.0}, 0, word.column};
     };
-    const bool calls = word.letter == 'M' && (word.number == 98 || word.number == 99);  // see subprograms.hpp
+    const bool calls = word.letter == 'M' && (word.number == 98 || word.number == 99);  // see language/
     if (calls) return tl::unexpected(fail(ErrorCode::no_subprogram));
     if (group == Group::none) return tl::unexpected(fail(ErrorCode::not_supported));
     const bool ends_cycle = group == Group::motion && code == gcode::code(80);
