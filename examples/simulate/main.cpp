@@ -84,8 +84,8 @@ void check_size(const Measures& measures, const Options& options, const support:
   }
 }
 
-// What the options ask for and the machine cannot do.
-void check_options(const Options& options, const support::Machine& machine) {
+// Refuses what the options ask for and the machine cannot do.
+void settle(Options& options, const support::Machine& machine) {
   const auto refuse = [](const char* why) { throw Failure(Exit::bad_input, why); };
   if (options.check && (options.motions || options.blocks || options.samples || options.steps ||
                         options.plot || options.report || options.events))
@@ -98,11 +98,14 @@ void check_options(const Options& options, const support::Machine& machine) {
     refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
   if (options.events && options.smooth == Smooth::best)
     refuse("--smooth best is for motion without events: its speed is planned as a whole");
-  if (options.tolerance > 0.0 && machine.kinematics != Kinematics::cartesian)
-    refuse(
-        "--tolerance above 0 is for machines whose axes are the program's: paths on a table or a mold are "
-        "driven "
-        "exactly");
+  if (machine.kinematics != Kinematics::cartesian) {
+    if (options.tolerance_given && options.tolerance > 0.0)
+      refuse(
+          "--tolerance above 0 is for machines whose axes are the program's: paths on a table or a mold are "
+          "driven exactly");
+    options.tolerance = 0.0;
+  }
+  if (options.smooth && !(options.tolerance > 0.0)) refuse("--smooth goes with a --tolerance above 0");
   if (options.interpolator == Interpolator::taylor &&
       (machine.kinematics != Kinematics::cartesian || machine.axes.size() > 3))
     refuse("--interpolator taylor is for machines of X, Y and Z");
@@ -206,10 +209,10 @@ int run(const Options& options, const support::Machine& file, const M& machine) 
   return write_out(options, file, program, Run<M>(options, file, machine, program));
 }
 
-int run(const Options& options) {
+int run(Options options) {
   support::Machine file;
   if (options.machine) file = support::read_machine(*options.machine);
-  check_options(options, file);
+  settle(options, file);
   if (options.report) report::check_libraries();
   if (file.kinematics == Kinematics::tire_mold) {
     auto machine = machine_of<Rows>(file, options.limits);

@@ -36,7 +36,8 @@ void settle_corners(Options& options, const std::optional<std::string>& junction
                            "--tolerance above 0 does not go with --profile five, --plan block or another "
                            "--interpolator than exact");
   constexpr double standard = 0.01;
-  options.tolerance = tolerance.value_or(0.0);
+  options.tolerance_given = tolerance.has_value();
+  options.tolerance = tolerance.value_or(junction || published ? 0.0 : standard);
   options.junction = junction_choice(junction.value_or(fmt::format("deviation={}", standard)));
   if (!junction && !published) options.corner_tolerance = standard;
 }
@@ -75,7 +76,9 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option(
          "--tolerance", tolerance,
          "mm that the tool may leave the path, so that it moves without a jump of velocity or acceleration; "
-         "0, or not given: the exact path, corners by --junction")
+         "0: "
+         "the exact path, corners by --junction; if not given, 0 with --junction, with what is as published "
+         "and on machines whose axes are not the program's, else 0.01")
       ->check(support::not_negative());
   app.add_option_function<std::string>(
          "--smooth",
@@ -102,8 +105,6 @@ std::optional<Options> parse_options(int argc, char** argv) {
                "make and count step edges where neither --steps nor --machine asks for them");
   if (!support::parse(app, argc, argv)) return std::nullopt;
   settle_corners(options, junction, tolerance);
-  if (options.smooth && !(options.tolerance > 0.0))
-    throw support::Failure(support::Exit::bad_input, "--smooth goes with a --tolerance above 0");
   support::refuse_shared_files({{"PROGRAM", options.program},
                                 {"--machine", options.machine},
                                 {"--events", options.events},

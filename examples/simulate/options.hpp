@@ -23,6 +23,7 @@ struct Options : support::RunOptions {
   Planning planning = Planning::span;
   Interpolator interpolator = Interpolator::exact;
   double tolerance = 0.0;             ///< mm from the path, within which it is smoothed; 0: the exact path
+  bool tolerance_given = false;       ///< on the command line
   std::optional<Smooth> smooth{};     ///< of the path within the tolerance; the best that goes, if not given
   double corner_tolerance = -1.0;     ///< mm, of exact corners that count as rounded; negative: none do
   double rotary_tolerance = 0.05;     ///< degrees

@@ -62,8 +62,9 @@ TEST_CASE("step rate and pulse times cap the speed of an axis, not more") {
     INFO(rule);
     folder.write("m.toml", axis('X', rule) + axis('Y', "") + axis('Z', ""));
     for (const std::string plan : {"block", "span"}) {
-      const auto run = folder.run_text("G1 X30 Y40\nY80\nG2 X36 Y80 I3\nG1 X0\n",
-                                       "--json --machine m.toml --steps x.vcd --blocks b.csv --plan " + plan);
+      const auto run = folder.run_text(
+          "G1 X30 Y40\nY80\nG2 X36 Y80 I3\nG1 X0\n",
+          "--json --tolerance 0 --machine m.toml --steps x.vcd --blocks b.csv --plan " + plan);
       INFO(run.err);
       REQUIRE(run.exit == 0);
       const auto peaks = test::Table(folder / "b.csv")["v_peak"];

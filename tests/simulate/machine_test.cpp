@@ -43,7 +43,8 @@ TEST_CASE("samples and motions are in work coordinates, steps in machine coordin
   const test::Folder folder;
   folder.write("m.toml", "[tools]\n1 = 50\n[offsets]\nG54 = [10, 20, -60]\nG55 = [0, 0, 5]\n");
   const auto run = folder.run_text("T1 M6\nG43\nG0 X1 Y2 Z3\nG55\nG1 X4\nG49\nG1 Z0\n",
-                                   "--json --machine m.toml --motions m.csv --samples s.csv --steps x.vcd");
+                                   "--json --tolerance 0 --machine m.toml --motions m.csv --samples s.csv "
+                                   "--steps x.vcd");
   INFO(run.err);
   REQUIRE(run.exit == 0);
   // all axes start at 0 of the machine: with the tool in the spindle, (-10, -20, 10) of G54

@@ -50,7 +50,7 @@ TEST_CASE("every policy plans its own way, and several their minimum") {
     times.insert(arcs + time_of("--junction " + policy));
   }
   CHECK(times.size() == policies.size());
-  CHECK(time_of("--junction deviation=0.01") == time_of(""));
+  CHECK(time_of("--junction deviation=0.01") == time_of("--tolerance 0"));
   const double both = time_of("--junction tangent=1+deviation=0.01");
   CHECK(both >= time_of("--junction tangent=1"));
   CHECK(both >= time_of("--junction deviation=0.01"));
@@ -85,8 +85,8 @@ TEST_CASE("ramps across blocks are faster than published planning") {
 }
 
 TEST_CASE("interpolators differ in their error and keep the end") {
-  const auto exact = summary("--interpolator exact"), taylor = summary("--interpolator taylor");
-  CHECK(exact["time_s"] == time_of(""));
+  const auto exact = summary("--tolerance 0 --interpolator exact"), taylor = summary("--interpolator taylor");
+  CHECK(exact["time_s"] == time_of("--tolerance 0"));
   CHECK(exact["contour_error_mm"] < 1e-12);
   CHECK(taylor["time_s"] == exact["time_s"]);
   CHECK(taylor["contour_error_mm"] < 1e-6);

@@ -101,7 +101,7 @@ TEST_CASE("no number of the samples is -0") {
 TEST_CASE("the contour error is measured: what rounding leaves, and no more") {
   const test::Folder folder;
   const auto run = folder.run_text("G2 X20 Y3 R12\nG3 X22 Y5 Z1 R9\nG2 X22 Y5 I3 J-0.7 Z3\n",
-                                   "--json --samples s.csv --motions m.csv");
+                                   "--json --tolerance 0 --samples s.csv --motions m.csv");
   const test::Table samples(folder / "s.csv"), motions(folder / "m.csv");
   double worst = 0.0;  // of the distance from the circles' cylinders
   std::size_t motion = 0;

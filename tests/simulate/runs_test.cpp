@@ -69,6 +69,6 @@ TEST_CASE("real programs keep the laws: ramps across blocks, seven phases") {
   check_real_programs(combinations[3], {});
 }
 TEST_CASE("real programs keep the laws: a slow machine") {
-  check_real_programs("--vmax 100 --amax 200 --jmax 3000",
+  check_real_programs("--tolerance 0 --vmax 100 --amax 200 --jmax 3000",
                       {.velocity = 100.0, .acceleration = 200.0, .jerk = 3000.0, .steps = false});
 }

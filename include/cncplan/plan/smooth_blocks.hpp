@@ -139,9 +139,19 @@ class SmoothPlanner {
     return last + 1;
   }
 
-  // The exact plan of one line is the best one.
+  // Straight on through lines, the level `fast` is the exact plan, and no other is faster.
   [[nodiscard]] bool worth_it(std::size_t first, std::size_t end) const {
-    return end - first > 1 || blocks_[first].path.line() == nullptr;
+    constexpr S straight = S(1e-6);  // what rounding leaves of short lines
+    std::optional<VectorN<S, n>> direction;
+    for (std::size_t i = first; i < end; ++i) {
+      if (!moves(i)) continue;
+      const auto* line = blocks_[i].path.line();
+      if (line == nullptr) return true;
+      const VectorN<S, n> way = (line->end() - line->start()).normalized();
+      if (direction && !(way - *direction).isZero(straight)) return true;
+      direction = way;
+    }
+    return false;
   }
 
   // Blocks as they are, up to `end`, planned at the level `fast`.
@@ -188,11 +198,22 @@ class SmoothPlanner {
       const auto smoothed =
           smooth::smooth_run(std::span<const smooth::BandBlock<typename B::Path>>(run), limits);
       if (!(smoothed.deviation <= S(1)) || !std::isfinite(smoothed.duration) || smoothed.pieces.empty() ||
-          !has_room(smoothed))
+          !has_room(smoothed) || fast_is_faster(smoothed.duration, first, end))
         return false;
       add_pieces(smoothed, sources, first);
       return true;
     }
+  }
+
+  // Whether the level `fast` takes less time; not asked where there is little to gain.
+  [[nodiscard]] bool fast_is_faster(S duration, std::size_t first, std::size_t end) const {
+    constexpr S little = S(1.1);
+    S at_feed{};  // s, without corners
+    for (std::size_t i = first; i < end; ++i)
+      if (moves(i)) at_feed += blocks_[i].path.length() / speed(i);
+    if (!(duration > little * at_feed)) return false;
+    const auto planned = plan_blocks(blocks_.subspan(first, end - first), machine_, options_);
+    return planned && planned->duration() < duration;
   }
 
   [[nodiscard]] smooth::BasicMotionLimits<S, n> motion_limits() const {
