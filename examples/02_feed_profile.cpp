@@ -1,4 +1,4 @@
-// One room alone: the speed over a path of 10 mm that is entered at 5 mm/s and left at 15 mm/s.
+// One part alone: the speed over a path of 10 mm that is entered at 5 mm/s and left at 15 mm/s.
 // Prints the phases of constant jerk, then what happens when the path is too short for the change of speed.
 #include <cncplan/profile/five_phase.hpp>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// The umbrella: every room of the library. Written by tools/umbrella.
+// The umbrella: every folder of the library. Written by tools/umbrella.
 #pragma once
 
 #include "cncplan/core/axis_kind.hpp"

@@ -1,4 +1,4 @@
-// What the rooms ask of each other's types. A wrong type fails on the name of what it lacks.
+// What the folders ask of each other's types. A wrong type fails on the name of what it lacks.
 #pragma once
 
 #include <concepts>

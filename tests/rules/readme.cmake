@@ -3,7 +3,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 file(GLOB_RECURSE files ${ROOT}/examples/*.cpp ${ROOT}/examples/*.hpp ${ROOT}/examples/*.toml
-  ${ROOT}/tests/house/consumer/CMakeLists.txt)
+  ${ROOT}/tests/rules/consumer/CMakeLists.txt)
 set(all "")
 foreach(file IN LISTS files)
   file(READ ${file} text)

@@ -1,5 +1,5 @@
-# The rules of the rooms, checked on the text of every header.   cmake -DINCLUDE=include -P includes.cmake
-#   - A room includes the standard library, Eigen, tl::expected, core/ and itself; plan/, published/ and the umbrella include all.
+# The rules of the folders, checked on the text of every header.   cmake -DINCLUDE=include -P includes.cmake
+#   - A folder includes the standard library, Eigen, tl::expected, core/ and itself; plan/, published/ and the umbrella include all.
 #   - The umbrella, cncplan.hpp, lags behind nothing: it includes every header there is.
 #   - A header has #pragma once, and a first line that says what it holds. If that line says "(set-up)", the header is for
 #     code that runs before the machine moves, and may use the heap; all others may not even include what needs it.
@@ -20,8 +20,8 @@ endmacro()
 
 foreach(header IN LISTS headers)
   file(READ ${INCLUDE}/${header} text)
-  string(REGEX MATCH "^cncplan/([^/]+)/" room ${header})
-  set(room "${CMAKE_MATCH_1}")
+  string(REGEX MATCH "^cncplan/([^/]+)/" folder ${header})
+  set(folder "${CMAKE_MATCH_1}")
   string(REGEX MATCH "^[^\n]*" first_line "${text}")
   string(REGEX MATCHALL "\n" line_ends "${text}")
   list(LENGTH line_ends lines)
@@ -50,10 +50,10 @@ foreach(header IN LISTS headers)
       set(other "${CMAKE_MATCH_1}")
       if(NOT target IN_LIST headers)
         complain("includes \"${target}\", which is no header of the library")
-      elseif(NOT room STREQUAL "" AND NOT room MATCHES "^(plan|published)$" AND NOT other MATCHES "^(core|${room})$")
-        complain("${room}/ includes \"${target}\": a room includes core/ and itself only")
+      elseif(NOT folder STREQUAL "" AND NOT folder MATCHES "^(plan|published)$" AND NOT other MATCHES "^(core|${folder})$")
+        complain("${folder}/ includes \"${target}\": a folder includes core/ and itself only")
       endif()
-      if(NOT room STREQUAL "")
+      if(NOT folder STREQUAL "")
         continue()
       endif()
       list(APPEND umbrella ${target})
@@ -72,7 +72,7 @@ foreach(header IN LISTS missing)
 endforeach()
 
 if(found OR NOT headers)
-  message(FATAL_ERROR "A rule of the rooms is broken")
+  message(FATAL_ERROR "A rule of the folders is broken")
 endif()
 list(LENGTH headers count)
-message(STATUS "${count} headers keep the rules of the rooms")
+message(STATUS "${count} headers keep the rules of the folders")
