@@ -60,7 +60,7 @@ template <class M, class Trajectory>
                                          const Trajectory& trajectory) {
   report::Report result{.file = program.file,
                         .text = report::read_text(program.file),
-                        .summary = summary_rows(program, measures),
+                        .summary = summary_rows(program, options, measures),
                         .warnings = program.warnings,
                         .limits = options.limits,
                         .tool_peak = measures.tool_peak,

@@ -163,7 +163,7 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   if (options.json)
     support::print(json_summary(program, options, file, measures));
   else if (!options.quiet)
-    support::print(table_summary(program, file, measures));
+    support::print(table_summary(program, options, file, measures));
   return static_cast<int>(Exit::done);
 }
 

@@ -26,6 +26,7 @@ struct ProgramText {
   std::vector<Origin> motions;         ///< the first one is the start: no way
   std::vector<std::size_t> motion_of;  ///< of each block; one that rests has the motion before it
   std::size_t lines = 0;
+  std::vector<int> tools;             ///< numbers of T, each once, in the order of the program
   std::vector<std::string> warnings;  ///< FILE:LINE:COLUMN: warning: TEXT
 
   /// FILE:LINE:COLUMN of a block.

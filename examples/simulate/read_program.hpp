@@ -58,6 +58,8 @@ class Builder {
       fmt::print(stderr, "{}\n", program_.warnings.back());
       return;
     }
+    if (const auto* word = std::get_if<gcode::Word>(&item); word != nullptr && word->letter == 'T')
+      take_tool(static_cast<int>(word->number));
     if (const auto block = read_.take(item); block && *block) rest(**block);
   }
 
@@ -80,6 +82,11 @@ class Builder {
         result.axes[i].kind = machine.axes[i].kind;
       }
     return result;
+  }
+
+  void take_tool(int number) {
+    auto& tools = program_.tools;
+    if (std::find(tools.begin(), tools.end(), number) == tools.end()) tools.push_back(number);
   }
 
   static cncplan::Vector3 tip(const cncplan::kinematics::TireMoldRow& row, double part) {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "overview.hpp"
 
 namespace simulate {
 
@@ -30,6 +33,33 @@ Json per_axis(const support::Machine& machine, F&& value) {
   return object;
 }
 
+Json share_json(const Share& share) {
+  return {{"motions", share.motions}, {"length_mm", share.length}, {"time_s", share.time}};
+}
+
+std::string share_text(const Share& share) {
+  return fmt::format("{} motions, {:.3f} mm, {:.3f} s", share.motions, share.length, share.time);
+}
+
+// 1:02:03 of seconds, to the nearest.
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long long>(std::round(seconds));
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string per_minute(double feed) { return fmt::format("{:.6g}", feed * 60.0); }
+
+// A few feeds each, of many how many there are.
+std::string feeds_text(const std::vector<double>& feeds) {
+  constexpr std::size_t shown = 6;
+  std::string text;
+  if (feeds.size() > shown)
+    text = fmt::format("{} from {} to {}", feeds.size(), per_minute(feeds.front()), per_minute(feeds.back()));
+  else
+    for (const double feed : feeds) text += (text.empty() ? "" : ", ") + per_minute(feed);
+  return text + " mm/min";
+}
+
 }  // namespace
 
 std::string json_summary(const ProgramText& program, const Options& options, const support::Machine& machine,
@@ -41,6 +71,14 @@ std::string json_summary(const ProgramText& program, const Options& options, con
   json["length_mm"] = m.length;
   json["time_s"] = m.duration;
   json["samples"] = m.samples;
+  const Overview overview = overview_of(program, m, options.limits.velocity);
+  const auto place = [](const cncplan::Vector3& p) { return Json::array({p.x(), p.y(), p.z()}); };
+  json["box_mm"] = {{"low", place(overview.low)}, {"high", place(overview.high)}};
+  json["cutting"] = share_json(overview.cutting);
+  json["rapid"] = share_json(overview.rapid);
+  json["feeds"] = overview.feeds;
+  json["capped"] = {{"motions", overview.capped}, {"highest_feed", overview.highest_capped}};
+  json["tools"] = program.tools;
   json["peak"] = {
       {"velocity", m.peak.velocity}, {"acceleration", m.peak.acceleration}, {"jerk", m.peak.jerk}};
   json["axis_peak"]["velocity"] =
@@ -80,7 +118,8 @@ std::string json_summary(const ProgramText& program, const Options& options, con
   return json.dump(2) + "\n";
 }
 
-std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText& program, const Measures& m) {
+std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText& program,
+                                                              const Options& options, const Measures& m) {
   std::vector<std::pair<std::string, std::string>> rows;
   const auto row = [&rows](const char* name, std::string value) {
     rows.emplace_back(name, std::move(value));
@@ -88,10 +127,25 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
   row("lines, motions, arcs",
       fmt::format("{}, {}, {}", program.lines, count_motions(program), count_arcs(program)));
   row("path length", fmt::format("{:.4f} mm", m.length));
-  row("time",
-      fmt::format("{:.4f} s, {} samples{}", m.duration, m.samples, m.completed ? "" : ", not to the end"));
+  row("time", fmt::format("{:.4f} s ({}), {} samples{}", m.duration, clock_text(m.duration), m.samples,
+                          m.completed ? "" : ", not to the end"));
+  const Overview overview = overview_of(program, m, options.limits.velocity);
+  row("cutting", share_text(overview.cutting));
+  row("rapid", share_text(overview.rapid));
+  std::string box;
+  for (int k = 0; k < 3; ++k)
+    box +=
+        fmt::format("{}{} {:.6g} to {:.6g}", k == 0 ? "" : ", ", "XYZ"[k], overview.low[k], overview.high[k]);
+  row("box", box + " mm");
+  if (!overview.feeds.empty()) row("feeds", feeds_text(overview.feeds));
+  if (overview.capped > 0)
+    row("slowed by --vmax", fmt::format("{} feed moves, of up to {} mm/min", overview.capped,
+                                        per_minute(overview.highest_capped)));
+  if (!program.tools.empty()) row("tools", fmt::format("{}", fmt::join(program.tools, ", ")));
   row("peak along the path", fmt::format("{:.4g} mm/s, {:.4g} mm/s^2, {:.4g} mm/s^3", m.peak.velocity,
                                          m.peak.acceleration, m.peak.jerk));
+  if (options.tolerance > 0.0)
+    row("off the path", fmt::format("{:.4g} mm, tolerance {:.4g}", m.deviation, options.tolerance));
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
   row("junctions below their feed", fmt::format("{}", m.junctions_limited));
   row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
@@ -102,9 +156,11 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
   return rows;
 }
 
-std::string table_summary(const ProgramText& program, const support::Machine& machine, const Measures& m) {
+std::string table_summary(const ProgramText& program, const Options& options, const support::Machine& machine,
+                          const Measures& m) {
   std::string text;
-  for (const auto& [name, value] : summary_rows(program, m)) text += fmt::format("{:<28}{}\n", name, value);
+  for (const auto& [name, value] : summary_rows(program, options, m))
+    text += fmt::format("{:<28}{}\n", name, value);
   const bool stepped = !m.steps.empty();
   text += fmt::format("\n{:<6}{:>12}{:>14}", "axis", "peak /s", "peak /s^2");
   if (stepped) text += fmt::format("{:>12}{:>12}{:>14}{:>14}", "edges", "net", "error steps", "rmse");

@@ -1,5 +1,6 @@
 // Form of the outputs: headers, digits, keys of the summary, and what belongs on which stream.
 #include <cmath>
+#include <numbers>
 
 #include "simulate/table.hpp"
 #include "support/catch.hpp"
@@ -68,6 +69,36 @@ TEST_CASE("the summary has all keys, each of its kind") {
   CHECK(json["lines"] == 26);
   CHECK(json["motions"] == 19);
   CHECK(json["arcs"] == 7);
+}
+
+TEST_CASE("the summary says where the tool goes, how far, how fast, with which tools") {
+  const test::Folder folder;
+  const auto run =
+      folder.run_text("T2 M6\nG0 X10\nG1 Y10 F600\nG2 X20 Y10 I5\nG1 X0 F6000\nT1 M6\nT2 M6\nG0 Z5\n",
+                      "--json --tolerance 0");
+  REQUIRE(run.exit == 0);
+  const auto json = run.json();
+  const auto near = [](const nlohmann::json& place, double x, double y, double z) {
+    CHECK(place[0].get<double>() == Approx(x).margin(1e-12));
+    CHECK(place[1].get<double>() == Approx(y).margin(1e-12));
+    CHECK(place[2].get<double>() == Approx(z).margin(1e-12));
+  };
+  near(json["box_mm"]["low"], 0, 0, 0);
+  near(json["box_mm"]["high"], 20, 15, 5);  // the arc's top
+  CHECK(json["cutting"]["motions"] == 3);
+  CHECK(json["cutting"]["length_mm"].get<double>() == Approx(30 + 5 * std::numbers::pi));
+  CHECK(json["rapid"]["motions"] == 2);
+  CHECK(json["rapid"]["length_mm"] == 15.0);
+  CHECK(json["cutting"]["time_s"].get<double>() + json["rapid"]["time_s"].get<double>() ==
+        Approx(json["time_s"].get<double>()));
+  CHECK(json["feeds"] == std::vector<double>{10, 100});
+  CHECK(json["capped"]["motions"] == 1);
+  CHECK(json["capped"]["highest_feed"] == 100.0);
+  CHECK(json["tools"] == std::vector<int>{2, 1});
+  const auto table = folder.run_text("G1 X3600 F3600\nG4 P3601\n", "--vmax 30");
+  CHECK(table.out.find("(1:02:01)") != std::string::npos);  // 120 s and ramps, and the dwell
+  CHECK(table.out.find("1 feed moves, of up to 3600 mm/min") != std::string::npos);
+  CHECK(table.out.find("X 0 to 3600, Y 0 to 0, Z 0 to 0 mm") != std::string::npos);
 }
 
 TEST_CASE("steps are in the summary where they are asked for") {
