@@ -30,13 +30,11 @@ auto cells_of(const std::vector<Block<3>>& blocks) {
   return plan::make_cells(std::span(blocks), bench::mill, bench::joint_rules);
 }
 
-// Looks ahead over all blocks.
-bool plan_whole(const std::vector<Block<3>>& blocks, std::vector<plan::Gate>& gates, Spans& spans) {
-  const auto cells = cells_of(blocks);
-  if (!cells) return false;
+// Looks ahead over all cells.
+bool look_ahead(const plan::BasicCells<double>& cells, std::vector<plan::Gate>& gates, Spans& spans) {
   spans.clear();
-  gates.resize(cells->caps.size() + 1);
-  return plan::plan_spans(std::span<const plan::BlockCaps>(cells->caps), plan::SevenPhase{}, std::span(gates),
+  gates.resize(cells.caps.size() + 1);
+  return plan::plan_spans(std::span<const plan::BlockCaps>(cells.caps), plan::SevenPhase{}, std::span(gates),
                           std::back_inserter(spans))
       .has_value();
 }
@@ -60,11 +58,33 @@ void plan_ball(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
   std::vector<plan::Gate> gates;
   Spans spans;
-  for (auto _ : state)
-    if (!plan_whole(blocks, gates, spans)) state.SkipWithError("the program has no plan");
+  for (auto _ : state) {
+    const auto cells = cells_of(blocks);
+    if (!cells || !look_ahead(*cells, gates, spans)) state.SkipWithError("the program has no plan");
+  }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(plan_ball)->Name("plan/ball")->Unit(benchmark::kMillisecond);
+
+// The first half of it: joints, travel, and limits along cells. An item is a block.
+void plan_ball_cells(benchmark::State& state) {
+  const auto blocks = ball_blocks(state);
+  for (auto _ : state) benchmark::DoNotOptimize(cells_of(blocks));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
+}
+BENCHMARK(plan_ball_cells)->Name("plan/ball/cells")->Unit(benchmark::kMillisecond);
+
+// The second half: spans over cells in memory. An item is a block.
+void plan_ball_look_ahead(benchmark::State& state) {
+  const auto blocks = ball_blocks(state);
+  const auto cells = cells_of(blocks);
+  std::vector<plan::Gate> gates;
+  Spans spans;
+  for (auto _ : state)
+    if (!cells || !look_ahead(*cells, gates, spans)) state.SkipWithError("the program has no plan");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
+}
+BENCHMARK(plan_ball_look_ahead)->Name("plan/ball/look_ahead")->Unit(benchmark::kMillisecond);
 
 // The same, block by block through windows of different sizes. An item is a block.
 void plan_ball_stream(benchmark::State& state, std::size_t window) {

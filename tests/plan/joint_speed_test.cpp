@@ -17,7 +17,8 @@ namespace {
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
 junction::Side side(const path::Segment<3>& segment, bool at_end) {
-  return plan::tool_side<Machine<3>>(Block<3>{.path = segment}, at_end, tool_axes(mill));
+  const Block<3> block{.path = segment};
+  return plan::tool_side<Machine<3>>(block, plan::BlockEnds(block), at_end, tool_axes(mill));
 }
 
 // The cells of blocks whose joints a policy alone judges.

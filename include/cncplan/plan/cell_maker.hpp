@@ -48,22 +48,28 @@ class CutByLimits {
     block_ = &block;
     speed_ = speed;
     tool_speed_ = tool_speed;
-    open_[0] = {{from, to, limits(machine, from, to, speed)}, 0};
+    Part& whole = open_[0].part;
+    whole.from = from;
+    whole.to = to;
+    whole.limits = limits(machine, from, to, speed);
+    open_[0].depth = 0;
     count_ = 1;
   }
 
   [[nodiscard]] bool done() const { return count_ == 0; }
 
-  /// The next part, in order along the path; only before it is done.
-  [[nodiscard]] Part next(const M& machine) {
+  /// The next part, in order along the path, until the next call; only before it is done.
+  [[nodiscard]] const Part& next(const M& machine) {
     for (;;) {
-      const auto [part, depth] = open_[--count_];
-      if (depth == deepest || !(part.limits.velocity < speed_)) return part;
+      const Part& top = open_[--count_].part;
+      const int depth = open_[count_].depth;
+      if (depth == deepest || !(top.limits.velocity < speed_)) return top;
+      const Part part = top;
       const Scalar middle = part.from + (part.to - part.from) / Scalar(2);
       const Part first{part.from, middle, limits(machine, part.from, middle, speed_)};
       const Part second{middle, part.to, limits(machine, middle, part.to, speed_)};
       const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
-      if (halves >= worth_it / part.limits.velocity) return part;
+      if (halves >= worth_it / part.limits.velocity) return top;
       open_[count_++] = {second, depth + 1};
       open_[count_++] = {first, depth + 1};
     }
@@ -128,25 +134,29 @@ class CellMaker {
   }
   /// The same where another path is driven in place of the block's, and its start is passed in another way.
   [[nodiscard]] Expected<void> begin(const B& block, const Driven& driven, Passing passing) {
-    const Vector start = block.path.position_at(Scalar(0));
-    if (auto ok = joined(end_, start, machine_); !ok) return ok;
+    const BlockEnds<B> ends(block);
+    if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
     if (auto ok = within_travel(block.path, machine_); !ok) return ok;
     if constexpr (EnclosedPath<typename B::Path>)
       if (!driven.exact() && has_ends(machine_))
         if (auto ok = within_travel(driven, machine_); !ok) return ok;
     const Scalar length = block.path.length();
-    end_ = length > Scalar(0) ? block.path.position_at(length) : start;
+    end_ = length > Scalar(0) ? ends.end.position : ends.start.position;
     paused_ = std::exchange(pause_, Scalar(0));
     if (length > Scalar(0)) {
       const LengthOf counted = length_of(block.path, machine_);
       counted_ = counted;
       wanted_ = plan::wanted_speed(block, machine_, counted);
       entry_ = Scalar(0);
+      joint_.after = ends.start.first;
+      joint_.tool.after = tool_side<M>(block, ends, false, tool_);
+      const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
       if (before_ && counted == before_->counted && passing != Passing::stop)
-        entry_ = before_->goes_on || passing == Passing::smooth
-                     ? infinity
-                     : joint_speed(*before_, side(block, false, counted));
-      before_ = side(block, true, counted);
+        entry_ = before_->goes_on || passing == Passing::smooth ? infinity : joint_speed(speed);
+      const bool straight = block.path.line() != nullptr;
+      joint_.before = ends.end.first;
+      joint_.tool.before = straight ? joint_.tool.after : tool_side<M>(block, ends, true, tool_);
+      before_ = Before{speed, counted, block.exact_path, block.goes_on};
       block_ = &block;
       driven_ = driven;
       if constexpr (requires { cut_.drive(driven); }) cut_.drive(driven);
@@ -165,7 +175,8 @@ class CellMaker {
 
   /// The next cell of the block. Errors: those of `validate` for its limits.
   [[nodiscard]] Expected<Cell> next() {
-    Cell cell{cut_.next(machine_), entry_, Scalar(0)};
+    Expected<Cell> made(Cell{cut_.next(machine_), entry_, Scalar(0)});
+    Cell& cell = *made;
     const auto& [from, to, limits] = cell.part;
     if (auto ok = validate(limits); !ok) return tl::unexpected(ok.error());
     for (; turning_count_ > 0; --turning_count_) {
@@ -178,7 +189,7 @@ class CellMaker {
     paused_ = Scalar(0);
     moved_ = true;
     if (cut_.done() && to < block_->path.length()) cut_on(to);
-    return cell;
+    return made;
   }
 
   /// What the program asks of the block, mm/s; infinite for as fast as may be.
@@ -208,35 +219,24 @@ class CellMaker {
  private:
   static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
 
-  // One side of a joint.
-  struct Side {
-    PathPoint<Vector> point;
-    junction::BasicSide<Scalar> tool;
-    Scalar wanted{};  // speed of the block
+  // The block before a joint.
+  struct Before {
+    Scalar wanted{};  // speed
     LengthOf counted{};
     bool exact_path{};
     bool goes_on{};
   };
 
-  [[nodiscard]] Side side(const B& block, bool at_end, LengthOf counted) const {
-    return {block.path.point_at(at_end ? block.path.length() : Scalar(0)),
-            tool_side<M>(block, at_end, tool_),
-            plan::wanted_speed(block, machine_, LengthOf::tool),
-            counted,
-            block.exact_path,
-            block.goes_on};
-  }
-
-  [[nodiscard]] Scalar joint_speed(const Side& before, const Side& after) const {
-    BasicJoint<Scalar, M::axis_count> joint{
-        before.point, after.point, {before.tool, after.tool, machine_.limits}};
-    joint.tool.limits.velocity = std::min(before.wanted, after.wanted);
-    Scalar speed_sq = rules_.policy.speed_sq(joint.tool);
-    if (before.exact_path)
-      speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<Scalar>{}.speed_sq(joint.tool));
+  // At a joint with a block of this speed.
+  [[nodiscard]] Scalar joint_speed(Scalar wanted) {
+    joint_.tool.limits = machine_.limits;
+    joint_.tool.limits.velocity = std::min(before_->wanted, wanted);
+    Scalar speed_sq = rules_.policy.speed_sq(joint_.tool);
+    if (before_->exact_path)
+      speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<Scalar>{}.speed_sq(joint_.tool));
     const Scalar speed = speed_sq > Scalar(0) ? std::sqrt(speed_sq) : Scalar(0);
     if (rules_.tolerance < Scalar(0)) return speed;
-    return std::min(speed, axis_corner_speed(joint, machine_, rules_.tolerance, rules_.rotary_tolerance));
+    return std::min(speed, axis_corner_speed(joint_, machine_, rules_.tolerance, rules_.rotary_tolerance));
   }
 
   // Cuts the piece from a length to the next place within the block where an axis turns round.
@@ -262,7 +262,8 @@ class CellMaker {
   Scalar wanted_{};
   LengthOf counted_{};
   Scalar entry_{};
-  std::optional<Side> before_;  // of the block that moved last, where the motion does not stop behind it
+  std::optional<Before> before_;  // that moved last, where the motion does not stop behind it
+  BasicJoint<Scalar, M::axis_count> joint_{};
   std::optional<Vector> end_;
   Scalar pause_{};      // s at rest since the last motion
   Scalar paused_{};     // the same before this block

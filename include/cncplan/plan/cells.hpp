@@ -42,6 +42,8 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
     const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing = {}) {
   using S = typename M::Scalar;
   BasicCells<S> cells;
+  cells.caps.reserve(blocks.size());
+  cells.blocks.reserve(blocks.size());
   const auto rest = [&](std::size_t block, S seconds) {
     if (!(seconds > S(0))) return;
     if (!cells.caps.empty()) cells.caps.back().pause += seconds;

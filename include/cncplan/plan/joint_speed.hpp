@@ -17,7 +17,7 @@ namespace cncplan::plan {
 /// How a joint between two blocks looks to the axes and to the tool.
 template <std::floating_point S, int N>
 struct BasicJoint {
-  PathPoint<VectorN<S, N>> before, after;
+  VectorN<S, N> before, after;  ///< derivatives of the axes by length
   junction::BasicGeometry<S> tool;
 };
 
@@ -38,7 +38,7 @@ template <MachineModel M>
   const S tool_jump = (joint.tool.after.tangent - joint.tool.before.tangent).norm();
   if (tool_jump > rounding) blend = S(4) * tolerance / tool_jump;
   const auto jump_of = [&](int axis) {
-    const S before = joint.before.first[axis], after = joint.after.first[axis];
+    const S before = joint.before[axis], after = joint.after[axis];
     const S jump = std::abs(after - before);
     return jump > rounding * (std::abs(before) + std::abs(after)) ? jump : S(0);
   };
@@ -60,18 +60,41 @@ template <MachineModel M>
   return speed;
 }
 
+/// The axes at both ends of a block.
+template <BlockModel B>
+struct BlockEnds {
+  using Point = PathPoint<VectorN<typename B::Scalar, B::axis_count>>;
+
+  Point start, end;
+
+  explicit BlockEnds(const B& block)
+      : start(block.path.point_at(typename B::Scalar(0))), end(block.path.point_at(block.path.length())) {}
+};
+
 /// One side of a joint, as junction policies see it.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const B& block, bool at_end,
-                                                                const std::array<int, 3>& tool) {
+[[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const B& block, const BlockEnds<B>& ends,
+                                                                bool at_end, const std::array<int, 3>& tool) {
   using S = typename M::Scalar;
-  const auto at = tool_point(block.path, at_end ? block.path.length() : S(0), tool);
+  using Vector3 = BasicVector3<S>;
   junction::BasicSide<S> side;
   side.kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
-  side.tangent = at.first.norm() > S(0) ? BasicVector3<S>(at.first.normalized()) : at.first;
-  side.curvature = at.second;
-  side.chord = tool_point(block.path, block.path.length(), tool).position -
-               tool_point(block.path, S(0), tool).position;
+  const auto set = [&](const Vector3& first, const Vector3& second, const Vector3& chord) {
+    const S norm = first.norm();
+    side.tangent = norm > S(0) ? Vector3(first / norm) : first;
+    side.curvature = second;
+    side.chord = chord;
+  };
+  if constexpr (tells_tool<typename B::Path>) {
+    const auto start = tool_point(block.path, S(0), tool);
+    const auto end = tool_point(block.path, block.path.length(), tool);
+    const auto& at = at_end ? end : start;
+    set(at.first, at.second, end.position - start.position);
+  } else {
+    const auto& at = at_end ? ends.end : ends.start;
+    set(in_space(at.first, tool), in_space(at.second, tool),
+        in_space(ends.end.position, tool) - in_space(ends.start.position, tool));
+  }
   if constexpr (std::same_as<typename B::Path::Arc, path::BasicArc<S>>)
     if (const auto* arc = block.path.arc()) {
       side.kind = junction::Kind::arc;

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 
+#include "cncplan/core/fixed_list.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/path_bounds.hpp"
 #include "cncplan/plan/machine.hpp"
@@ -26,17 +28,21 @@ struct Limited {
   }
 };
 
-/// Calls visit(Limited) for the tool and for each axis.
-template <MachineModel M, class Visit>
-void for_each_limited(const M& machine, const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds,
-                      typename M::Scalar tool_speed, Visit&& visit) {
+/// The tool, and the axes that have a limit.
+template <MachineModel M>
+[[nodiscard]] FixedList<Limited<typename M::Scalar>, static_cast<std::size_t>(M::axis_count) + 1> limited(
+    const M& machine, const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds,
+    typename M::Scalar tool_speed) {
   using S = typename M::Scalar;
-  visit(Limited<S>{bounds.tool, {tool_speed, machine.limits.acceleration, machine.limits.jerk}});
+  FixedList<Limited<S>, static_cast<std::size_t>(M::axis_count) + 1> rows;
+  rows.push_back({bounds.tool, {tool_speed, machine.limits.acceleration, machine.limits.jerk}});
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
-    visit(Limited<S>{{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)},
-                     {least_velocity(axis), least_acceleration(axis), axis.jerk}});
+    const BasicLimits<S> limits{least_velocity(axis), least_acceleration(axis), axis.jerk};
+    if (limits == BasicLimits<S>{}) continue;
+    rows.push_back({{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)}, limits});
   }
+  return rows;
 }
 
 /// The highest speed at which the bends take these shares of the limits of acceleration and jerk.
@@ -44,6 +50,7 @@ template <std::floating_point S>
 [[nodiscard]] S speed_of(const Limited<S>& row, S speed, S acceleration_share, S jerk_share) {
   const auto& [b, limits] = row;
   if (b.first > S(0)) speed = std::min(speed, limits.velocity / b.first);
+  if (!row.bends()) return speed;
   const S second = std::hypot(b.second_along, b.second_across);
   if (second > S(0)) speed = std::min(speed, std::sqrt(acceleration_share * limits.acceleration / second));
   const S third = b.third_along + b.third_across;
@@ -66,13 +73,15 @@ template <std::floating_point S>
 template <std::floating_point S>
 [[nodiscard]] S acceleration_of(const Limited<S>& row, S v) {
   const auto& [b, limits] = row;
+  if (!row.bends())
+    return b.first > S(0) ? limits.acceleration / b.first : std::numeric_limits<S>::infinity();
   const S v2 = v * v, v3 = v2 * v;
   S a = std::numeric_limits<S>::infinity();
   if (b.first > S(0) && std::isfinite(limits.acceleration)) {
     const S across = b.second_across * v2;
     a = (left_beside(across, limits.acceleration) - b.second_along * v2) / b.first;
   }
-  if (!row.bends() || !std::isfinite(limits.jerk) || !(v > S(0))) return a;
+  if (!std::isfinite(limits.jerk) || !(v > S(0))) return a;
   const S along_slope = S(3) * b.second_along * v, across_slope = S(3) * b.second_across * v;
   const S along_rest = b.third_along * v3, across_rest = b.third_across * v3;
   const S left = std::max(left_beside(across_rest, limits.jerk) - along_rest, S(0));
@@ -136,28 +145,25 @@ template <MachineModel M>
     typename M::Scalar length = std::numeric_limits<typename M::Scalar>::infinity()) {
   using S = typename M::Scalar;
   using Row = detail::Limited<S>;
-  const auto each = [&](auto&& visit) { detail::for_each_limited(machine, bounds, tool_speed, visit); };
+  const auto rows = detail::limited(machine, bounds, tool_speed);
   const auto fastest = [&](S acceleration_share, S jerk_share) {
     S v = speed;
-    each([&](const Row& row) { v = detail::speed_of(row, v, acceleration_share, jerk_share); });
+    for (const Row& row : rows) v = detail::speed_of(row, v, acceleration_share, jerk_share);
     return v;
   };
   const auto at = [&](S v, S share) {
     BasicLimits<S> limits;
     limits.velocity = v;
-    each([&](const Row& row) {
+    for (const Row& row : rows)
       limits.acceleration = std::min(limits.acceleration, detail::acceleration_of(row, v));
-    });
     if (share < S(1)) limits.acceleration *= share;
-    each([&](const Row& row) {
+    for (const Row& row : rows)
       limits.jerk = std::min(limits.jerk, detail::jerk_of(row, v, limits.acceleration));
-    });
     return limits;
   };
   const S least = fastest(S(0.8), S(0.5));
   BasicLimits<S> best = at(least, S(1));
-  bool bends = false;
-  each([&](const Row& row) { bends = bends || row.bends(); });
+  const bool bends = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.bends(); });
   if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
   constexpr int speeds = 4;
   const S rise = (fastest(S(1), S(1)) - least) / S(speeds);

@@ -27,6 +27,16 @@ using BlockOf = std::remove_cvref_t<std::ranges::range_value_t<R>>;
 
 namespace plan {
 
+/// The blocks of a range in a vector of their own: moved there where the range is a vector that is given
+/// away.
+template <class R>
+[[nodiscard]] std::vector<BlockOf<R>> own_blocks(R&& blocks) {
+  if constexpr (std::same_as<R, std::vector<BlockOf<R>>>)
+    return std::move(blocks);
+  else
+    return {std::ranges::begin(blocks), std::ranges::end(blocks)};
+}
+
 /// A place in a program of blocks, for an error in one of them.
 template <BlockModel B>
 [[nodiscard]] ProgramError error_in(const std::vector<B>& blocks, const BlockFault& fault) {
@@ -67,14 +77,14 @@ template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar
 /// that leaves the travel of an axis or that no limit bounds.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
-[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(const R& blocks, const M& machine,
+[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
                                                                             const PlanOptions& options = {}) {
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const auto deviation = static_cast<S>(options.junction_deviation);
   const plan::JointRules<S, junction::BasicDeviation<S>> rules{
       {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
-  std::vector<BlockOf<R>> own(std::ranges::begin(blocks), std::ranges::end(blocks));
+  std::vector<BlockOf<R>> own = plan::own_blocks(std::forward<R>(blocks));
   plan::BasicSmoothing<S, M::axis_count> smoothing;
   if constexpr (EnclosedPath<typename BlockOf<R>::Path> && !MappedModel<M>)
     if (options.tolerance > 0)
@@ -87,13 +97,12 @@ template <std::ranges::contiguous_range R, MachineModel M>
 /// act.
 template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy>
   requires BlockModel<BlockOf<R>>
-[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(const R& blocks, const M& machine,
+[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
                                                                             const Policy& policy) {
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const plan::JointRules<S, Policy> rules{policy, S(-1), S(-1)};
-  return plan::trajectory(std::vector<BlockOf<R>>(std::ranges::begin(blocks), std::ranges::end(blocks)),
-                          machine, rules, plan::SevenPhase{});
+  return plan::trajectory(plan::own_blocks(std::forward<R>(blocks)), machine, rules, plan::SevenPhase{});
 }
 
 }  // namespace cncplan

@@ -103,6 +103,7 @@ template <MachineModel M, gcode::LineSource Lines>
   ProgramBlocks<M> program;
   const bool smoothed = options.tolerance > 0;
   program.files.push_back({0, file});
+  if constexpr (requires { lines.line_count(); }) program.blocks.reserve(lines.line_count());
   Expected<void, ProgramError> read;
   if constexpr (gcode::SeekableLines<Lines>) {
     gcode::ProgramLines flat(lines, reader, options.subprograms);
@@ -125,7 +126,7 @@ template <MachineModel M, gcode::LineSource Lines>
                                                                                   const std::string& file) {
   auto program = read_blocks(std::forward<Lines>(lines), machine, options, file);
   if (!program) return tl::unexpected(program.error());
-  auto planned = plan_blocks(program->blocks, machine, options);
+  auto planned = plan_blocks(std::move(program->blocks), machine, options);
   if (!planned) {
     const auto at = planned.error().block;
     planned.error().file = at ? program->file_of(*at) : file;

@@ -7,6 +7,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/path_point.hpp"
+#include "cncplan/path/segment.hpp"
 #include "cncplan/plan/machine.hpp"
 
 namespace cncplan {
@@ -24,10 +25,8 @@ template <MachineModel M>
 /// X Y Z of the axes' positions, or of their derivatives.
 template <class V>
 [[nodiscard]] BasicVector3<typename V::Scalar> in_space(const V& axes, const std::array<int, 3>& tool) {
-  BasicVector3<typename V::Scalar> result = BasicVector3<typename V::Scalar>::Zero();
-  for (int k = 0; k < 3; ++k)
-    if (const int axis = tool[static_cast<std::size_t>(k)]; axis >= 0) result[k] = axes[axis];
-  return result;
+  const auto along = [&](int axis) { return axis >= 0 ? axes[axis] : typename V::Scalar(0); };
+  return {along(tool[0]), along(tool[1]), along(tool[2])};
 }
 
 /// The tool's point and its derivatives by length: what a path says of it, else the axes X, Y and Z.
@@ -44,6 +43,14 @@ template <Path P>
             in_space(at.third, tool)};
   }
 }
+
+/// Whether a path may say more of the tool than its axes do.
+template <class P>
+inline constexpr bool tells_tool = requires(const P& path, typename P::Scalar s) {
+  path.tool_point_at(s);
+};
+template <class S, int N, class... Curves>
+inline constexpr bool tells_tool<path::BasicSegment<S, N, Curves...>> = (tells_tool<Curves> || ...);
 
 /// What the length of a path counts: the way of the tool; where that stands still, that of linear axes (both
 /// mm), or that of rotary ones (rad).
