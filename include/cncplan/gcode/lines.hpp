@@ -68,10 +68,8 @@ class TextLines {
     return line;
   }
 
-  /// Of the whole text.
-  [[nodiscard]] constexpr std::size_t line_count() const {
-    return static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')) + 1;
-  }
+  /// Bytes of the whole text.
+  [[nodiscard]] constexpr std::size_t byte_count() const { return text_.size(); }
 
   /// Of the line that comes next.
   [[nodiscard]] constexpr std::size_t place() const { return text_.size() - rest_.size(); }

@@ -103,7 +103,8 @@ template <MachineModel M, gcode::LineSource Lines>
   ProgramBlocks<M> program;
   const bool smoothed = options.tolerance > 0;
   program.files.push_back({0, file});
-  if constexpr (requires { lines.line_count(); }) program.blocks.reserve(lines.line_count());
+  constexpr std::size_t short_line = 24;  // bytes: few programs need more room than that
+  if constexpr (requires { lines.byte_count(); }) program.blocks.reserve(lines.byte_count() / short_line);
   Expected<void, ProgramError> read;
   if constexpr (gcode::SeekableLines<Lines>) {
     gcode::ProgramLines flat(lines, reader, options.subprograms);
