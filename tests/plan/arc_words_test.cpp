@@ -85,3 +85,54 @@ TEST_CASE("an arc keeps its centre and its way from one form to the other") {
   spiral.end[0] += 0.01;
   CHECK(plan::by_radius(spiral) == spiral);
 }
+
+TEST_CASE("what a radius cannot say is split into arcs that it says") {
+  test::Random random;
+  double off = 0;
+  int wrong = 0, split = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const bool full = i % 4 == 0, half = i % 4 == 1;
+    const double radius = random.log_uniform(0.1, 1000), sense = random.coin() ? 1 : -1;
+    const double sweep = sense * (full   ? 2 * pi
+                                  : half ? pi + random.uniform(-0.02, 0.02)
+                                         : random.uniform(0.1, 6.2));
+    Motion motion =
+        by_center(random.uniform(-50, 50), random.uniform(-50, 50), radius, random.uniform(-pi, pi), sweep);
+    if (full) motion.end[0] = motion.start[0], motion.end[1] = motion.start[1];
+    if (full) motion.extra_turns = random.integer(0, 2);
+    const double turned = std::abs(sweep) + 2 * pi * motion.extra_turns;
+    gcode::Position place = motion.start;
+    double way = 0;
+    int parts = 0;
+    plan::split_by_radius(motion, [&](const Motion& part) {
+      ++parts;
+      wrong += part.kind == MotionKind::arc_radius && part.start == place && part.turn == motion.turn ? 0 : 1;
+      const auto read = plan::by_center(part);
+      REQUIRE(read);
+      off = std::max(off, (read->center - motion.center).head<2>().norm());
+      const double chord = std::hypot(part.end[0] - part.start[0], part.end[1] - part.start[1]);
+      const double bend = 2 * std::asin(std::min(1.0, chord / (2 * radius)));
+      way += (part.radius < 0 ? 2 * pi - bend : bend) + 2 * pi * part.extra_turns;
+      place = part.end;
+    });
+    split += parts > 1 ? 1 : 0;
+    wrong += place == motion.end && std::abs(way - turned) < 1e-5 ? 0 : 1;
+    wrong += full && parts != 3 * (motion.extra_turns + 1) ? 1 : 0;
+  }
+  CHECK(wrong == 0);
+  CHECK(split >= 2500);
+  CHECK(off <= 1e-6);
+  // one by radius stays as it is, half a turn does not
+  const auto parts_of = [](const char* program) {
+    std::vector<Motion> parts;
+    plan::split_by_radius(std::get<Motion>(test::read(program).items.front()),
+                          [&](const Motion& part) { parts.push_back(part); });
+    return parts;
+  };
+  const auto quarter = parts_of("G2 X5 Y5 R5 F60\n");
+  CHECK(quarter == std::vector{std::get<Motion>(test::read("G2 X5 Y5 R5 F60\n").items.front())});
+  const auto half = parts_of("G2 X10 R5 F60\n");
+  REQUIRE(half.size() == 2);
+  CHECK(half[0].end[1] == Approx(5).epsilon(1e-12));
+  CHECK(half[1].radius == Approx(5).epsilon(1e-12));
+}

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
+#include <cstddef>
 #include <numbers>
 
 #include "cncplan/core/error.hpp"
@@ -60,6 +62,37 @@ namespace detail {
   const auto [first, second, third] = axes(motion.plane);
   const auto apart = [&](int axis) { return read->center()(axis) - motion.center(axis); };
   return read && std::hypot(apart(first), apart(second)) <= off ? result : motion;
+}
+
+/// Hands an arc to `take` as arcs by radius: as it is where the radius says it, else cut into equal parts of
+/// at most a third of a turn. Spirals, arcs under inverse-time feed (whose F belongs to the whole), arcs that
+/// cannot be and other motions go as they are.
+template <std::invocable<const gcode::Motion&> Take>
+void split_by_radius(const gcode::Motion& motion, Take&& take, double off = 1e-6,
+                     const path::ArcTolerance<double>& tolerance = {}) {
+  const auto centered = by_center(motion, tolerance);
+  if (!centered || centered->kind != gcode::MotionKind::arc_center) return take(motion);
+  const gcode::Motion whole = by_radius(*centered, off, tolerance);
+  if (whole.kind == gcode::MotionKind::arc_radius)
+    return take(motion.kind == gcode::MotionKind::arc_radius ? motion : whole);
+  const auto arc = detail::arc_of(*centered, tolerance);
+  if (!arc || !arc->is_circular() || motion.feed_mode == gcode::FeedMode::inverse_time)
+    return take(*centered);
+  constexpr double third = 2.0 * std::numbers::pi / 3.0;
+  const int parts = static_cast<int>(std::ceil(arc->parameter_end() / third - 1e-9));
+  gcode::Motion part = *centered;
+  part.extra_turns = 0;
+  for (int i = 1; i <= parts; ++i, part.start = part.end) {
+    const double share = static_cast<double>(i) / parts;
+    for (std::size_t axis = 3; axis < part.end.size(); ++axis)
+      part.end[axis] = motion.start[axis] + share * (motion.end[axis] - motion.start[axis]);
+    const Vector3 place = arc->position(share * arc->parameter_end());
+    for (std::size_t axis = 0; axis < 3; ++axis) part.end[axis] = place[static_cast<Eigen::Index>(axis)];
+    if (i == parts) part.end = motion.end;
+    const auto [first, second, third_axis] = axes(motion.plane);
+    part.center[third_axis] = part.start[static_cast<std::size_t>(third_axis)];
+    take(by_radius(part, off, tolerance));
+  }
 }
 
 }  // namespace cncplan::plan
