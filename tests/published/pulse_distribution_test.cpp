@@ -31,6 +31,18 @@ TEST_CASE("the printed words of U09 Figs. 10 and 11") {
         std::vector<published::PulseWord>{63, 56, 57, 58, 57, 60, 59, 56});
 }
 
+TEST_CASE("a port's word has every input of U09's drivers") {
+  using published::port_word;
+  const std::array<std::int64_t, 3> counts{4, -3, 2};
+  // with all drivers enabled and full steps forward it is the printed word
+  for (const published::PulseWord word : {63U, 56U, 57U, 58U, 60U, 59U})
+    CHECK(port_word<3>(word, {4, 3, 2}, {{true, true, true}, {}}) == word);
+  CHECK(port_word<3>(63, counts, {{true, true, true}, {}}) == 63 + 128);  // y turns back
+  CHECK(port_word<3>(63, counts, {{true, true, true}, {true, false, true}}) == 63 + 128 + 512 + 2048);
+  CHECK(port_word<3>(63, counts, {{true, false, true}, {}}) == 5 + 8 + 32 + 128);  // y is let go
+  CHECK(port_word<3>(56, {0, 0, 0}, {}) == 0);
+}
+
 TEST_CASE("the words of U09 as transcribed from the paper") {
   const auto shared = test::shared();
   if (!shared) {

@@ -32,6 +32,33 @@ template <std::size_t N>
   requires(N > 0 && N <= 16)
 inline constexpr PulseWord enabled_word = ((PulseWord{1} << N) - 1) << N;
 
+/// Levels of each driver's other inputs (U09 section 4: enable, clock, cw/ccw and half/full of every driver).
+template <std::size_t N>
+struct DriverInputs {
+  std::array<bool, N> enabled{};
+  std::array<bool, N> half_steps{};
+};
+
+/// What a parallel port puts out in a slot, for all inputs of N drivers: clock in bits 0 to N-1 and enable in
+/// bits N to 2N-1, as U09 prints them; then cw/ccw (set where the count is negative) and half/full (set for
+/// half steps), whose bits it does not print. A driver that is not enabled has no clock.
+template <std::size_t N>
+  requires(N > 0 && N <= 8)
+[[nodiscard]] constexpr std::uint32_t port_word(PulseWord pulses, const std::array<std::int64_t, N>& counts,
+                                                const DriverInputs<N>& inputs) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto put = [&](bool level, std::size_t group) {
+      word |= static_cast<std::uint32_t>(level) << (group * N + i);
+    };
+    put(inputs.enabled[i] && ((pulses >> i) & 1U) != 0, 0);
+    put(inputs.enabled[i], 1);
+    put(counts[i] < 0, 2);
+    put(inputs.half_steps[i], 3);
+  }
+  return word;
+}
+
 /// Slots that the LCM method needs: the least common multiple of the counts, axes at rest left out; 0 if all
 /// rest. An error where that does not fit 64 bits (its value is the product, as a floating-point number).
 template <std::size_t N>
