@@ -132,8 +132,7 @@ class Converter {
 
   // Rows at the cuts of the move that lie on a part, and where it ends or a kink is.
   void add_by_length(const Move& move, const WallPart& part, bool to_end, std::vector<Joints>& rows) {
-    const auto row = [&](double u) {
-      const Joints joints = plan::wall_joints(part, u - part.from, (*here_)[3]);
+    const auto row = [&](double u, const Joints& joints) {
       result_.chord_error = std::max(result_.chord_error, wall_error(part.artwork, joints, u));
       add(move, joints, rows);
       row_start_ = u;
@@ -141,8 +140,22 @@ class Converter {
     constexpr double rounding = 1e-9;
     const double until = part.artwork.length_at(part.to) - rounding;
     const auto cut = [&] { return next_cut_ * row_length_ - left_out_; };
-    for (; next_cut_ <= cuts_ && cut() < until; ++next_cut_) row(part.artwork.parameter_at(cut()));
-    if (to_end) row(part.to);
+    for (; next_cut_ <= cuts_ && cut() < until; ++next_cut_) {
+      const double u = part.artwork.parameter_at(cut());
+      row(u, cut_joints(part, u));
+    }
+    if (to_end) row(part.to, plan::wall_joints(part, part.to - part.from, (*here_)[3]));
+  }
+
+  // K17 writes its cuts into the flat program, with that program's decimals, before it maps them.
+  [[nodiscard]] Joints cut_joints(const WallPart& part, double u) const {
+    Vector3 point = part.artwork.position(u);
+    const double scale = std::pow(10.0, options_.decimals);
+    for (double& coordinate : point) coordinate = std::round(coordinate * scale) / scale;
+    auto joints = sidewall_.joints(point);
+    if (!joints) return plan::wall_joints(part, u - part.from, (*here_)[3]);  // rounded off the wall's end
+    (*joints)[3] = kinematics::near_turn((*joints)[3], (*here_)[3]);
+    return *joints;
   }
 
   // As plan::chord_error, for a row that may cross from one piece of the profile to the next.
