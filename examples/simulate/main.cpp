@@ -23,6 +23,7 @@
 #include "support/failure.hpp"
 #include "support/gnuplot.hpp"
 #include "support/main_program.hpp"
+#include "support/motor_signals.hpp"
 #include "support/output_file.hpp"
 #include "tables.hpp"
 
@@ -144,7 +145,7 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   });
 
   if (steps != nullptr) {
-    auto vcd = cncplan::step::vcd_writer(*steps, file.traces());
+    auto vcd = cncplan::step::vcd_writer(*steps, support::MotorSignals(file).traces());
     run.step([&](const cncplan::step::Edge& edge) {
       if (!vcd.accept(edge)) throw Failure(Exit::other, "an edge came out of order");
       progress.reach(measures.duration + edge.time);

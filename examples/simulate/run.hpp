@@ -19,6 +19,7 @@
 #include "program.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
+#include "support/motor_signals.hpp"
 
 namespace simulate {
 
@@ -90,14 +91,14 @@ class Run {
     measures_.end_error = (row.position - program_.motions.back().path.end()).norm();
   }
 
-  /// Turns the plan into edges at their exact times, hands them to `take` in order, those of an inverted
-  /// drive turned round. Throws `Failure` for a plan that breaks a rule of a drive.
+  /// Turns the plan into edges at their exact times and hands them to `take` in order, as signals of the
+  /// machine's motors. Throws `Failure` for a plan that breaks a rule of a drive.
   void step(const std::function<void(const cncplan::step::Edge&)>& take) {
     const Stopwatch watch(measures_.steps_seconds);
-    const auto reports = cncplan::follow_steps(trajectory_, options_.period, [&](const auto& edge) {
-      const bool inverted = file_.axes[static_cast<std::size_t>(edge.axis)].drive.inverted;
-      take({edge.time, edge.axis, inverted ? -edge.direction : edge.direction});
-    });
+    const support::MotorSignals signals(file_);
+    for (const cncplan::step::Edge& edge : signals.squaring()) take(edge);
+    const auto reports = cncplan::follow_steps(trajectory_, options_.period,
+                                               [&](const auto& edge) { take(signals.signal(edge)); });
     if (!reports)
       throw support::Failure(
           support::Exit::bad_input,

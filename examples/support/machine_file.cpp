@@ -75,6 +75,10 @@ class Section {
     if (!value) refuse(node, fmt::format("{} must be a text", what));
     return *value;
   }
+  [[nodiscard]] bool flag(const toml::node& node, std::string_view what) const {
+    if (!node.is_boolean()) refuse(node, fmt::format("{} must be true or false", what));
+    return **node.as_boolean();
+  }
   [[nodiscard]] Section section(std::string_view key, const toml::node& node) const {
     if (!node.is_table()) refuse(node, fmt::format("{} must be a table", key));
     return {file_, *node.as_table(), std::string(key)};
@@ -97,6 +101,10 @@ void read_drive(const Section& section, double unit, step::Drive& drive) {
     drive.steps_per_unit = std::abs(steps) / unit;
     drive.inverted = steps < 0.0;
   }
+  if (const toml::node* node = section.find("inverted")) {
+    if (drive.inverted) section.refuse(*node, "inverted and a negative steps_per_unit say the same");
+    drive.inverted = section.flag(*node, "inverted");
+  }
   section.positive("max_step_rate", drive.max_rate);
   section.positive("pulse_width", drive.high_time);
   section.not_negative("pulse_gap", drive.low_time);
@@ -105,10 +113,26 @@ void read_drive(const Section& section, double unit, step::Drive& drive) {
   section.not_negative("backlash", drive.backlash, unit);
 }
 
+// Behind the axis' limits and its first drive.
+void read_second_motor(const Section& section, double unit, MachineAxis& axis) {
+  constexpr double most_steps = 1e6;
+  section.allow({"inverted", "offset"});
+  SecondMotor& motor = axis.second.emplace(SecondMotor{.inverted = axis.drive.inverted});
+  if (const toml::node* node = section.find("inverted")) motor.inverted = section.flag(*node, "inverted");
+  if (const toml::node* node = section.find("offset")) {
+    motor.offset = section.number(*node, "offset") * unit;
+    const auto& limits = axis.limits;
+    if (!std::isfinite(limits.velocity + limits.acceleration + limits.jerk))
+      section.refuse(*node, "an axis with an offset needs velocity, acceleration and jerk");
+    if (!(std::abs(motor.offset) * axis.drive.steps_per_unit <= most_steps))
+      section.refuse(*node, fmt::format("offset must not be more than {:.0f} steps", most_steps));
+  }
+}
+
 void read_axis(const Section& section, Machine& machine) {
-  section.allow({"letter", "kind", "travel", "velocity", "acceleration", "jerk", "steps_per_unit",
-                 "max_step_rate", "pulse_width", "pulse_gap", "direction_setup", "direction_hold",
-                 "backlash"});
+  section.allow({"letter", "kind", "travel", "velocity", "acceleration", "jerk", "steps_per_unit", "inverted",
+                 "max_step_rate", "pulse_width", "pulse_gap", "direction_setup", "direction_hold", "backlash",
+                 "second_motor"});
   MachineAxis axis;
   gcode::Axis word{};
   const toml::node* letter = section.find("letter");
@@ -135,6 +159,8 @@ void read_axis(const Section& section, Machine& machine) {
   }
   read_drive(section, unit, axis.drive);
   axis.limits.velocity = std::min(axis.limits.velocity, step::max_speed(axis.drive));
+  if (const toml::node* node = section.find("second_motor"))
+    read_second_motor(section.section("second_motor", *node), unit, axis);
   machine.axes.push_back(axis);
   machine.dialect.axes.push_back(word);
 }
@@ -237,7 +263,7 @@ void settle_kinematics(const Section& top, Machine& machine) {
 
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
-  top.allow({"name", "dialect", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home",
+  top.allow({"name", "dialect", "g18", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home",
              "pass_through", "smallest_radius", "table_center"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
@@ -245,6 +271,11 @@ Machine interpret(const std::string& file, const toml::table& root) {
     const auto control = gcode::find_control(top.text(*dialect, "dialect"));
     if (!control) top.refuse(*dialect, "dialect must be \"linuxcnc\", \"grbl\", \"fanuc\" or \"marlin\"");
     machine.dialect = gcode::with(machine.dialect, *control);
+  }
+  if (const toml::node* node = top.find("g18")) {
+    const std::string value = top.text(*node, "g18");
+    if (value != "zx" && value != "xz") top.refuse(*node, "g18 must be \"zx\" or \"xz\"");
+    machine.dialect.g18 = value == "xz" ? Plane::xz_printed : Plane::zx;
   }
   if (const toml::node* unit = top.find("unit")) {
     const std::string value = top.text(*unit, "unit");
@@ -298,14 +329,7 @@ cncplan::Axis Machine::axis(std::size_t i) const {
           .jerk = told.limits.jerk * scale,
           .low = told.low * scale,
           .high = told.high * scale,
-          .motors = {drive}};
-}
-
-std::vector<cncplan::step::Trace> Machine::traces() const {
-  std::vector<cncplan::step::Trace> traces;
-  for (const MachineAxis& axis : axes)
-    traces.push_back({std::string(1, axis.letter), axis.drive.high_time, axis.drive.direction_setup});
-  return traces;
+          .motors = told.second ? cncplan::Motors{drive, drive} : cncplan::Motors{drive}};
 }
 
 std::string beyond_travel(const MachineAxis& axis, double place, bool at_start) {

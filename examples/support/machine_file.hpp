@@ -12,6 +12,12 @@
 
 namespace support {
 
+/// The other motor of an axis that two drive: it makes the steps of the first.
+struct SecondMotor {
+  bool inverted = false;
+  double offset = 0.0;  ///< mm or degrees that it goes by itself, at the start, to square the two up
+};
+
 /// Lengths in mm, angles in degrees; so `drive` counts per mm or per degree. An inverted one steps backwards
 /// where its axis goes forward.
 struct MachineAxis {
@@ -22,6 +28,7 @@ struct MachineAxis {
   cncplan::Limits limits{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                          std::numeric_limits<double>::infinity()};
   bool rotary = false;
+  std::optional<SecondMotor> second{};
 
   /// Of positions as they are shown: 1 mm, or a degree in rad.
   [[nodiscard]] double unit() const { return rotary ? std::numbers::pi / 180.0 : 1.0; }
@@ -50,10 +57,8 @@ struct Machine {
   /// An axis' position, speed ... in mm or degrees.
   [[nodiscard]] double shown(std::size_t axis, double joint) const { return joint / axes[axis].unit(); }
 
-  /// An axis of the library; mm, rad, s.
+  /// An axis of the library, with its motors; mm, rad, s.
   [[nodiscard]] cncplan::Axis axis(std::size_t i) const;
-  /// The step signals of the axes.
-  [[nodiscard]] std::vector<cncplan::step::Trace> traces() const;
   /// Of the first N axes; mm, rad, s.
   template <int N>
   [[nodiscard]] cncplan::BasicJointLimits<double, N> joint_limits() const {

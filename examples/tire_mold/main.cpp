@@ -64,10 +64,12 @@ int run(const Options& options) {
     });
   }
   if (steps != nullptr) {
-    auto vcd = cncplan::step::vcd_writer(*steps, machine.traces());
-    measures.steps = make_steps(motion, artwork, options.period, [&](const cncplan::step::Edge& edge) {
-      if (!vcd.accept(edge)) throw support::Failure(support::Exit::other, "an edge came out of order");
-    });
+    const support::MotorSignals signals(machine);
+    auto vcd = cncplan::step::vcd_writer(*steps, signals.traces());
+    measures.steps =
+        make_steps(motion, signals, artwork, options.period, [&](const cncplan::step::Edge& edge) {
+          if (!vcd.accept(edge)) throw support::Failure(support::Exit::other, "an edge came out of order");
+        });
     vcd.finish();
   }
   if (page != nullptr)

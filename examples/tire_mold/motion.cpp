@@ -70,14 +70,13 @@ void make_samples(const Motion& motion, double period, const std::function<void(
   for (const Sample& sample : motion.samples(period)) take(sample);
 }
 
-StepReports make_steps(const Motion& motion, const Artwork& artwork, double period,
-                       const std::function<void(const step::Edge&)>& take) {
+StepReports make_steps(const Motion& motion, const support::MotorSignals& signals, const Artwork& artwork,
+                       double period, const std::function<void(const step::Edge&)>& take) {
   if (motion.program().empty()) return {};
   const auto& axes = motion.machine().axes;
-  const auto report = follow_steps(motion, period, [&](const MotorEdge& edge) {
-    const bool inverted = axes[static_cast<std::size_t>(edge.axis)].motors[0].inverted;
-    take({edge.time, edge.axis, inverted ? -edge.direction : edge.direction});
-  });
+  for (const step::Edge& edge : signals.squaring()) take(edge);
+  const auto report =
+      follow_steps(motion, period, [&](const MotorEdge& edge) { take(signals.signal(edge)); });
   if (report) return *report;
   const step::Violation& broken = report.error();
   throw support::Failure(

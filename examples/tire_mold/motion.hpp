@@ -10,6 +10,7 @@
 #include "cncplan/cncplan.hpp"
 #include "machine.hpp"
 #include "options.hpp"
+#include "support/motor_signals.hpp"
 
 namespace tire_mold {
 
@@ -31,9 +32,9 @@ void make_samples(const Motion& motion, double period, const std::function<void(
 /// What each axis has done, in steps.
 using StepReports = std::array<cncplan::step::AxisReport, 4>;
 
-/// Calls `take` with every signal of the drives, in order of time. Throws `Failure` for a plan that breaks a
+/// Calls `take` with every signal of the motors, in order of time. Throws `Failure` for a plan that breaks a
 /// rule of a drive.
-StepReports make_steps(const Motion& motion, const Artwork& artwork, double period,
-                       const std::function<void(const cncplan::step::Edge&)>& take);
+StepReports make_steps(const Motion& motion, const support::MotorSignals& signals, const Artwork& artwork,
+                       double period, const std::function<void(const cncplan::step::Edge&)>& take);
 
 }  // namespace tire_mold
