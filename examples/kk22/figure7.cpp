@@ -12,9 +12,6 @@ using namespace cncplan;
 
 namespace {
 
-// No F word: everything runs at the speed limit.
-constexpr const char* program = "G02 X5 Y5 R5\nX10 Y0 R5\nX10 Y-10 R5\nX5 Y-15 R5\nX0 Y-10 R5\nG01 X0 Y0\n";
-
 void print_row(const char* name, const MillTrajectory& planned) {
   const auto blocks = planned.blocks();
   const double arcs = std::accumulate(blocks.begin(), blocks.end() - 1, 0.0,
@@ -35,8 +32,9 @@ void put_samples(support::Gnuplot& plot, const char* name, const MillTrajectory&
 }  // namespace
 
 void figure7(support::Gnuplot* plot) {
-  const MillTrajectory ours = plan_text(program, mill).value();
-  const MillTrajectory published = published_plan({ours.program().begin(), ours.program().end()});
+  const MillTrajectory ours = plan_text(five_arcs, mill).value();
+  const MillTrajectory published =
+      published_plan({ours.program().begin(), ours.program().end()}, Lengths::in_space);
 
   fmt::print(
       "## Fig. 7: five arcs, and the way back\n\n"

@@ -12,18 +12,26 @@ namespace kk22 {
 
 using MillTrajectory = cncplan::Trajectory<cncplan::Machine<3>, cncplan::Block<3>>;
 
-/// One profile of five phases a block, at the junction speeds of Table 3.
-inline MillTrajectory published_plan(const std::vector<cncplan::Block<3>>& blocks) {
+/// One profile of five phases a block, at the junction speeds of Table 3. By lengths in space the speed is
+/// capped by curvature; by lengths in the plane (section 3.1) it is not, as in the paper.
+inline MillTrajectory published_plan(const std::vector<cncplan::Block<3>>& blocks, Lengths lengths) {
   namespace plan = cncplan::plan;
   namespace published = cncplan::published;
   const plan::JointRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};  // the table alone
-  const auto cells = plan::make_cells<published::WholeBlocks>(std::span(blocks), mill, rules).value();
+  const std::span all(blocks);
+  const bool planar = lengths == Lengths::planar;
+  auto cells = (planar ? plan::make_cells<published::ToolLimits>(all, mill, rules)
+                       : plan::make_cells<published::WholeBlocks>(all, mill, rules))
+                   .value();
+  if (planar) published::to_plane(all, cells);
   std::vector<double> speeds(cells.caps.size() + 1);
   std::vector<plan::Span> spans;
   published::plan_blocks(std::span<const plan::BlockCaps>(cells.caps), plan::FivePhase{}, std::span(speeds),
                          std::back_inserter(spans))
       .value();
-  return {mill, blocks, plan::block_phases(std::span<const plan::Span>(spans), cells)};
+  auto phases = plan::block_phases(std::span<const plan::Span>(spans), cells);
+  if (planar) published::to_space(all, phases);
+  return {mill, blocks, std::move(phases)};
 }
 
 }  // namespace kk22

@@ -179,6 +179,7 @@
 #include "cncplan/published/center_selection.hpp"
 #include "cncplan/published/constant_speed.hpp"
 #include "cncplan/published/junction_table.hpp"
+#include "cncplan/published/planar_length.hpp"
 #include "cncplan/published/pulse_distribution.hpp"
 #include "cncplan/published/stepped.hpp"
 #include "cncplan/published/taylor.hpp"

@@ -1,0 +1,16 @@
+// Programs of the kinds that KK22 machined, as blocks.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cncplan/plan/machine_block.hpp"
+#include "generate/programs.hpp"
+
+namespace kk22 {
+
+/// Made from a fixed seed; X and Y as seen from a table's centre.
+[[nodiscard]] std::vector<cncplan::Block<3>> blocks_of(cncplan::generate::Kind kind,
+                                                       const std::array<double, 2>& table_center);
+
+}  // namespace kk22

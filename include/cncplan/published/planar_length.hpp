@@ -1,0 +1,63 @@
+// Planning by the length of an arc in its plane, R theta, as KK22 section 3.1 has it (set-up).
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cncplan/core/limits.hpp"
+#include "cncplan/path/arc.hpp"
+#include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/cell_maker.hpp"
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/motion_table.hpp"
+
+namespace cncplan::published {
+
+/// The tool's limits as they are, for `plan::make_cells`: no cap by curvature, no limits of axes, as in KK22.
+template <MachineModel M, BlockModel B>
+class ToolLimits {
+ public:
+  using Scalar = typename M::Scalar;
+  using Part = plan::BasicPartLimits<Scalar>;
+
+  void begin(const B&, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar) {
+    part_ = Part{from, to, machine.limits};
+    part_->limits.velocity = speed;
+  }
+
+  [[nodiscard]] bool done() const { return !part_; }
+  [[nodiscard]] Part next(const M&) { return *std::exchange(part_, std::nullopt); }
+
+ private:
+  std::optional<Part> part_;
+};
+
+/// Length in space over length in the plane: above 1 on a helix, 1 on lines and flat arcs. Of an arc whose
+/// radius changes, that of the whole.
+template <BlockModel B>
+[[nodiscard]] auto space_over_plane(const B& block) {
+  const auto* arc = block.path.arc();
+  return arc != nullptr ? arc->length() / arc->planar_length() : typename B::Path::Scalar(1);
+}
+
+/// Makes the cells of blocks ones in their planes: lengths, speeds and limits then count there.
+template <BlockModel B, std::floating_point S>
+void to_plane(std::span<const B> blocks, plan::BasicCells<S>& cells) {
+  for (std::size_t i = 0; i < cells.caps.size(); ++i)
+    cells.caps[i].length /= space_over_plane(blocks[cells.blocks[i]]);
+}
+
+/// Makes the phases of a plan in the plane ones along the blocks' paths in space.
+template <BlockModel B, std::floating_point S>
+void to_space(std::span<const B> blocks, std::vector<plan::BasicBlockPhase<S>>& phases) {
+  for (auto& [phase, block] : phases) {
+    const S share = space_over_plane(blocks[block]);
+    for (S* value : {&phase.position, &phase.velocity, &phase.acceleration, &phase.jerk}) *value *= share;
+  }
+}
+
+}  // namespace cncplan::published
