@@ -1,4 +1,5 @@
-// Speed on a curve as published: what a bend takes of the limits only lowers the speed.
+// Speed on a curve in planning as published: what a bend takes of the limits only lowers the speed. KK22 has
+// no such cap; published/planar_length.hpp plans without it.
 #pragma once
 
 #include <algorithm>
