@@ -25,8 +25,9 @@ using namespace cncplan;
 using support::Exit;
 using support::Failure;
 
-// A program read and written anew: its arcs by centre, or by radius and split where that cannot say them.
-std::string rewritten(std::istream& program, const std::string& name, bool by_center) {
+// A program read and written anew, its arcs as asked for: center, by centre; radius, by radius where that
+// says them, else by centre; split, all by radius, in parts where need be.
+std::string rewritten(std::istream& program, const std::string& name, const std::string& arcs) {
   std::string text;
   gcode::Reader reader;
   gcode::Writer writer;
@@ -37,8 +38,8 @@ std::string rewritten(std::istream& program, const std::string& name, bool by_ce
   const auto arcs_written = [&](const gcode::Item& item) {
     const auto* motion = std::get_if<gcode::Motion>(&item);
     if (motion == nullptr) return write(item);
-    if (!by_center) return plan::split_by_radius(*motion, write);
-    write(plan::by_center(*motion).value_or(*motion));
+    if (arcs == "split") return plan::split_by_radius(*motion, write);
+    write(arcs == "radius" ? plan::by_radius(*motion) : plan::by_center(*motion).value_or(*motion));
   };
   const auto read = gcode::read_program(gcode::StreamLines(program), reader, arcs_written);
   if (!read) throw Failure(Exit::bad_input, gcode::to_text(name, read.error()));
@@ -62,9 +63,8 @@ int main(int count, char** arguments) {
     app.add_option("--plane", plane, "17, 18 or 19")
         ->check(CLI::IsMember({17, 18, 19}))
         ->capture_default_str();
-    app.add_option(
-           "--arcs", arcs,
-           "radius: R, as they are made; center: I J K; split: R, those that R cannot say well in parts")
+    app.add_option("--arcs", arcs,
+                   "radius: R, by centre what R cannot say well; center: I J K; split: R, such arcs in parts")
         ->check(CLI::IsMember({"radius", "center", "split"}))
         ->capture_default_str();
     app.add_option("--rewrite", file, "no new program: this one, with its arcs by --arcs")->excludes(named);
@@ -82,7 +82,7 @@ int main(int count, char** arguments) {
       generate::write(program, made, seed, plane);
     }
     const bool as_it_is = arcs == "radius" && !file;
-    support::print(as_it_is ? program.str() : rewritten(program, file.value_or(*kind), arcs == "center"));
+    support::print(as_it_is ? program.str() : rewritten(program, file ? *file : *kind, arcs));
     return 0;
   });
 }
