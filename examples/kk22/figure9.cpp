@@ -70,7 +70,7 @@ void figure9(support::Gnuplot* plot) {
         "set title '{1}'\nset xlabel 't, s'\nplot ${0} using 1:2 with lines lw 1.5 title 'X', ${0} using 1:3 "
         "with lines lw 1.5 title 'Y', ${0} using 1:4 with lines lw 1.5 title 'Z'\n",
         data, title);
-  (*plot)("unset multiplot\nunset title\n");
+  (*plot)("unset multiplot\nunset title\nset key inside\n");
 }
 
 }  // namespace kk22
