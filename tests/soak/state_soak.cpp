@@ -18,7 +18,8 @@ namespace {
 using namespace cncplan;
 
 struct Errors {
-  double target = 0, limits = 0, slower = 0, lasting_target = 0, lasting_limits = 0, lasting_time = 0;
+  double target = 0, limits = 0, slower = 0, searched = 0, lasting_target = 0, lasting_limits = 0,
+         lasting_time = 0;
 };
 
 int soak(std::uint64_t seed, std::uint64_t count, std::uint64_t every) {
@@ -26,6 +27,7 @@ int soak(std::uint64_t seed, std::uint64_t count, std::uint64_t every) {
       {"end of the fastest (relative)", &Errors::target, 1e-11},
       {"limits of the fastest (relative)", &Errors::limits, 1e-12},
       {"slower than brute force (relative)", &Errors::slower, 1e-9},
+      {"slower than the whole search", &Errors::searched, 1e-11},
       {"end of a longer one (relative)", &Errors::lasting_target, 1e-11},
       {"limits of a longer one", &Errors::lasting_limits, 1e-11},
       {"duration of a longer one", &Errors::lasting_time, 1e-12}};
@@ -43,6 +45,9 @@ int soak(std::uint64_t seed, std::uint64_t count, std::uint64_t every) {
     const auto motion = motions->fastest();
     const auto fastest = test::examine(c, motion);
     errors.target = fastest.target(), errors.limits = fastest.limits();
+    // the same motion, by the way that looks at every piece of both curves
+    const double first = motions->next_duration(0);
+    errors.searched = std::max((motion.duration() - first - 1e-12) / (first + 1e-12), 0.0);
     if (compare) {
       const test::Real best = test::SwitchingOracle(c).fastest();
       ++compared;

@@ -113,20 +113,20 @@ TEST_CASE("axes arrive at the earliest instant that all can meet") {
           std::max(slowest, state::axis_motions(cases[i].from, cases[i].to, limits[i])->fastest().duration());
     }
     const double least = random.integer(0, 3) == 0 ? slowest * random.uniform(0.5, 3.0) : 0.0;
-    const auto motions = state::synchronized<double, 3>(from, to, limits, {.minimum_duration = least});
-    REQUIRE(motions);
-    const double duration = motions->front().duration();
+    std::array<state::Motion, 3> motions;
+    REQUIRE(state::make_synchronized<double, 3>(from, to, limits, {.minimum_duration = least}, motions));
+    const double duration = motions.front().duration();
     for (std::size_t i = 0; i < 3; ++i) {
       INFO(cases[i].literal() << " in " << duration);
-      const auto errors = test::examine(cases[i], (*motions)[i]);
+      const auto errors = test::examine(cases[i], motions[i]);
       if (errors.target() > 1e-11 || errors.limits() > 1e-11 ||
           duration < std::max(least, slowest) * (1 - 1e-13)) {
         CHECK(errors.target() < 1e-11);
         CHECK(errors.limits() < 1e-11);
         CHECK(duration >= std::max(least, slowest) * (1 - 1e-13));
       }
-      if (std::abs((*motions)[i].duration() - duration) > 1e-12 * duration)
-        CHECK((*motions)[i].duration() == Approx(duration).epsilon(1e-12));
+      if (std::abs(motions[i].duration() - duration) > 1e-12 * duration)
+        CHECK(motions[i].duration() == Approx(duration).epsilon(1e-12));
     }
     if (duration <= std::max(slowest, least) * (1 + 1e-12)) continue;
     ++later;

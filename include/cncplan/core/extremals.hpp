@@ -45,6 +45,8 @@ struct BasicExtremalTask {
   S top{};               ///< highest velocity; start and end can settle at or below it
   S rise{};              ///< largest acceleration
   S fall{};              ///< largest deceleration
+  S per_rise{};          ///< 1 by them
+  S per_fall{};
   bool jerk_limited = true;
 };
 
@@ -80,126 +82,60 @@ class BasicExtremals {
     const S v1 = task.end_velocity, a1 = task.end_acceleration;
     const S first = v0 - a0 * a0 / S(2);
     const S last = v1 - a1 * a1 / S(2);
-    const Side start = side(first, a0, task.rise);
-    const Side end = side(last, -a1, task.fall);
     const S rounding =
         S(8) * std::numeric_limits<S>::epsilon() * (std::abs(v0) + std::abs(v1) + a0 * a0 + a1 * a1);
     const bool level = std::abs(last - first) <= rounding;  // then the one with more freedom counts as higher
-    rising_ = level ? end.least <= start.least : first < last;
-    low_ = rising_ ? start : end;
-    high_ = rising_ ? end : start;
-    if (level) low_.velocity = high_.velocity;
+    rising_ = level ? -a1 <= a0 : first < last;
+    const S high = rising_ ? last : first;
+    const S low = rising_ ? first : last;
+    low_ = side(level ? high : low, rising_ ? a0 : -a1, rising_ ? task.rise : task.fall,
+                rising_ ? task.per_rise : task.per_fall);
+    high_ = side(high, rising_ ? -a1 : a0, rising_ ? task.fall : task.rise,
+                 rising_ ? task.per_fall : task.per_rise);
     gap_ = high_.velocity - low_.velocity;
+    forbidden_ = low_.least * std::abs(low_.least) - gap_;
+    if (!level && forbidden_ <= rounding) forbidden_ = S(0);  // its root would be much more than rounding
+    start_root_ = forbidden_ > S(0) ? std::max(high_.least, std::sqrt(forbidden_)) : high_.least;
     shift_ = v0 * a0 - v1 * a1 + (a1 * a1 * a1 - a0 * a0 * a0) / S(3);
   }
 
   /// Whether durations from the shortest one on are all possible for some position: not where start and end
   /// accelerate to one side, so that a little longer is too long without a detour.
   [[nodiscard]] bool connected() const {
-    const S square = low_.least > S(0) ? low_.least * low_.least - gap_ : S(-1);
-    return !(square > S(0)) ||
-           (square < high_.most * high_.most && (high_.least > S(0) || high_.least * high_.least < square));
+    return !(forbidden_ > S(0)) || (forbidden_ < high_.most * high_.most &&
+                                    (high_.least > S(0) || high_.least * high_.least < forbidden_));
   }
 
   /// By how much the motion of the shortest duration misses a distance; positive where it goes farther.
-  [[nodiscard]] S start_miss(S distance) const { return distance_at(start_root()) - (distance + shift_); }
+  [[nodiscard]] S start_miss(S distance) const { return distance_at(start_root_) - (distance + shift_); }
 
   /// The motion of the shortest duration, for a connected task.
-  [[nodiscard]] Extremal start_motion() const { return motion_at(start_root()); }
+  [[nodiscard]] Extremal start_motion() const { return motion_at(start_root_); }
 
   /// The first motion over a distance, for a connected task whose motion of shortest duration goes no
   /// farther; false where it has to be searched for. If the curve has no local maximum there is one crossing
   /// only, in the piece at whose end the distance is exceeded.
   [[nodiscard]] bool only_over(S distance, Extremal& found) const {
     const Aim aim{distance + shift_, S(0)};
-    S s = start_root();
-    const S sum = low_.velocity + high_.velocity;
-    const S break_low = low_.most * low_.most - gap_;
-    const bool holds = break_low <= S(0);
-    if (s > high_.most) return false;
-    const bool held_first = s < S(0) && (holds || s * s > break_low);
-    if (held_first) {
-      const S a = low_.acceleration;
-      const S discriminant = a * a - S(16) * high_.velocity;
-      if (discriminant > S(0) && S(4) * s < -a - std::sqrt(discriminant)) return false;
-    }
-    const S left = aim.distance - at_top();
+    const S s = start_root_;
+    if (s > high_.most || has_maximum()) return false;
+    const S gain = to_gain();
+    const S left = aim.distance - ramp_distance(low_, gap_ + gain) - ramp_distance(high_, gain);
     if (left >= S(0)) {
       if (!(task_.top > S(0))) return false;
       found = to_top(left / task_.top);
       return true;
     }
-    const S gain = to_gain();
-    const S z_end_sq = std::min(high_.most * high_.most, gain);
-    const auto free = [&](const Side& side, S change, S root) {
-      return (S(2) * side.velocity + change) * root;
-    };
-    const auto between = [](const auto& f, S from, S to, S at_to) {
-      const S at_from = f(from)[0];
-      const S guess = at_from < at_to ? from - at_from * ((to - from) / (at_to - at_from)) : to;
-      return bracketed_root(f, from, to, guess);
-    };
-    if (held_first && !holds) {
-      const S end = -std::sqrt(break_low);
-      const S excess = distance_at(end) - aim.distance;
-      if (excess >= S(0)) {
-        const S x = between(one_held_excess(low_, high_, gap_, aim.distance), s, end, excess);
-        found = motion(low_.most, x, x * x);
-        return true;
-      }
-      s = end;
-    }
-    S from = s;
-    if (!holds && (s < S(0) || s * s < break_low)) {
-      const S end_sq = std::min(break_low, z_end_sq);
-      const S z = std::sqrt(end_sq), y = std::sqrt(gap_ + end_sq);
-      const S w_start = sum_at(s);
-      const S discriminant = S(4) * sum * sum - S(3) * gap_ * gap_;
-      S least = w_start;
-      if (sum < S(0) && discriminant > S(0)) {
-        const S u = (S(-2) * sum + std::sqrt(discriminant)) / S(3);  // where the distance is least
-        if (w_start * w_start * S(3) * u < gap_ * gap_) return false;
-        if (u > w_start * w_start && u < (y + z) * (y + z)) least = std::sqrt(u);
-      }
-      if (free(low_, gap_ + end_sq, y) + free(high_, end_sq, z) >= aim.distance) {
-        const S guess = std::clamp(rough_root(sum, aim.distance), least, y + z);
-        found = none_held_motion(bracketed_root(none_held_excess(aim.distance), least, y + z, guess));
-        return true;
-      }
-      if (end_sq < break_low && end_sq < gain) {
-        const S most = std::min(low_.most, std::sqrt(gap_ + gain));
-        const S excess =
-            held_distance(high_, most * most - gap_) + free(low_, most * most, most) - aim.distance;
-        if (excess >= S(0)) {
-          const S x = between(one_held_excess(high_, low_, -gap_, aim.distance), std::max(y, low_.least),
-                              most, excess);
-          found = motion(x, high_.most, x * x - gap_);
-          return true;
-        }
-      }
-      from = std::max(from, std::sqrt(break_low));
-    }
-    if (break_low < z_end_sq || (holds && s < S(0))) {
-      const S z = std::sqrt(z_end_sq);
-      const S excess = held_distance(low_, gap_ + z_end_sq) + free(high_, z_end_sq, z) - aim.distance;
-      if (excess >= S(0)) {
-        const S x = between(one_held_excess(low_, high_, gap_, aim.distance), from, z, excess);
-        found = motion(low_.most, x, x * x);
+    const S low_break = low_.most * low_.most - gap_, high_break = high_.most * high_.most;
+    const S both_break = std::max(low_break, high_break);
+    if (gain >= both_break) {
+      const S more = aim.distance - held_distance(low_, gap_ + both_break) - held_distance(high_, both_break);
+      if (more >= S(0)) {
+        found = both_held_motion(both_break, more, gain);
         return true;
       }
     }
-    if (gain <
-        std::max(break_low, high_.most * high_.most)) {  // by rounding: the last piece ended at the top
-      found = to_top(S(0));
-      return true;
-    }
-    // both held: a quadratic in the velocity gained
-    const S inverse = S(1) / low_.acceleration + S(1) / high_.acceleration;
-    const S slope = high_.velocity * inverse + (low_.rise + high_.rise) / S(2);
-    const S left_over = aim.distance - held_distance(low_, gap_) - held_distance(high_, S(0));
-    const S root = std::sqrt(std::max(slope * slope + S(2) * inverse * left_over, S(0)));
-    const S gained = slope > S(0) ? S(2) * left_over / (slope + root) : (root - slope) / inverse;
-    found = motion(low_.most, high_.most, std::clamp(gained, S(0), gain));
+    found = not_both_held_motion(aim.distance, std::min(both_break, gain));
     return true;
   }
 
@@ -215,7 +151,6 @@ class BasicExtremals {
     const S r = holds ? S(0) : std::sqrt(break_low);
     const S s = high_.least;
     const S e = std::max(std::min(high_.most, z_top), s);
-    const S forbidden = low_.least > S(0) ? low_.least * low_.least - gap_ : S(-1);
     const auto stretch = [&](S from, S to) {
       const S miss = distance_at(from) - c;
       if (std::abs(miss) <= slack && visit(motion_at(from))) return true;
@@ -224,8 +159,8 @@ class BasicExtremals {
         return true;
       return to > r && low_held(std::max(from, r), to, aim, visit);
     };
-    if (forbidden > S(0)) {
-      const S q = std::sqrt(forbidden);
+    if (forbidden_ > S(0)) {
+      const S q = std::sqrt(forbidden_);
       if (s <= -q && stretch(s, -q)) return;
       if (q <= high_.most && stretch(std::max(s, q), std::max(e, q))) return;
     } else if (stretch(s, e)) {
@@ -264,8 +199,8 @@ class BasicExtremals {
       gained = y * y - gap_;
     }
     if (y > low_.most || z > high_.most || !task_.jerk_limited) {
-      const S a = S(1) / low_.acceleration, b = S(1) / high_.acceleration;
-      const S both = (time - low_.rise - high_.rise - gap_ * a) / (a + b);
+      const S a = low_.per_acceleration, b = high_.per_acceleration;
+      const S both = (time - low_.most - high_.most - gap_ * a) / (a + b);
       return {motion(low_.most, high_.most, both), both >= -slack};
     }
     const bool valid = z >= high_.least - slack && y >= low_.least - slack;
@@ -280,7 +215,7 @@ class BasicExtremals {
   /// Where a motion ends, from its start.
   [[nodiscard]] S distance(const Extremal& e) const {
     const auto ramp = [&](const Side& s, S peak, S hold) {
-      const S change = hold > S(0) ? (hold + s.rise) * s.acceleration : peak * peak;
+      const S change = hold > S(0) ? (hold + s.most) * s.acceleration : peak * peak;
       return (S(2) * s.velocity + change) * (peak + hold / S(2));
     };
     const Side& first = rising_ ? low_ : high_;
@@ -295,10 +230,10 @@ class BasicExtremals {
   // One ramp, seen from its virtual velocity.
   struct Side {
     S velocity;
-    S least;         // acceleration that its peak has at least
-    S most;          // peak at which it is held; 0 without a jerk limit
-    S acceleration;  // while it is held
-    S rise;          // time to there
+    S least;             // acceleration that its peak has at least
+    S most;              // peak at which it is held, and the time to there; 0 without a jerk limit
+    S acceleration;      // while it is held
+    S per_acceleration;  // 1 by it
   };
 
   // A distance between virtual ends, and what rounding may miss of it.
@@ -307,32 +242,35 @@ class BasicExtremals {
     S slack;
   };
 
-  [[nodiscard]] Side side(S velocity, S least, S acceleration) const {
-    const S rise = task_.jerk_limited ? acceleration : S(0);
-    return {velocity, least, rise, acceleration, rise};
+  [[nodiscard]] Side side(S velocity, S least, S acceleration, S per_acceleration) const {
+    return {velocity, least, task_.jerk_limited ? acceleration : S(0), acceleration, per_acceleration};
   }
 
   // A ramp that gains a change of velocity: the acceleration to which it leads (to rounding no less than the
-  // least), how long it is held, half its duration, and its distance.
+  // least), how long it is held (what that lacks is negative where it is not), half its duration, and its
+  // distance.
   [[nodiscard]] static S peak(const Side& s, S change) {
-    return change > s.most * s.most ? s.most : std::max(std::sqrt(std::max(change, S(0))), s.least);
+    return std::min(std::max(std::sqrt(std::max(change, S(0))), s.least), s.most);
   }
-  [[nodiscard]] static S hold(const Side& s, S peak, S change) {
-    return peak >= s.most ? std::max(change / s.acceleration - s.rise, S(0)) : S(0);
+  [[nodiscard]] static S hold(const Side& s, S change) {
+    constexpr S rounding = S(4) * std::numeric_limits<S>::epsilon();  // a share of `most` that is no time
+    const S held = change * s.per_acceleration - s.most;
+    return held > rounding * s.most ? held : S(0);
   }
-  [[nodiscard]] static S half(const Side& s, S change) {
-    const S top = peak(s, change);
-    return top + hold(s, top, change) / S(2);
+  [[nodiscard]] static S half(const Side& s, S change) { return peak(s, change) + hold(s, change) / S(2); }
+  [[nodiscard]] static S ramp_distance(const Side& s, S change) {
+    return (S(2) * s.velocity + change) * half(s, change);
   }
   [[nodiscard]] static S held_distance(const Side& s, S change) {
-    return (S(2) * s.velocity + change) * (change / (S(2) * s.acceleration) + s.rise / S(2));
+    return (S(2) * s.velocity + change) * ((change * s.per_acceleration + s.most) / S(2));
   }
 
   // With the accelerations y and z to velocities that the higher side gains.
   [[nodiscard]] Extremal motion(S y, S z, S gained, S cruise = S(0)) const {
     y = std::max(y, low_.least), z = std::max(z, high_.least);  // to rounding they are
-    const S low_hold = hold(low_, y, gap_ + gained);
-    const S high_hold = hold(high_, z, gained);
+    const S low_held = hold(low_, gap_ + gained), high_held = hold(high_, gained);
+    const S low_hold = y >= low_.most ? low_held : S(0);  // not where the acceleration keeps its sign
+    const S high_hold = z >= high_.most ? high_held : S(0);
     return rising_ ? Extremal{y, low_hold, cruise, high_hold, z}
                    : Extremal{z, high_hold, cruise, low_hold, y};
   }
@@ -343,8 +281,7 @@ class BasicExtremals {
   }
   [[nodiscard]] S at_top() const {
     const S gained = to_gain();
-    return (S(2) * low_.velocity + gap_ + gained) * half(low_, gap_ + gained) +
-           (S(2) * high_.velocity + gained) * half(high_, gained);
+    return ramp_distance(low_, gap_ + gained) + ramp_distance(high_, gained);
   }
 
   // By the acceleration z of the higher side, as long as that is not held.
@@ -352,9 +289,8 @@ class BasicExtremals {
   [[nodiscard]] Extremal motion_at(S z) const { return motion(low_root(z), z, z * z); }
   [[nodiscard]] S distance_at(S z) const {
     const S change = gap_ + z * z;
-    const S y = std::sqrt(change);
-    const S below = y > low_.most ? held_distance(low_, change) : (S(2) * low_.velocity + change) * y;
-    return below + (S(2) * high_.velocity + z * z) * z;
+    const S half_below = std::min(std::sqrt(change), low_.most) + hold(low_, change) / S(2);
+    return (S(2) * low_.velocity + change) * half_below + (S(2) * high_.velocity + z * z) * z;
   }
 
   // The roots of a piece that turns at given places.
@@ -370,14 +306,84 @@ class BasicExtremals {
     return root_between(f, from, to, slack, x) && visit(x);
   }
 
-  // The root of the higher side with which the curve begins.
-  [[nodiscard]] S start_root() const {
-    const S forbidden = low_.least > S(0) ? low_.least * low_.least - gap_ : S(-1);
-    return forbidden > S(0) ? std::max(high_.least, std::sqrt(forbidden)) : high_.least;
-  }
   [[nodiscard]] S sum_at(S z) const {
     const S y = std::sqrt(gap_ + z * z);
     return z < S(0) && gap_ > S(0) ? gap_ / (y - z) : y + z;
+  }
+
+  // Whether the distance has a local maximum behind the start of the curve.
+  [[nodiscard]] bool has_maximum() const {
+    const S s = start_root_, below = low_.most * low_.most - gap_;
+    const bool held = (s < S(0)) & (s * s > below);
+    const S a = low_.acceleration, behind = -a - S(4) * s;
+    const bool held_turn = held & (behind > S(0)) & (a * a > S(16) * high_.velocity) &
+                           (behind * behind > a * a - S(16) * high_.velocity);
+    const S sum = low_.velocity + high_.velocity;
+    const S discriminant = S(4) * sum * sum - S(3) * gap_ * gap_;
+    const S difference = std::sqrt(gap_ + s * s) - s;  // y - z
+    const S behind_start = difference * difference + S(2) * sum;
+    const bool free_turn = (below > S(0)) & ((s < S(0)) | (s * s < below)) & (sum < S(0)) &
+                           (discriminant > S(0)) & (behind_start > S(0)) &
+                           (behind_start * behind_start > discriminant);
+    return held_turn | free_turn;
+  }
+
+  // The same as `only_over` where at least one side is not held, for changes of the higher side's velocity up
+  // to `most`: in the piece at whose end the distance is exceeded.
+  [[nodiscard]] Extremal not_both_held_motion(S distance, S most) const {
+    const auto between = [](const auto& f, S from, S to, S at_to) {
+      const S at_from = f(from)[0];
+      const S guess = at_from < at_to ? from - at_from * ((to - from) / (at_to - at_from)) : to;
+      return bracketed_root(f, from, to, guess);
+    };
+    S from = start_root_;
+    const S low_break = low_.most * low_.most - gap_;
+    if (from < S(0) && from * from > low_break) {
+      const S to = low_break > S(0) ? -std::sqrt(low_break) : std::sqrt(most);
+      const S excess = distance_at(to) - distance;
+      if (excess >= S(0) || low_break <= S(0)) {
+        const S z = between(one_held_excess(low_, high_, gap_, distance), from, to, excess);
+        return motion(low_.most, z, z * z);
+      }
+      from = to;
+    }
+    if (from < S(0) || from * from < low_break) {
+      const S free = std::min({low_break, high_.most * high_.most, most});
+      const S z = std::sqrt(free), y = std::sqrt(gap_ + free);
+      if ((S(2) * low_.velocity + gap_ + free) * y + (S(2) * high_.velocity + free) * z >= distance) {
+        const S sum = low_.velocity + high_.velocity;
+        const S start = sum_at(from);
+        const S discriminant = S(4) * sum * sum - S(3) * gap_ * gap_;
+        const S turn = sum < S(0) && discriminant > S(0)
+                           ? std::sqrt((S(-2) * sum + std::sqrt(discriminant)) / S(3))  // the least distance
+                           : S(0);
+        const S least = turn < y + z ? std::max(start, turn) : start;
+        const S guess = std::clamp(rough_root(sum, distance), least, y + z);
+        return none_held_motion(bracketed_root(none_held_excess(distance), least, y + z, guess));
+      }
+      if (low_break > high_.most * high_.most) {
+        const S to = std::min(low_.most, std::sqrt(gap_ + most));
+        const S excess =
+            held_distance(high_, to * to - gap_) + (S(2) * low_.velocity + to * to) * to - distance;
+        const S x =
+            between(one_held_excess(high_, low_, -gap_, distance), std::max(y, low_.least), to, excess);
+        return motion(x, high_.most, x * x - gap_);
+      }
+      from = z;
+    }
+    const S to = std::max(from, std::sqrt(most));
+    const S excess = held_distance(low_, gap_ + to * to) + (S(2) * high_.velocity + to * to) * to - distance;
+    const S z = between(one_held_excess(low_, high_, gap_, distance), from, to, excess);
+    return motion(low_.most, z, z * z);
+  }
+
+  // Both sides held: a quadratic in the velocity gained beyond where they begin to be.
+  [[nodiscard]] Extremal both_held_motion(S begin, S more, S gain) const {
+    const S inverse = low_.per_acceleration + high_.per_acceleration;
+    const S slope = (high_.velocity + begin) * inverse + (low_.most + high_.most) / S(2);
+    const S root = std::sqrt(std::max(slope * slope + S(2) * inverse * more, S(0)));
+    const S gained = slope > S(0) ? S(2) * more / (slope + root) : (root - slope) / inverse;
+    return motion(low_.most, high_.most, std::clamp(begin + gained, S(0), gain));
   }
 
   // Neither side held, by w = y + z: w times what the distance exceeds, without a division.
@@ -428,8 +434,8 @@ class BasicExtremals {
 
   // One side held: by the acceleration x of the other one, whose velocity is `above` that of the held one.
   [[nodiscard]] static auto one_held_excess(const Side& held, const Side& other, S above, S distance) {
-    const S c4 = S(1) / (S(2) * held.acceleration);
-    const S c2 = (held.velocity + above) * S(2) * c4 + held.rise / S(2);
+    const S c4 = held.per_acceleration / S(2);
+    const S c2 = (held.velocity + above) * S(2) * c4 + held.most / S(2);
     const S c1 = S(2) * other.velocity;
     const S c0 = held_distance(held, above) - distance;
     return [=](S x) {
@@ -463,8 +469,8 @@ class BasicExtremals {
 
   template <class Visit>
   [[nodiscard]] bool both_held(S from, const Aim& aim, Visit& visit) const {
-    const S a = S(1) / low_.acceleration, b = S(1) / high_.acceleration;
-    const S rise = (low_.rise + high_.rise) / S(2);
+    const S a = low_.per_acceleration, b = high_.per_acceleration;
+    const S rise = (low_.most + high_.most) / S(2);
     const auto f = [&](S gained) {
       return std::array<S, 3>{
           held_distance(low_, gap_ + gained) + held_distance(high_, gained) - aim.distance,
@@ -477,8 +483,10 @@ class BasicExtremals {
 
   Task task_;
   Side low_{}, high_{};
-  S gap_{};    // D
-  S shift_{};  // distance between the ends moved and the ends given
+  S gap_{};         // D
+  S forbidden_{};   // where positive: squares of z below it are too low for the least of the lower side
+  S start_root_{};  // z with which the curve begins
+  S shift_{};       // distance between the ends moved and the ends given
   bool rising_{};
 };
 

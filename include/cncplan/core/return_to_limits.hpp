@@ -20,6 +20,14 @@ template <std::floating_point S>
   return state.velocity + state.acceleration * std::abs(state.acceleration) / (S(2) * jerk);
 }
 
+/// Whether velocity and settled velocity are within their limits: false for some that are beyond by rounding.
+template <std::floating_point S>
+[[nodiscard]] constexpr bool settles_within(S velocity, S acceleration, const BasicAxisLimits<S>& limits) {
+  const S change = acceleration * std::abs(acceleration), jerk = S(2) * limits.jerk;
+  const S above = limits.velocity_up - velocity, below = limits.velocity_down + velocity;
+  return above >= S(0) && below >= S(0) && change <= jerk * above && -change <= jerk * below;
+}
+
 /// The part of a motion that the limits force upon it.
 template <std::floating_point S>
 struct BasicReturn {
@@ -45,6 +53,8 @@ template <std::floating_point S>
     back.state = phase.after(back.state, phase.duration);
   };
   const S v = start.velocity, a = back.state.acceleration, jerk = limits.jerk;
+  if (settles_within(v, a, limits) && a <= limits.acceleration_up && a >= -limits.acceleration_down)
+    return back;
   const S settled = settled_velocity(back.state, jerk);
   const S rounding = S(16) * std::numeric_limits<S>::epsilon() * std::max(std::abs(v), std::abs(settled));
   const bool above = settled > limits.velocity_up + rounding;

@@ -24,13 +24,15 @@ class BasicTransfer {
   using Scalar = S;
   using State = BasicAxisState<S>;
   using Extremal = BasicExtremal<S>;
-  using Phases = std::array<BasicJerkPhase<S>, 9>;
+  using Phase = BasicJerkPhase<S>;
 
   BasicTransfer(const State& from, const State& to, const BasicAxisLimits<S>& limits)
       : limits_(limits),
         jerk_limited_(limits.jerk < BasicAxisLimits<S>::infinity),
         root_jerk_(jerk_limited_ ? std::sqrt(limits.jerk) : S(1)),
         time_unit_(S(1) / root_jerk_),
+        per_acceleration_up_(root_jerk_ / limits.acceleration_up),
+        per_acceleration_down_(root_jerk_ / limits.acceleration_down),
         back_(return_to_limits(from, limits)),
         distance_((to.position - back_.state.position) * root_jerk_),
         up_(task(S(1), to)),
@@ -57,8 +59,8 @@ class BasicTransfer {
       const bool up = miss <= S(0);
       const S sign = up ? S(1) : S(-1);
       const BasicExtremals<S>& extremals = up ? up_ : down_;
-      Extremal found = up_.start_motion();
-      if (std::abs(miss) <= slack_) return crossing(up_, found, S(1));
+      if (std::abs(miss) <= slack_) return crossing(up_, up_.start_motion(), S(1));
+      Extremal found;
       if (extremals.only_over(sign * distance_, found)) return crossing(extremals, found, sign);
     }
     return first_from(S(0));
@@ -98,9 +100,10 @@ class BasicTransfer {
     return {up, down, share, up_valid && down_valid && within};
   }
 
-  /// A motion's phases, the return first; some take no time. In between, `first` to `last`, the acceleration
-  /// may pass zero without a cruise.
-  [[nodiscard]] Phases phases(const Extremal& e, S sign) const {
+  /// Calls `take` with a motion's nine phases, the return first; some take no time. In between, `first` to
+  /// `last`, the acceleration may pass zero without a cruise.
+  template <class Take>
+  decltype(auto) with_phases(const Extremal& e, S sign, Take&& take) const {
     const auto& t = (sign > S(0) ? up_ : down_).task();
     const S jerk = jerk_limited_ ? sign * limits_.jerk : S(0);
     const S unit = sign * root_jerk_;
@@ -108,15 +111,15 @@ class BasicTransfer {
     const S last = jerk_limited_ ? -e.last_peak * unit : -sign * t.fall;
     const bool rests = e.first_peak >= S(0) && e.last_peak >= S(0);
     const S cruised = rests ? S(0) : first;
-    return {back_.phases[0],
-            back_.phases[1],
-            {(e.first_peak - t.start_acceleration) * time_unit_, back_.state.acceleration, jerk},
-            {e.first_hold * time_unit_, first, S(0)},
-            {rests ? e.first_peak * time_unit_ : S(0), first, -jerk},
-            {e.cruise * time_unit_, cruised, S(0)},
-            {std::max(rests ? e.last_peak : e.first_peak + e.last_peak, S(0)) * time_unit_, cruised, -jerk},
-            {e.last_hold * time_unit_, last, S(0)},
-            {(e.last_peak + t.end_acceleration) * time_unit_, last, jerk}};
+    return take(
+        back_.phases[0], back_.phases[1],
+        Phase{(e.first_peak - t.start_acceleration) * time_unit_, back_.state.acceleration, jerk},
+        Phase{e.first_hold * time_unit_, first, S(0)},
+        Phase{rests ? e.first_peak * time_unit_ : S(0), first, -jerk},
+        Phase{e.cruise * time_unit_, cruised, S(0)},
+        Phase{std::max(rests ? e.last_peak : e.first_peak + e.last_peak, S(0)) * time_unit_, cruised, -jerk},
+        Phase{e.last_hold * time_unit_, last, S(0)},
+        Phase{(e.last_peak + t.end_acceleration) * time_unit_, last, jerk});
   }
 
  private:
@@ -138,6 +141,8 @@ class BasicTransfer {
             back_.settles == sign ? v - a * a / S(2) : top,  // the very number: its root is taken
             (up ? limits_.acceleration_up : limits_.acceleration_down) * time_unit_,
             (up ? limits_.acceleration_down : limits_.acceleration_up) * time_unit_,
+            up ? per_acceleration_up_ : per_acceleration_down_,
+            up ? per_acceleration_down_ : per_acceleration_up_,
             jerk_limited_};
   }
 
@@ -145,6 +150,8 @@ class BasicTransfer {
   bool jerk_limited_;
   S root_jerk_;
   S time_unit_;
+  S per_acceleration_up_;
+  S per_acceleration_down_;
   BasicReturn<S> back_;
   S distance_;  // from behind the return to the target, times root_jerk_
   BasicExtremals<S> up_;

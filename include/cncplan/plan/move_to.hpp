@@ -52,13 +52,17 @@ class BasicAxesMotion {
   using Motions = std::array<state::BasicMotion<S>, static_cast<std::size_t>(N)>;
 
   constexpr BasicAxesMotion() = default;
-  constexpr explicit BasicAxesMotion(const Motions& axes) : axes_(axes) {
-    for (const auto& axis : axes_) duration_ = std::max(duration_, axis.duration());
-  }
+  constexpr explicit BasicAxesMotion(const Motions& axes) : axes_(axes) {}
 
   /// Of the axis that moves longest.
-  [[nodiscard]] constexpr S duration() const { return duration_; }
+  [[nodiscard]] constexpr S duration() const {
+    S longest{};
+    for (const auto& axis : axes_) longest = std::max(longest, axis.duration());
+    return longest;
+  }
   [[nodiscard]] constexpr const state::BasicMotion<S>& axis(std::size_t i) const { return axes_[i]; }
+  /// To be made.
+  [[nodiscard]] constexpr Motions& axes() { return axes_; }
   /// All axes at t; see `state::BasicMotion::at`.
   [[nodiscard]] constexpr State at(S t) const {
     State states;
@@ -68,7 +72,6 @@ class BasicAxesMotion {
 
  private:
   Motions axes_{};
-  S duration_{};
 };
 
 /// A motion with a clock: driven by `advance` from tick to tick, or asked at any time.
@@ -127,9 +130,12 @@ template <AxesMachine M, std::same_as<detail::StatesOf<M>> Target>
 [[nodiscard]] Expected<detail::MoveOf<M>> move_to(const detail::StatesOf<M>& from, const Target& to,
                                                   const M& machine,
                                                   const detail::OptionsOf<M>& options = {}) {
-  return detail::as_move<BasicAxesMotion<typename M::Scalar, M::axis_count>>(
-      state::synchronized<typename M::Scalar, M::axis_count>(from, to, detail::motion_limits(machine),
-                                                             options));
+  Expected<detail::MoveOf<M>> move;
+  if (const auto ok = state::make_synchronized<typename M::Scalar, M::axis_count>(
+          from, to, detail::motion_limits(machine), options, move->axes());
+      !ok)
+    move = tl::unexpected(ok.error());
+  return move;
 }
 
 /// The same to positions at rest.
@@ -147,9 +153,10 @@ template <std::floating_point S>
     const BasicAxisState<S>& from, const std::type_identity_t<BasicAxisState<S>>& to,
     const std::type_identity_t<BasicAxis<S>>& axis,
     const std::type_identity_t<BasicMoveOptions<S>>& options = {}) {
-  const auto motion = state::move(from, to, motion_limits(axis), options);
-  if (!motion) return tl::unexpected(motion.error());
-  return BasicAxisMove<S>(*motion);
+  Expected<BasicAxisMove<S>> move;
+  if (const auto ok = state::make_move<S>(from, to, motion_limits(axis), options, *move); !ok)
+    move = tl::unexpected(ok.error());
+  return move;
 }
 template <std::floating_point S>
 [[nodiscard]] Expected<BasicAxisMove<S>> move_to(

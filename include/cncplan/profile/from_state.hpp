@@ -202,13 +202,18 @@ class FromState {
                                     forward);
     const auto first = transfer.first_from(S(0));
     if (!std::isfinite(first.duration)) return {};
-    return profile_of(transfer.phases(first.extremal, first.sign));
+    return transfer.with_phases(first.extremal, first.sign,
+                                [&](const auto&... phases) { return profile_of(phases...); });
   }
 
   // Nine phases as two ramps and a cruise. Where the return to the limits brakes for a while, or its jerk is
   // opposite to what follows, that is let go behind it; else both are one phase.
-  [[nodiscard]] BasicProfile<S> profile_of(const typename BasicTransfer<S>::Phases& p) const {
-    const auto& [forced, braked, rise, held, let_go, cruise, fall, held_last, let_go_last] = p;
+  using JerkPhase = BasicJerkPhase<S>;
+  [[nodiscard]] BasicProfile<S> profile_of(const JerkPhase& forced, const JerkPhase& braked,
+                                           const JerkPhase& rise, const JerkPhase& held,
+                                           const JerkPhase& let_go, const JerkPhase& cruise,
+                                           const JerkPhase& fall, const JerkPhase& held_last,
+                                           const JerkPhase& let_go_last) const {
     const bool opposite = forced.duration > S(0) && forced.jerk * rise.jerk < S(0);
     BasicRamp<S> up{forced.duration, braked.duration, rise.duration, rise.acceleration, forced.jerk};
     if (!(rise.duration > S(0) && (braked.duration > S(0) || opposite)))

@@ -26,11 +26,18 @@ class BasicAxisMotions {
   BasicAxisMotions(const State& from, const State& to, const BasicAxisLimits<S>& limits)
       : from_(from), to_(to), transfer_(from, to, limits) {}
 
-  /// The fastest motion. There always is one: from any state to rest, from there to rest elsewhere, and on to
-  /// the target.
+  /// The fastest motion, and when it ends. There always is one: from any state to rest, from there to rest
+  /// elsewhere, and on to the target.
+  using Crossing = typename BasicTransfer<S>::Crossing;
+  [[nodiscard]] Crossing first() const { return transfer_.first(); }
+  void make(const Crossing& crossing, Motion& motion) const {
+    motion.reset(from_, to_);
+    append(crossing.extremal, crossing.sign, motion);
+  }
   [[nodiscard]] Motion fastest() const {
-    const auto first = transfer_.first();
-    return motion(first.extremal, first.sign);
+    Motion motion;
+    make(first(), motion);
+    return motion;
   }
 
   /// The shortest possible duration that is not below `least`.
@@ -40,26 +47,29 @@ class BasicAxisMotions {
   /// The same of a duration that is not possible.
   [[nodiscard]] S next_duration(S least) const { return transfer_.first_from(least).duration; }
 
-  using Range = typename BasicTransfer<S>::Range;
   /// The extremes of a duration.
+  using Range = typename BasicTransfer<S>::Range;
   [[nodiscard]] Range range(S duration) const { return transfer_.lasting(duration); }
 
   /// The motion of a duration. If that is possible (see `duration_from`), it ends at the target: the mean of
   /// the two that get farthest, weighted so that it does.
-  [[nodiscard]] Motion lasting(S duration) const { return within(range(duration)); }
-  [[nodiscard]] Motion within(const Range& range) const {
-    if (range.share == S(1)) return motion(range.up, S(1));
-    if (range.share == S(0)) return motion(range.down, S(-1));
-    const auto up = transfer_.phases(range.up, S(1));
-    const auto down = transfer_.phases(range.down, S(-1));
-    return mean<S>(from_, to_, up, down, range.share);
+  void make(const Range& range, Motion& motion) const {
+    motion.reset(from_, to_);
+    if (range.share == S(1)) return append(range.up, S(1), motion);
+    if (range.share == S(0)) return append(range.down, S(-1), motion);
+    const auto queue = [](const auto&... phases) { return BasicPhaseQueue<S>(phases...); };
+    append_mean(transfer_.with_phases(range.up, S(1), queue), transfer_.with_phases(range.down, S(-1), queue),
+                range.share, motion);
+  }
+  [[nodiscard]] Motion lasting(S duration) const {
+    Motion motion;
+    make(range(duration), motion);
+    return motion;
   }
 
  private:
-  [[nodiscard]] Motion motion(const BasicExtremal<S>& extremal, S sign) const {
-    Motion m(from_, to_);
-    for (const auto& phase : transfer_.phases(extremal, sign)) m.append(phase);
-    return m;
+  void append(const BasicExtremal<S>& extremal, S sign, Motion& motion) const {
+    transfer_.with_phases(extremal, sign, [&](const auto&... phases) { motion.append(phases...); });
   }
 
   State from_;
@@ -77,11 +87,10 @@ template <std::floating_point S>
   if (!std::isfinite(sum)) return refusal(ErrorCode::not_finite, "start", sum);
   const S end = to.position + to.velocity + to.acceleration;
   if (!std::isfinite(end)) return refusal(ErrorCode::not_finite, "target", end);
-  const S before = settled_velocity(BasicAxisState<S>{S(0), to.velocity, -to.acceleration}, limits.jerk);
   if (to.acceleration <= limits.acceleration_up && to.acceleration >= -limits.acceleration_down &&
-      to.velocity <= limits.velocity_up && to.velocity >= -limits.velocity_down &&
-      before <= limits.velocity_up && before >= -limits.velocity_down)
+      settles_within(to.velocity, -to.acceleration, limits))
     return {};
+  const S before = settled_velocity(BasicAxisState<S>{S(0), to.velocity, -to.acceleration}, limits.jerk);
   constexpr S room = S(1) + S(16) * std::numeric_limits<S>::epsilon();
   const auto within = [&](S value, S down, S up, std::string_view field) -> Expected<void> {
     if (value > up * room) return refusal(ErrorCode::above_limit, field, value, up);

@@ -24,19 +24,44 @@ class BasicMotion {
   using State = BasicAxisState<S>;
   using Phase = BasicJerkPhase<S>;
 
-  static constexpr std::size_t most_phases = 16;
+  static constexpr std::size_t most_phases = 15;
 
   constexpr BasicMotion() = default;
   /// No phases yet: `append` adds them. What they add up to is `end` but for rounding.
   constexpr BasicMotion(const State& start, const State& end) : start_(start), end_(end) {}
 
-  /// Adds a phase, unless it takes no time.
-  constexpr void append(const Phase& phase) {
-    if (count_ == most_phases) return;
-    const bool lasts = phase.duration > S(0);  // without a branch: which ones last is hard to foretell
-    phases_[count_] = phase;
-    duration_ += lasts ? phase.duration : S(0);
-    count_ += lasts ? 1 : 0;
+  /// Begins anew. A motion is large: who makes one writes it where it stays.
+  constexpr void reset(const State& start, const State& end) {
+    start_ = start, end_ = end;
+    duration_ = S(0);
+    count_ = 0;
+  }
+
+  /// Adds phases that there is room for, but none that takes no time.
+  template <std::same_as<Phase>... P>
+  constexpr void append(const Phase& first, const P&... others) {
+    std::size_t count = count_;  // in a register, as the phases may lie anywhere
+    S duration = duration_;
+    const auto add = [&](const Phase& phase) {
+      const bool lasts = phase.duration > S(0);  // without a branch: which ones last is hard to foretell
+      phases_[count] = phase;
+      duration += lasts ? phase.duration : S(0);
+      count += lasts && count < most_phases ? 1 : 0;
+    };
+    add(first);
+    (add(others), ...);
+    count_ = count;
+    duration_ = duration;
+  }
+
+  /// Adds phases that take time, as long as `next(phase)` makes one and there is room.
+  template <class Next>
+  constexpr void append_while(Next&& next) {
+    std::size_t count = count_;
+    S duration = duration_;
+    while (count < most_phases && next(phases_[count])) duration += phases_[count++].duration;
+    count_ = count;
+    duration_ = duration;
   }
 
   [[nodiscard]] constexpr S duration() const { return duration_; }
@@ -133,7 +158,7 @@ class BasicMotion {
   State end_{};
   S duration_{};
   std::size_t count_{};
-  std::array<Phase, most_phases> phases_{};
+  std::array<Phase, most_phases + 1> phases_{};  // the last place takes what is left out
 };
 
 using Motion = BasicMotion<double>;

@@ -14,28 +14,26 @@
 
 namespace cncplan::state {
 
-/// The fastest motion that takes the minimum duration at least. Errors: those of `axis_motions` and
+/// Makes the fastest motion that takes the minimum duration at least. Errors: those of `validate` and
 /// `within_travel`, and a minimum duration that is negative or not finite.
 template <std::floating_point S>
-[[nodiscard]] Expected<BasicMotion<S>> move(const BasicAxisState<S>& from, const BasicAxisState<S>& to,
-                                            const BasicAxisLimits<S>& limits,
-                                            const BasicMoveOptions<S>& options = {}) {
-  if (const auto ok = validate(options); !ok) return tl::unexpected(ok.error());
-  if (const auto ok = validate(from, to, limits); !ok) return tl::unexpected(ok.error());
-  const auto longer = [&](const BasicAxisMotions<S>& motions) {
-    return motions.lasting(motions.duration_from(options.minimum_duration));
+[[nodiscard]] Expected<void> make_move(const BasicAxisState<S>& from, const BasicAxisState<S>& to,
+                                       const BasicAxisLimits<S>& limits, const BasicMoveOptions<S>& options,
+                                       BasicMotion<S>& motion) {
+  if (auto ok = validate(options); !ok) return ok;
+  if (auto ok = validate(from, to, limits); !ok) return ok;
+  const auto lengthen = [&](const BasicAxisMotions<S>& motions) {
+    motions.make(motions.range(motions.duration_from(options.minimum_duration)), motion);
   };
-  BasicMotion<S> motion;
   if (at_rest(from, to, limits)) {
-    motion = rest_to_rest(from, to, limits);
-    if (motion.duration() < options.minimum_duration) motion = longer({from, to, limits});
+    make_rest_to_rest(from, to, limits, motion);
+    if (motion.duration() < options.minimum_duration) lengthen({from, to, limits});
   } else {
     const BasicAxisMotions<S> motions(from, to, limits);
-    motion = motions.fastest();
-    if (motion.duration() < options.minimum_duration) motion = longer(motions);
+    motions.make(motions.first(), motion);
+    if (motion.duration() < options.minimum_duration) lengthen(motions);
   }
-  if (const auto ok = within_travel(motion, limits); !ok) return tl::unexpected(ok.error());
-  return motion;
+  return within_travel(motion, limits);
 }
 
 }  // namespace cncplan::state

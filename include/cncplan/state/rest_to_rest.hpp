@@ -22,41 +22,30 @@ template <std::floating_point S>
          limits.acceleration_up == limits.acceleration_down && limits.jerk < BasicAxisLimits<S>::infinity;
 }
 
-/// The fastest motion where `at_rest`. All is symmetric: the same ramp up and down, to a velocity v, over a
-/// distance 2 p^3/J^2 with the peak p = sqrt(J v), or v (v/A + A/J) where A binds.
+/// Makes the fastest motion where `at_rest`. All is symmetric: the same ramp up and down. Over a distance L
+/// its jerk takes cbrt(L/(2 J)) where nothing else binds; the velocity v to which it leads covers
+/// v (v/A + A/J) where A binds. Where a limit does not bind, what it would add is negative.
 template <std::floating_point S>
-[[nodiscard]] BasicMotion<S> rest_to_rest(const BasicAxisState<S>& from, const BasicAxisState<S>& to,
-                                          const BasicAxisLimits<S>& limits) {
+void make_rest_to_rest(const BasicAxisState<S>& from, const BasicAxisState<S>& to,
+                       const BasicAxisLimits<S>& limits, BasicMotion<S>& motion) {
+  using Phase = BasicJerkPhase<S>;
   const S way = to.position - from.position;
   const S length = std::abs(way);
-  const S jerk = std::copysign(limits.jerk, way);
   const S per_jerk = S(1) / limits.jerk;
-  const S top = way > S(0) ? limits.velocity_up : limits.velocity_down;
-  const S most = limits.acceleration_up;
-  S peak = cube_root(length / S(2)) * cube_root(limits.jerk * limits.jerk);
-  S hold{}, cruise{};
-  if (peak > most || peak * peak * per_jerk > top) {
-    const S rise = most * per_jerk;
-    S velocity = top;
-    peak = std::sqrt(limits.jerk * top);
-    if (peak > most) {
-      peak = most;
-      velocity = std::min(S(2) * length / (rise + std::sqrt(rise * rise + S(4) * length / most)), top);
-      hold = std::max(velocity / most - rise, S(0));
-    }
-    cruise = std::max(length / velocity - hold - S(2) * peak * per_jerk, S(0));
-  }
-  const S steep = std::copysign(peak, way);
-  const S time = peak * per_jerk;
-  BasicMotion<S> m(from, to);
-  m.append({time, S(0), jerk});
-  m.append({hold, steep, S(0)});
-  m.append({time, steep, -jerk});
-  m.append({cruise, S(0), S(0)});
-  m.append({time, S(0), -jerk});
-  m.append({hold, -steep, S(0)});
-  m.append({time, -steep, jerk});
-  return m;
+  const S per_most = S(1) / limits.acceleration_up;
+  const S up = limits.velocity_up, down = limits.velocity_down;
+  const S top = way > S(0) ? up : down;
+  const S rise = limits.acceleration_up * per_jerk;
+  const S time = std::min(std::min(rise, std::sqrt(top * per_jerk)), cube_root(length * per_jerk / S(2)));
+  const S held = S(2) * length / (rise + std::sqrt(rise * rise + S(4) * length * per_most));
+  const S hold = std::min(held, top) * per_most - rise;
+  const S cruise = length / top - std::max(hold, S(0)) - S(2) * time;
+  const S jerk = std::copysign(limits.jerk, way);
+  const S steep = time * jerk;
+  motion.reset(from, to);
+  motion.append(Phase{time, S(0), jerk}, Phase{hold, steep, S(0)}, Phase{time, steep, -jerk},
+                Phase{cruise, S(0), S(0)}, Phase{time, S(0), -jerk}, Phase{hold, -steep, S(0)},
+                Phase{time, -steep, jerk});
 }
 
 }  // namespace cncplan::state

@@ -7,7 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <optional>
+#include <utility>
 
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/core/axis_state.hpp"
@@ -30,65 +30,74 @@ class Synchronizer {
   using Limits = std::array<BasicAxisLimits<S>, axes>;
   using Motions = std::array<BasicMotion<S>, axes>;
 
-  Synchronizer(const States& from, const States& to, const Limits& limits)
-      : from_(from), to_(to), limits_(limits) {}
+  /// Of states and limits that are valid.
+  Synchronizer(const States& from, const States& to, const Limits& limits, Motions& found)
+      : Synchronizer(from, to, limits, found, std::make_index_sequence<axes>()) {}
 
-  [[nodiscard]] Expected<Motions> solve(const BasicMoveOptions<S>& options) {
-    if (const auto ok = validate(options); !ok) return tl::unexpected(ok.error());
-    for (std::size_t i = 0; i < axes; ++i) {
-      const BasicAxisState<S> from = from_.axis(i), to = to_.axis(i);
-      if (const auto ok = validate(from, to, limits_[i]); !ok) return tl::unexpected(ok.error());
-      found_[i] = motions_[i].emplace(from, to, limits_[i]).fastest();
-    }
+  void make(const BasicMoveOptions<S>& options) {
     if (options.synchronization == Synchronization::none)
-      delay(options.minimum_duration);
+      apart(options.minimum_duration);
     else
       together(options);
-    for (std::size_t i = 0; i < axes; ++i)
-      if (auto ok = within_travel(found_[i], limits_[i]); !ok) return tl::unexpected(ok.error());
-    return found_;
   }
 
  private:
-  void delay(S least) {
-    for (std::size_t i = 0; i < axes; ++i)
-      if (found_[i].duration() < least) found_[i] = motions_[i]->lasting(motions_[i]->duration_from(least));
+  template <std::size_t... i>
+  Synchronizer(const States& from, const States& to, const Limits& limits, Motions& found,
+               std::index_sequence<i...>)
+      : from_(from),
+        to_(to),
+        limits_(limits),
+        found_(found),
+        motions_{BasicAxisMotions<S>(from.axis(i), to.axis(i), limits[i])...},
+        first_{motions_[i].first()...} {}
+
+  void apart(S least) {
+    for (std::size_t i = 0; i < axes; ++i) {
+      if (first_[i].duration < least)
+        motions_[i].make(motions_[i].range(motions_[i].duration_from(least)), found_[i]);
+      else
+        motions_[i].make(first_[i], found_[i]);
+    }
   }
 
   // Each round an axis moves the instant to its own next one; there are no more of those than of crossings.
   void together(const BasicMoveOptions<S>& options) {
     constexpr int rounds = 8 * N;
     S duration = options.minimum_duration;
-    for (const auto& motion : found_) duration = std::max(duration, motion.duration());
-    std::array<typename BasicAxisMotions<S>::Range, axes> ranges{};
-    bool all = false;
-    for (int round = 0; round < rounds && !all; ++round) {
-      all = true;
-      for (std::size_t i = 0; i < axes; ++i) {
-        if (duration == found_[i].duration()) continue;
-        ranges[i] = motions_[i]->range(duration);
-        if (ranges[i].possible) continue;
-        const S next = motions_[i]->next_duration(duration);
-        if (next == duration) continue;
-        duration = next;
-        all = false;
-      }
+    for (const auto& first : first_) duration = std::max(duration, first.duration);
+    for (int round = 0; round < rounds; ++round) {
+      S later = duration;
+      for (std::size_t i = 0; i < axes; ++i) later = std::max(later, lasting(i, duration));
+      if (later == duration) break;
+      duration = later;
     }
-    if (options.synchronization == Synchronization::phase && in_phase(duration)) return;
-    for (std::size_t i = 0; i < axes; ++i)
-      if (duration != found_[i].duration()) found_[i] = motions_[i]->within(ranges[i]);
+    if (options.synchronization == Synchronization::phase) in_phase(duration);
   }
 
-  // All axes by one motion along the line, whose velocity is 1 where an axis of the largest distance has one
-  // unit of velocity.
-  [[nodiscard]] bool in_phase(S duration) {
+  // Makes the motion of one axis in a duration, or finds the next one that it can have.
+  [[nodiscard]] S lasting(std::size_t i, S duration) {
+    if (duration == first_[i].duration) {
+      motions_[i].make(first_[i], found_[i]);
+      return duration;
+    }
+    const auto range = motions_[i].range(duration);
+    if (!range.possible)
+      if (const S next = motions_[i].next_duration(duration); next != duration) return next;
+    motions_[i].make(range, found_[i]);
+    return duration;
+  }
+
+  // Where all axes can be driven in that duration by one motion along the line, that is made: its velocity is
+  // 1 where an axis of the largest distance has one unit of velocity.
+  void in_phase(S duration) {
     std::array<S, axes> way{};
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < axes; ++i) {
       way[i] = to_.position[i] - from_.position[i];
       if (std::abs(way[i]) > std::abs(way[farthest])) farthest = i;
     }
-    if (way[farthest] == S(0)) return false;
+    if (way[farthest] == S(0)) return;
     const auto share = [&](std::size_t i) { return way[i] / way[farthest]; };
     const auto proportional = [&](const auto& row) {
       for (std::size_t i = 0; i < axes; ++i) {
@@ -99,7 +108,7 @@ class Synchronizer {
     };
     if (!(proportional(from_.velocity) && proportional(from_.acceleration) && proportional(to_.velocity) &&
           proportional(to_.acceleration)))
-      return false;
+      return;
     BasicAxisLimits<S> line{};
     for (std::size_t i = 0; i < axes; ++i) {
       const S size = std::abs(share(i));
@@ -114,39 +123,47 @@ class Synchronizer {
       lower(line.jerk, own.jerk);
     }
     const auto along = axis_motions(from_.axis(farthest), to_.axis(farthest), line);
-    if (!along) return false;
+    if (!along) return;
     BasicMotion<S> motion = along->fastest();
     const S rounding = S(64) * std::numeric_limits<S>::epsilon() * duration;
-    if (motion.duration() > duration + rounding) return false;
+    if (motion.duration() > duration + rounding) return;
     if (motion.duration() < duration - rounding) {
-      if (along->duration_from(duration) != duration) return false;
+      if (along->duration_from(duration) != duration) return;
       motion = along->lasting(duration);
     }
     for (std::size_t i = 0; i < axes; ++i) {
-      found_[i] = BasicMotion<S>(from_.axis(i), to_.axis(i));
+      found_[i].reset(from_.axis(i), to_.axis(i));
       for (const auto& phase : motion.phases())
-        found_[i].append({phase.duration, share(i) * phase.acceleration, share(i) * phase.jerk});
+        found_[i].append(
+            BasicJerkPhase<S>{phase.duration, share(i) * phase.acceleration, share(i) * phase.jerk});
     }
-    return true;
   }
 
-  States from_;
-  States to_;
-  Limits limits_;
-  std::array<std::optional<BasicAxisMotions<S>>, axes> motions_{};
-  Motions found_{};
+  const States& from_;
+  const States& to_;
+  const Limits& limits_;
+  Motions& found_;
+  std::array<BasicAxisMotions<S>, axes> motions_;
+  std::array<typename BasicAxisMotions<S>::Crossing, axes> first_;
 };
 
 }  // namespace detail
 
-/// The motions of all axes. Errors: those of `axis_motions` and `within_travel`, and a minimum duration that
-/// is negative or not finite. After a start beyond the limits, axes are in phase only if their return is.
+/// Makes the motions of all axes. Errors: those of `validate` and `within_travel`, and a minimum duration
+/// that is negative or not finite. After a start beyond the limits, axes are in phase only if their return
+/// is.
 template <std::floating_point S, int N>
-[[nodiscard]] Expected<std::array<BasicMotion<S>, static_cast<std::size_t>(N)>> synchronized(
+[[nodiscard]] Expected<void> make_synchronized(
     const BasicAxisStates<S, N>& from, const BasicAxisStates<S, N>& to,
     const std::array<BasicAxisLimits<S>, static_cast<std::size_t>(N)>& limits,
-    const BasicMoveOptions<S>& options = {}) {
-  return detail::Synchronizer<S, N>(from, to, limits).solve(options);
+    const BasicMoveOptions<S>& options, std::array<BasicMotion<S>, static_cast<std::size_t>(N)>& motions) {
+  if (auto ok = validate(options); !ok) return ok;
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    if (auto ok = validate(from.axis(i), to.axis(i), limits[i]); !ok) return ok;
+  detail::Synchronizer<S, N>(from, to, limits, motions).make(options);
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    if (auto ok = within_travel(motions[i], limits[i]); !ok) return ok;
+  return {};
 }
 
 }  // namespace cncplan::state

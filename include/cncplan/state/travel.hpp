@@ -14,11 +14,10 @@
 
 namespace cncplan::state {
 
-/// Nothing if a motion stays in its axis' travel, to rounding. Else, in this order, what is beyond: the
-/// position to which the axis would get if it braked at once; the target; the farthest of the motion.
+namespace detail {
+
 template <std::floating_point S>
-[[nodiscard]] Expected<void> within_travel(const BasicMotion<S>& motion, const BasicAxisLimits<S>& limits) {
-  if (limits.low == -BasicAxisLimits<S>::infinity && limits.high == BasicAxisLimits<S>::infinity) return {};
+[[nodiscard]] Expected<void> within_ends(const BasicMotion<S>& motion, const BasicAxisLimits<S>& limits) {
   const auto check = [&](S lowest, S highest, std::string_view field) -> Expected<void> {
     const S rounding = S(64) * std::numeric_limits<S>::epsilon() *
                        std::max({std::abs(lowest), std::abs(highest), highest - lowest});
@@ -32,6 +31,17 @@ template <std::floating_point S>
   if (auto ok = check(target, target, "target position"); !ok) return ok;
   const auto [lowest, highest] = motion.extrema();
   return check(lowest, highest, "position on the way");
+}
+
+}  // namespace detail
+
+/// Nothing if a motion stays in its axis' travel, to rounding. Else, in this order, what is beyond: the
+/// position to which the axis would get if it braked at once; the target; the farthest of the motion.
+template <std::floating_point S>
+[[nodiscard]] Expected<void> within_travel(const BasicMotion<S>& motion, const BasicAxisLimits<S>& limits) {
+  constexpr S infinity = BasicAxisLimits<S>::infinity;
+  if (limits.low == -infinity && limits.high == infinity) return {};
+  return detail::within_ends(motion, limits);
 }
 
 }  // namespace cncplan::state
