@@ -44,11 +44,10 @@ template <std::floating_point S>
 /// Bounds of the axes' derivatives between two lengths; those of the tool are left zero. In each of a few
 /// parts the third derivative is enclosed, and the lower ones are bounded from their values in the middle:
 /// the excess falls with the square of a part's width.
-template <EnclosedPath P>
+template <int parts = 4, EnclosedPath P>
 [[nodiscard]] auto enclosed_bounds(const P& path, typename P::Scalar from, typename P::Scalar to) {
   using S = typename P::Scalar;
   constexpr int n = P::Vector::RowsAtCompileTime;
-  constexpr int parts = 4;
   BasicPathBounds<S, n> result;
   detail::for_each_part(path, from, to, parts, [&](const auto& enclosed, const auto& middle, S half) {
     for (int axis = 0; axis < n; ++axis) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/jet.hpp"
@@ -83,13 +84,17 @@ class Measured {
   [[nodiscard]] Scalar parameter_at(Scalar s) const { return table_.parameter_at(s); }
   [[nodiscard]] Scalar length_at(Scalar u) const { return table_.length_at(u); }
 
-  [[nodiscard]] Vector position_at(Scalar s) const { return values(curve().point(parameter_at(s))); }
-  [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const {
-    PathPoint<Vector> result;
-    const auto point = curve().point(by_length(parameter_at(s)));
-    for (int i = 0; i < axis_count; ++i) put(point[static_cast<std::size_t>(i)], result, i);
-    return result;
+  // By the curve's own parameter.
+  [[nodiscard]] Vector position(Scalar u) const { return values(curve().point(u)); }
+  [[nodiscard]] Vector derivative(Scalar u) const { return at(u).first; }
+  [[nodiscard]] Vector second_derivative(Scalar u) const { return at(u).second; }
+  [[nodiscard]] CurvePoint<Vector> at(Scalar u) const {
+    const auto point = point_of(BasicJet<Scalar>(u, Scalar(1), Scalar(0), Scalar(0)));
+    return {point.position, point.first, point.second};
   }
+
+  [[nodiscard]] Vector position_at(Scalar s) const { return position(parameter_at(s)); }
+  [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const { return point_of(by_length(parameter_at(s))); }
   /// X Y Z of the point that counts, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
     PathPoint<BasicVector3<Scalar>> result;
@@ -101,7 +106,7 @@ class Measured {
     return curve().point(by_length(BasicInterval<Scalar>{parameter_at(from), parameter_at(to)}));
   }
   [[nodiscard]] BasicPathBounds<Scalar, axis_count> bounds(Scalar from, Scalar to) const {
-    auto result = enclosed_bounds(*this, from, to);
+    auto result = enclosed_bounds<parts>(*this, from, to);
     result.tool = tool_bounds(from, to);
     return result;
   }
@@ -112,8 +117,23 @@ class Measured {
   }
 
  private:
+  // Into how many parts bounds cut an interval: the curve may want more.
+  static constexpr int parts = [] {
+    if constexpr (requires { C::enclosed_parts; })
+      return static_cast<int>(C::enclosed_parts);
+    else
+      return 4;
+  }();
+
   static Vector values(const std::array<Scalar, static_cast<std::size_t>(axis_count)>& point) {
     return Eigen::Map<const Vector>(point.data());
+  }
+
+  [[nodiscard]] PathPoint<Vector> point_of(const BasicJet<Scalar>& u) const {
+    PathPoint<Vector> result;
+    const auto point = curve().point(u);
+    for (int i = 0; i < axis_count; ++i) put(point[static_cast<std::size_t>(i)], result, i);
+    return result;
   }
 
   template <class V>
@@ -134,7 +154,6 @@ class Measured {
 
   // Of a unit-speed curve: the part of r''' along r' is the square of the curvature, the rest lies across.
   [[nodiscard]] BasicToolBounds<Scalar> tool_bounds(Scalar from, Scalar to) const {
-    constexpr int parts = 4;
     const Scalar width = (to - from) / Scalar(parts);
     BasicToolBounds<Scalar> result{.first = Scalar(1)};
     for (int part = 0; part < parts; ++part) {
@@ -162,9 +181,9 @@ class Measured {
 
 /// The curve as a path. Errors: not_positive for a parameter range that is empty; not_finite for a curve that
 /// is not smooth or stands still somewhere, with the parameter at which it was found; unreachable where its
-/// length cannot be measured to 1e-9 of itself, with the part that is uncertain.
-template <Curve C>
-[[nodiscard]] Expected<Measured<C>> measured(const C& curve) {
+/// length cannot be measured to 1e-9 of itself in that many intervals, with the part that is uncertain.
+template <int Intervals = 64, Curve C>
+[[nodiscard]] Expected<Measured<C, Intervals>> measured(const C& curve) {
   using S = typename C::Scalar;
   const S end = curve.parameter_end();
   const auto refuse = [](ErrorCode code, S value, S bound) {
@@ -172,11 +191,10 @@ template <Curve C>
         Error{code, "parameter of a curve", static_cast<double>(value), static_cast<double>(bound)});
   };
   if (!(end > S(0)) || !std::isfinite(end)) return refuse(ErrorCode::not_positive, end, S(0));
-  constexpr int intervals = 64;
   const Travel<C> travel{curve};
   S uncertain = S(0), whole = S(0);
-  for (int i = 0; i < intervals; ++i) {
-    const S from = end * static_cast<S>(i) / S(intervals), to = end * static_cast<S>(i + 1) / S(intervals);
+  for (int i = 0; i < Intervals; ++i) {
+    const S from = end * static_cast<S>(i) / S(Intervals), to = end * static_cast<S>(i + 1) / S(Intervals);
     const S once = arc_length(travel, from, to), twice = arc_length(travel, from, to, 2);
     if (!std::isfinite(once) || !std::isfinite(twice) || !(twice > S(0)))
       return refuse(ErrorCode::not_finite, from, end);
@@ -185,7 +203,7 @@ template <Curve C>
   }
   constexpr S tolerance = std::max(S(1e-9), S(1e3) * std::numeric_limits<S>::epsilon());
   if (uncertain > tolerance * whole) return refuse(ErrorCode::unreachable, uncertain, tolerance * whole);
-  return Measured<C>(curve);
+  return Measured<C, Intervals>(curve);
 }
 
 }  // namespace cncplan::path

@@ -36,41 +36,6 @@ class LengthAsParameter {
   const P* path_;
 };
 
-/// A measured curve by its own parameter: no place of it has to be looked for by its length.
-template <Path P>
-class OwnParameter {
- public:
-  using Scalar = typename P::Scalar;
-  using Vector = typename P::Vector;
-
-  explicit OwnParameter(const P& path) : path_(&path) {}
-
-  [[nodiscard]] Scalar length() const { return path_->length(); }
-  [[nodiscard]] Scalar parameter_end() const { return path_->parameter_end(); }
-  [[nodiscard]] Vector position(Scalar u) const {
-    const auto point = path_->curve().point(u);
-    return Eigen::Map<const Vector>(point.data());
-  }
-  [[nodiscard]] Vector derivative(Scalar u) const {
-    return each(u, [](const auto& jet) { return jet.first; });
-  }
-  [[nodiscard]] Vector second_derivative(Scalar u) const {
-    return each(u, [](const auto& jet) { return jet.second; });
-  }
-  [[nodiscard]] Scalar length_at(Scalar u) const { return path_->length_at(u); }
-
- private:
-  template <class F>
-  [[nodiscard]] Vector each(Scalar u, F&& part) const {
-    Vector result;
-    const auto point = path_->curve().point(BasicJet<Scalar>(u, Scalar(1), Scalar(0), Scalar(0)));
-    for (int i = 0; i < Vector::RowsAtCompileTime; ++i) result[i] = part(point[static_cast<std::size_t>(i)]);
-    return result;
-  }
-
-  const P* path_;
-};
-
 /// A segment of any kinds as a `step::SteppablePath`: by the closed forms of the kind inside where it has
 /// them, else traced.
 template <class Segment>
@@ -117,25 +82,24 @@ class SteppableSegment {
   }
 
  private:
+  // A curve that has a parameter of its own is followed by that: no place is to be looked for by its length.
   template <class Kind>
-  static constexpr bool is_measured = requires(const Kind& path, Scalar u) {
-    path.curve().point(u);
+  static constexpr bool has_parameter = ParametricPath<Kind>&& requires(const Kind& path, Scalar u) {
     path.length_at(u);
   };
-  template <class Kind>
-  using ParameterOf = std::conditional_t<is_measured<Kind>, OwnParameter<Kind>, LengthAsParameter<Kind>>;
 
   template <class F>
   decltype(auto) with(F&& f) const {
     return segment_->visit([&](const auto& p) {
       using Kind = std::remove_cvref_t<decltype(p)>;
+      constexpr int pieces = 32;
       if constexpr (step::SteppablePath<Kind>) {
         return f(p);
+      } else if constexpr (has_parameter<Kind>) {
+        return f(step::TracedPath<Kind>(p, pieces));
       } else {
-        constexpr int pieces = 32;
-        using Curve = ParameterOf<Kind>;
-        const Curve curve(p);
-        return f(step::TracedPath<Curve>(curve, pieces));
+        const LengthAsParameter<Kind> curve(p);
+        return f(step::TracedPath<LengthAsParameter<Kind>>(curve, pieces));
       }
     });
   }
