@@ -63,11 +63,18 @@ class PathDistance {
 
  private:
   using Extended = long double;
-  using ExtendedSegment = cncplan::path::BasicSegment<Extended>;
+  using ExtendedSpline = cncplan::path::BasicSpline<Extended, 3>;
+  using ExtendedSegment = cncplan::path::BasicSegment<Extended, 3, ExtendedSpline>;
 
-  static ExtendedSegment extended(const cncplan::path::Segment<3>& segment) {
+  static ExtendedSegment extended(const ToolPath& segment) {
     using namespace cncplan;
     const auto wide = [](const Vector3& v) { return BasicVector3<Extended>(v.cast<Extended>()); };
+    if (const auto* spline = segment.as<path::Spline<3>>()) {
+      const auto& curve = spline->curve();
+      const auto& [start, second, third, end] = curve.controls();
+      return ExtendedSpline(path::BasicRationalCubic<Extended, 3>(
+          {wide(start), wide(second), wide(third), wide(end)}, curve.weights()[0], curve.weights()[1]));
+    }
     const path::Arc* const arc = segment.arc();
     if (arc == nullptr) return path::BasicLine<Extended>(wide(segment.start()), wide(segment.end()));
     return path::BasicArc<Extended>(path::ArcGeometry<Extended>{

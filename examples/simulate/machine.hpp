@@ -15,19 +15,21 @@ using support::MachineAxis;
 /// Up to three axes X Y Z, or up to six with others beside them; those that are not there stand still.
 template <int N>
 struct Mill : cncplan::Machine<N> {
-  using Block = cncplan::Block<N>;
+  using Block = cncplan::ProgramBlock<cncplan::Machine<N>>;
 };
 
 /// The same, driven along pieces of curves within a tolerance.
 template <int N>
 struct SmoothMill : Mill<N> {
-  using Block = cncplan::SmoothBlock<N>;
+  using Block = cncplan::plan::SmoothBlockOf<typename Mill<N>::Block>;
 };
+
+/// Where a program goes in space.
+using ToolPath = cncplan::path::Segment<3, cncplan::path::Spline<3>>;
 
 /// Two slides and a rotary table, programmed in X Y Z. Tool positions are the table's, its axis at X0 Y0.
 struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarMap> {
-  using Block =
-      cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarMap, cncplan::path::Segment<3>>>;
+  using Block = cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarMap, ToolPath>>;
   double smallest_radius = 1.0;  ///< mm; nothing nearer to the table's axis is driven
 };
 

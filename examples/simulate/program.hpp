@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
+#include "machine.hpp"
 
 namespace simulate {
 
@@ -16,7 +17,7 @@ struct Origin {
   cncplan::junction::Kind kind{};
   cncplan::Plane plane{};
   cncplan::Vector3 offset = cncplan::Vector3::Zero();  ///< machine = work + offset
-  cncplan::path::Segment<3> path{};                    ///< of the tool; of a row, straight between its ends
+  ToolPath path{};                                     ///< of the tool; of a row, straight between its ends
   double feed{};                                       ///< mm/s as programmed; of a rapid the rapid rate
   double length{};                                     ///< mm along the path
 };

@@ -224,7 +224,8 @@ class Run {
     bool programmed = trajectory_.path(block).exact();
     if constexpr (requires(const Block& b) { b.source; }) {
       const auto& path = trajectory_.program()[block].path;
-      programmed = programmed && (path.line() != nullptr || path.arc() != nullptr);
+      programmed = programmed && (path.line() != nullptr || path.arc() != nullptr ||
+                                  path.template as<cncplan::path::Spline<M::axis_count>>() != nullptr);
     }
     double& largest = programmed ? measures_.contour_error : measures_.deviation;
     largest = std::max(largest, distance);

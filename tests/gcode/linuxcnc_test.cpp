@@ -45,7 +45,7 @@ std::string ours(const std::string& program) {
     const auto* motion = std::get_if<gcode::Motion>(&item);
     if (motion == nullptr) return;
     const auto at = [motion](std::size_t i) { return motion->end[i] + motion->offset[i]; };
-    const char* const names[] = {"rapid", "feed", "arc", "arc"};
+    const char* const names[] = {"rapid", "feed", "arc", "arc", "spline"};
     steps.place(names[static_cast<int>(motion->kind)], {at(0), at(1), at(2)});
   });
   return steps.text() + (done ? std::string() : gcode::to_text("", done.error()));

@@ -21,8 +21,8 @@ inline constexpr int max_axes = 9;
 using Position = std::array<double, max_axes>;
 
 /// An arc comes with its radius (R) or with its centre (I J K): which centre belongs to R is a question of
-/// geometry, and not for the reader to answer.
-enum class MotionKind : std::uint8_t { rapid, line, arc_radius, arc_center };
+/// geometry, and not for the reader to answer. A spline comes as rational cubic Bezier pieces.
+enum class MotionKind : std::uint8_t { rapid, line, arc_radius, arc_center, spline };
 
 /// G94, G93 or G95. A motion under G95 comes out with the feed that its spindle speed makes, per minute.
 enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
@@ -30,6 +30,15 @@ enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
 /// How closely the path is kept: G64 within the tolerance, G61 exactly and without a stop where it is smooth,
 /// G61.1 with a stop at the end of every motion.
 enum class PathMode : std::uint8_t { continuous, exact_path, exact_stop };
+
+/// A control of a spline: the first and second coordinate of the plane, mm, and its weight, > 0.
+struct SplineControl {
+  double first{};
+  double second{};
+  double weight = 1.0;
+
+  friend bool operator==(const SplineControl&, const SplineControl&) = default;
+};
 
 /// One move. Positions are in work coordinates; the machine's are work + offset.
 struct Motion {
@@ -44,8 +53,9 @@ struct Motion {
   Position offset{};                 ///< G54..G59.3, G92 and tool length together
   double radius{};                   ///< arc_radius: R in mm; negative asks for the longer arc
   Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
-  bool probe{};                      ///< G38.2 to G38.5: the end is where it goes without contact
-  int extra_turns{};                 ///< whole turns more than the arc itself: P - 1
+  std::array<SplineControl, 2> controls{};  ///< spline: those between start and end, whose weights are 1
+  bool probe{};                             ///< G38.2 to G38.5: the end is where it goes without contact
+  int extra_turns{};                        ///< whole turns more than the arc itself: P - 1
   double tool_radius{};  ///< mm, under cutter compensation; > 0: the tool is to the left, < 0: right
   /// mm/s, degrees/s where only rotary axes move, 1/s under inverse time; none for rapids and before the
   /// first F

@@ -20,6 +20,7 @@
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/spindle.hpp"
+#include "cncplan/gcode/splines.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
@@ -60,8 +61,9 @@ class Reader {
   /// lines are only counted.
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
-    if (cycles_.busy())
-      return tl::unexpected(Diagnostic{{ErrorCode::unfinished, "canned cycle", 0.0, 0.0}, line_ + 1, 1});
+    if (busy())
+      return tl::unexpected(
+          Diagnostic{{ErrorCode::unfinished, "canned cycle or spline", 0.0, 0.0}, line_ + 1, 1});
     ++line_;
     if (!readable_) return tl::unexpected(Diagnostic{readable_.error(), line_, 1});
     if (finished_) return out;
@@ -71,13 +73,16 @@ class Reader {
   }
 
   /// Whether items of the last line are to come.
-  [[nodiscard]] bool busy() const { return cycles_.busy(); }
+  [[nodiscard]] bool busy() const { return cycles_.busy() || splines_.busy(); }
 
   /// The next of them, at most `max_items_per_line`.
   template <std::output_iterator<Item> Out>
   Out go_on(Out out) {
     const auto emit = emitter(out);
-    if (const auto step = cycles_.next()) drill(*step, emit);
+    if (splines_.busy())
+      bend(splines_.next(), emit);
+    else if (const auto step = cycles_.next())
+      drill(*step, emit);
     return out;
   }
 
@@ -87,8 +92,10 @@ class Reader {
   void recover(std::string_view text) {
     if (!readable_ || text.size() > max_line_length) return;
     block_.salvage(text, 0, dialect_.pass_through);
+    splines_.forget();
     const Letters axes = alphabet_.axes;
     modal_ = after(block_, modal_, dialect_.g18);
+    if (modal_.motion == code(5.3)) modal_.motion = no_code;
     if ((block_.lost() & bit('F')) != 0) modal_.needs_feed = false;
     const bool bare = modal_.motion == no_code && (block_.letters() & axes) != 0;
     if (bare || ((block_.lost() & bit('G')) != 0 && !block_.has(Group::motion))) modal_.motion = lost_code;
@@ -149,7 +156,7 @@ class Reader {
     if (!motion) return tl::unexpected(motion.error());
     if (auto ok = detail::check_compensation(block_, modal_, modal, alphabet_, *motion); !ok)
       return tl::unexpected(ok.error());
-    if (auto ok = check_state(modal, *motion); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_state(modal, *motion, modal_.motion); !ok) return tl::unexpected(ok.error());
     modal_ = modal;
     words_seen_ = true;
     out = execute(*motion, std::move(out));
@@ -232,6 +239,9 @@ class Reader {
       turn(motion, emit);
     } else if (is_cycle(motion)) {
       cycles_.begin(block_, modal_, dialect_, motion, position(), named_coordinates());
+    } else if (is_spline(motion) || is_nurbs(motion) || motion == code(5.3)) {
+      const Position to = target(splines_.open() ? splines_.start() : position());
+      if (!splines_.run(block_, modal_, motion, position(), to)) modal_.motion = no_code;
     } else if (motion != no_code) {
       straight(motion, non_modal == code(53) ? machine_target() : target(), emit);
     }
@@ -306,11 +316,14 @@ class Reader {
   }
 
   /// Where the axis words lead, in work coordinates.
-  [[nodiscard]] Position target() const {
+  [[nodiscard]] Position target() const { return target(position()); }
+
+  /// The same, with increments from a place.
+  [[nodiscard]] Position target(const Position& from) const {
     Position end = position();
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (const auto value = coordinate(i))
-        end[i] = place_.meet(i, modal_.incremental ? position()[i] + *value : *value);
+        end[i] = place_.meet(i, modal_.incremental ? from[i] + *value : *value);
     return end;
   }
 
@@ -348,7 +361,7 @@ class Reader {
 
   /// What the words alone do not tell: a feed per revolution needs a spindle that turns, a cycle its depth
   /// below R.
-  [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion) {
+  [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion, Code before) {
     const bool feeds = motion != no_code && motion != code(0);
     const double speed = block_.has('S') ? block_.number('S') : spindle_.speed.value_or(0.0);
     if (feeds && modal.feed_mode == FeedMode::per_revolution && !(speed > 0.0))
@@ -357,6 +370,7 @@ class Reader {
         dialect_.tools.size() == dialect_.tools.capacity() &&
         find_tool(static_cast<int>(block_.number('P'))) == nullptr)
       return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
+    if (auto ok = splines_.check(block_, modal, motion, before); !ok) return ok;
     return is_cycle(motion) ? cycles_.check(block_, modal, dialect_, motion, position())
                             : Expected<void, Diagnostic>();
   }
@@ -426,6 +440,31 @@ class Reader {
       }
       motion.column = block_.first_column(bits("IJK"));
     }
+    place_.arrive(motion.end);
+    if (doubtful_ == 0) emit(motion);
+  }
+
+  /// A piece of a spline, from where the program stands; a feed move to its start where that is elsewhere.
+  template <class Emit>
+  void bend(const SplinePiece& piece, Emit& emit) {
+    const auto [first, second, third] = axes(modal_.plane);
+    const auto at = [&, i = static_cast<std::size_t>(first),
+                     k = static_cast<std::size_t>(second)](const SplineControl& control) {
+      Position place = position();
+      place[i] = place_.meet(i, control.first);
+      place[k] = place_.meet(k, control.second);
+      return place;
+    };
+    const auto& [from, one, two, to] = piece.controls;
+    constexpr double rounding = 1e-9;  // mm; from piece to piece
+    const double gap = std::hypot(from.first - position()[static_cast<std::size_t>(first)],
+                                  from.second - position()[static_cast<std::size_t>(second)]);
+    if (gap > rounding) straight(code(1), at(from), emit);
+    Motion motion = motion_to(at(to));
+    motion.kind = MotionKind::spline;
+    motion.feed = feed(motion);
+    motion.controls = {one, two};
+    motion.column = std::max(1, block_.first_column(block_.letters()));
     place_.arrive(motion.end);
     if (doubtful_ == 0) emit(motion);
   }
@@ -509,6 +548,7 @@ class Reader {
   Modal modal_;
   WorkCoordinates place_;
   Cycles cycles_;
+  Splines splines_;
   Spindle spindle_;
   std::uint32_t named_{};  ///< groups whose codes have been named as without effect
   bool probe_told_{};

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/plane.hpp"
@@ -44,6 +45,12 @@ struct Alphabet {
 };
 
 [[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }
+
+/// G5, G5.1: a spline by one line.
+[[nodiscard]] constexpr bool is_spline(Code motion) { return motion == code(5) || motion == code(5.1); }
+
+/// G5.2, G6.2: a control of a NURBS each line.
+[[nodiscard]] constexpr bool is_nurbs(Code motion) { return motion == code(5.2) || motion == code(6.2); }
 
 /// G38.2 to G38.5.
 [[nodiscard]] constexpr bool is_probe(Code motion) { return motion >= code(38.2) && motion <= code(38.5); }
@@ -155,6 +162,30 @@ using Check = Expected<void, Diagnostic>;
     for (const int axis : {first, second})
       if (const char letter = center_letter(axis); !block.has(letter)) return missing(name(letter), column);
   return whole(block, 'P', 1, max_turns);
+}
+
+/// Words of a spline. G5 and G5.1 are for the XY plane; a control of a NURBS names both coordinates of its
+/// plane or none.
+[[nodiscard]] inline Check check_spline(const Block& block, const Modal& modal, const Alphabet& alphabet,
+                                        Code motion, int column) {
+  const Diagnostic about{{ErrorCode::not_supported, "G", motion / 10.0, 0.0}, 0, column};
+  if (!alphabet.has_arcs || !alphabet.has_radius) return tl::unexpected(about);
+  const auto [first, second, third] = axes(modal.plane);
+  if (is_spline(motion)) {
+    if (modal.plane != Plane::xy) return conflict(about, "G", modal.plane == Plane::yz ? 19 : 18);
+    if (motion == code(5) && block.has('I') != block.has('J'))
+      return missing(block.has('I') ? "J" : "I", column);
+    if (motion == code(5.1) && !block.has('I') && !block.has('J')) return missing("I or J", column);
+    for (const char letter : {'P', 'Q'})
+      if (motion == code(5) && !block.has(letter)) return missing(name(letter), column);
+    return {};
+  }
+  for (const auto& [one, other] : {std::pair(first, second), std::pair(second, first)})
+    if (block.has("XYZ"[one]) && !block.has("XYZ"[other])) return missing(name("XYZ"[other]), column);
+  const char weight = motion == code(5.2) ? 'P' : 'R';
+  if (block.has(weight) && !(block.number(weight) > 0.0))
+    return tl::unexpected(block.error(ErrorCode::not_positive, weight));
+  return motion == code(5.2) ? whole(block, 'L', 1, max_count) : whole(block, 'P', 2, max_count);
 }
 
 /// Words of a canned cycle: R and the depth where it begins, Q of the pecks and P of a dwell; L, the number
@@ -301,7 +332,8 @@ using Check = Expected<void, Diagnostic>;
   } else if (const Word* passed = block.passed_g(); passed && requested == no_code && axis_words != 0) {
     return tl::unexpected(
         Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
-  } else if (requested != no_code || axis_words != 0 || (center_words != 0 && is_arc(modal.motion))) {
+  } else if (requested != no_code || axis_words != 0 ||
+             (center_words != 0 && (is_arc(modal.motion) || is_nurbs(modal.motion)))) {
     motion = modal.motion;
   }
   const int column =
@@ -321,6 +353,17 @@ using Check = Expected<void, Diagnostic>;
     if (auto ok = check_arc(block, modal, alphabet, column); !ok) return tl::unexpected(ok.error());
     const auto [first, second, third] = axes(modal.plane);
     taken = bit(center_letter(first)) | bit(center_letter(second)) | bits("PR");
+  } else if (is_spline(motion) || is_nurbs(motion)) {
+    if (auto ok = check_spline(block, modal, alphabet, motion, column); !ok)
+      return tl::unexpected(ok.error());
+    const auto [first, second, third] = axes(modal.plane);
+    used &= ~alphabet.axes | bit("XYZ"[first]) | bit("XYZ"[second]);
+    taken = motion == code(5)     ? bits("IJPQ")
+            : motion == code(5.1) ? bits("IJ")
+            : motion == code(5.2) ? bits("PL")
+                                  : bits("PQRK");
+  } else if (motion == code(5.3)) {
+    used &= ~alphabet.axes;
   } else if (is_cycle(motion)) {
     if (auto ok = check_cycle(block, modal, alphabet, motion != before, column); !ok)
       return tl::unexpected(ok.error());
@@ -333,12 +376,12 @@ using Check = Expected<void, Diagnostic>;
     if (auto ok = check_setting(block, alphabet.axes); !ok) return tl::unexpected(ok.error());
 
   if (is_probe(motion) && axis_words == 0) return missing("axis", column);
-  const bool feeds =
-      is_arc(motion) || is_cycle(motion) || ((motion == code(1) || is_probe(motion)) && axis_words != 0);
+  const bool feeds = is_arc(motion) || is_cycle(motion) || is_spline(motion) || is_nurbs(motion) ||
+                     ((motion == code(1) || is_probe(motion)) && axis_words != 0);
   if (feeds || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
   const bool signed_diameter = block.has(Group::compensation);
   for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
-    if ((used & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) &&
+    if ((used & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) && motion != code(5) &&
         block.code(Group::input_output) < code(67))  // M67, M68: any Q
       if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
   for (const char letter : {'N', 'T', 'H'})

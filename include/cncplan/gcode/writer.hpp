@@ -150,6 +150,9 @@ class Writer {
       if (!(std::abs(start - here) <= bound))
         return tl::unexpected(Error{ErrorCode::discontinuous, axis, start - here, bound});
     }
+    for (const SplineControl& control : motion.controls)
+      for (const double value : {control.first, control.second, control.weight})
+        if (auto ok = number(value, "control of a spline"); !ok) return ok;
     for (const double coordinate : motion.center)
       if (auto ok = number(coordinate, "centre"); !ok) return ok;
     if (auto ok = number(motion.radius, "R"); !ok) return ok;
@@ -202,7 +205,7 @@ class Writer {
   template <class Out>
   void move(const Motion& motion, Pen<Out>& pen) {
     const bool arc = motion.kind == MotionKind::arc_radius || motion.kind == MotionKind::arc_center;
-    if (!arc && motion.start == motion.end) return;
+    if (motion.kind < MotionKind::arc_radius && motion.start == motion.end) return;
     if (motion.offset != offset_) shift(motion.offset, pen);
     control_path(motion, pen);
     if (std::exchange(modal_.feed_mode, motion.feed_mode) != motion.feed_mode) {
@@ -212,6 +215,7 @@ class Writer {
     if (std::exchange(modal_.plane, motion.plane) != motion.plane)
       put(pen, "G", motion.plane == Plane::xy ? 17 : motion.plane == Plane::yz ? 19 : 18);
     if (motion.kind != MotionKind::rapid) feed(motion, pen);
+    if (motion.kind == MotionKind::spline) return spline(motion, pen);
     const Code wanted = motion.probe                       ? code(38.3)
                         : motion.kind == MotionKind::rapid ? code(0)
                         : motion.kind == MotionKind::line  ? code(1)
@@ -228,8 +232,34 @@ class Writer {
     if (motion.kind == MotionKind::arc_center)
       for (const int axis : {first, second}) put(pen, name(center_letter(axis)), motion.center[axis]);
     if (arc && motion.extra_turns > 0) put(pen, "P", motion.extra_turns + 1);
-    current_ = motion.end;
+    arrive(motion.end);
+  }
+
+  void arrive(const Position& end) {
+    current_ = end;
     for (std::size_t i = 0; i < axis_count(); ++i) machine_[i] = current_[i] + offset_[i];
+  }
+
+  /// A NURBS of four controls, which is the piece itself.
+  template <class Out>
+  void spline(const Motion& motion, Pen<Out>& pen) {
+    const auto [first, second, third] = axes(motion.plane);
+    pen.text(line_open_ ? " G5.2 P1 L4\n" : "G5.2 P1 L4\n");
+    line_open_ = false;
+    const auto control = [&, i = static_cast<std::size_t>(first),
+                          k = static_cast<std::size_t>(second)](const SplineControl& at) {
+      put_axis(i, at.first, 0.0, pen);
+      put_axis(k, at.second, 0.0, pen);
+      put(pen, "P", at.weight);
+      end_line(pen);
+    };
+    const auto& [one, two] = motion.controls;
+    control(one);
+    control(two);
+    control({motion.end[static_cast<std::size_t>(first)], motion.end[static_cast<std::size_t>(second)], 1.0});
+    pen.text("G5.3\n");
+    modal_.motion = no_code;
+    arrive(motion.end);
   }
 
   template <class Out>

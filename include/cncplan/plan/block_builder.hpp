@@ -16,6 +16,7 @@
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/mapped.hpp"
+#include "cncplan/path/spline.hpp"
 #include "cncplan/path/straight_in_joints.hpp"
 #include "cncplan/plan/machine.hpp"
 #include "cncplan/plan/machine_block.hpp"
@@ -25,18 +26,22 @@ namespace cncplan {
 
 namespace detail {
 
+/// What a program's motions go along: lines, arcs and pieces of splines.
+template <std::floating_point S, int N>
+using ProgrammedPath = path::BasicSegment<S, N, path::BasicSpline<S, N>>;
+template <class Map>
+using MappedPath = path::Mapped<Map, ProgrammedPath<typename Map::Scalar, path::coordinate_count<Map>>>;
+
 template <MachineModel M>
 struct ProgramBlockOf {
-  using type = BasicBlock<typename M::Scalar, M::axis_count>;
+  using type =
+      BasicBlock<typename M::Scalar, M::axis_count, path::BasicSpline<typename M::Scalar, M::axis_count>>;
 };
-template <class Map>
-using ProgrammedPath = path::BasicSegment<typename Map::Scalar, path::coordinate_count<Map>>;
 template <MachineModel M>
   requires MappedModel<M>
 struct ProgramBlockOf<M> {
   using Map = std::remove_cvref_t<decltype(M::map)>;
-  using type = BasicBlock<typename M::Scalar, M::axis_count, path::Mapped<Map, ProgrammedPath<Map>>,
-                          path::StraightInJoints<Map>>;
+  using type = BasicBlock<typename M::Scalar, M::axis_count, MappedPath<Map>, path::StraightInJoints<Map>>;
 };
 
 }  // namespace detail
@@ -100,8 +105,8 @@ class BlockBuilder {
   }
 
   /// The block of an item; none for a word or a warning, or for a stop before anything. Errors, at their
-  /// place: those of arcs; not_supported for an arc on a machine whose first axes are not X Y Z; unreachable
-  /// for a motion of an axis that the machine lacks.
+  /// place: those of arcs and of `path::spline`; not_supported for one of them on a machine whose first axes
+  /// are not X Y Z; unreachable for a motion of an axis that the machine lacks.
   [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> take(const gcode::Item& item) {
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
       auto made = block(*motion);
@@ -130,7 +135,7 @@ class BlockBuilder {
  private:
   static constexpr auto coordinates = static_cast<std::size_t>(program_coordinates<M>);
   using Coordinates = VectorN<Scalar, program_coordinates<M>>;
-  using Programmed = path::BasicSegment<Scalar, program_coordinates<M>>;
+  using Programmed = detail::ProgrammedPath<Scalar, program_coordinates<M>>;
 
   [[nodiscard]] Coordinates coordinates_of(const gcode::Position& place) const {
     Coordinates result = Coordinates::Zero();
@@ -154,12 +159,12 @@ class BlockBuilder {
     return work;
   }
 
-  // What the machine lacks must stand still, and an arc moves both axes of its plane wherever it ends.
+  // What the machine lacks must stand still; a curve moves both axes of its plane wherever it ends.
   [[nodiscard]] Expected<void> check_axes(const gcode::Motion& motion) const {
     for (std::size_t i = 0; i < word_count_; ++i) {
       const bool ours = std::find(words_.begin(), words_.end(), static_cast<int>(i)) != words_.end();
       const bool in_plane =
-          is_arc(motion) &&
+          is_curve(motion) &&
           (space_[static_cast<std::size_t>(axes(motion.plane).first)] == static_cast<int>(i) ||
            space_[static_cast<std::size_t>(axes(motion.plane).second)] == static_cast<int>(i));
       if (!ours && (in_plane || motion.end[i] != motion.start[i]))
@@ -224,10 +229,12 @@ class BlockBuilder {
   [[nodiscard]] Expected<Programmed> programmed_path(const gcode::Motion& motion) const {
     const Coordinates start = coordinates_of(machine_place(motion.start, motion.offset)),
                       end = coordinates_of(machine_place(motion.end, motion.offset));
-    if (!is_arc(motion)) return Programmed(line(motion, start, end));
+    if (!is_curve(motion)) return Programmed(line(motion, start, end));
     if (!space_first())
-      return tl::unexpected(Error{ErrorCode::not_supported, "arc on a machine whose first axes are not X Y Z",
+      return tl::unexpected(Error{ErrorCode::not_supported,
+                                  "arc or spline on a machine whose first axes are not X Y Z",
                                   static_cast<double>(M::axis_count), 3.0});
+    if (motion.kind == gcode::MotionKind::spline) return spline(motion, start, end);
     const BasicVector3<Scalar> a = in_space(motion.start, motion.offset),
                                b = in_space(motion.end, motion.offset);
     const BasicVector3<Scalar> offset = in_space({}, motion.offset);
@@ -245,6 +252,24 @@ class BlockBuilder {
       return Programmed(path::BasicArcAlong<Scalar, program_coordinates<M>>(*arc_in_space, start, end));
   }
 
+  // A straight piece is a line: its parameter may stand still where the line does not.
+  [[nodiscard]] Expected<Programmed> spline(const gcode::Motion& motion, const Coordinates& start,
+                                            const Coordinates& end) const {
+    const auto [first, second, third] = axes(motion.plane);
+    const auto control = [&, i = first, k = second](const gcode::SplineControl& in_plane) {
+      Coordinates point = start;
+      point[i] = static_cast<Scalar>(in_plane.first + motion.offset[static_cast<std::size_t>(space_[i])]);
+      point[k] = static_cast<Scalar>(in_plane.second + motion.offset[static_cast<std::size_t>(space_[k])]);
+      return point;
+    };
+    const auto& [one, two] = motion.controls;
+    const path::BasicRationalCubic<Scalar, program_coordinates<M>> curve(
+        {start, control(one), control(two), end}, static_cast<Scalar>(one.weight),
+        static_cast<Scalar>(two.weight));
+    if (path::is_straight(curve)) return Programmed(line(motion, start, end));
+    return path::spline(curve).map([](const auto& piece) { return Programmed(piece); });
+  }
+
   // The field's rule for what a feed counts: the way of X Y Z where they move, else that of the other linear
   // axes, else that of the rotary ones.
   [[nodiscard]] path::BasicLine<Scalar, program_coordinates<M>> line(const gcode::Motion& motion,
@@ -260,8 +285,8 @@ class BlockBuilder {
     return {start, end, std::sqrt(linear_sq > Scalar(0) ? linear_sq : rotary_sq), Scalar(0)};
   }
 
-  static bool is_arc(const gcode::Motion& motion) {
-    return motion.kind == gcode::MotionKind::arc_radius || motion.kind == gcode::MotionKind::arc_center;
+  static bool is_curve(const gcode::Motion& motion) {
+    return motion.kind != gcode::MotionKind::rapid && motion.kind != gcode::MotionKind::line;
   }
 
   [[nodiscard]] bool space_first() const {
