@@ -53,7 +53,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
       "and direction edges at their exact times.",
       "cncplan_simulate");
   app.option_defaults()->always_capture_default();
-  app.add_option("PROGRAM", options.program, "G-code file")->required();
+  app.add_option("PROGRAM", options.program, "G-code file, - for standard input")->required();
   app.add_option("--vmax", options.limits.velocity, "speed limit along the path, mm/s")
       ->check(support::positive());
   app.add_option("--amax", options.limits.acceleration, "acceleration limit, mm/s^2")

@@ -1,6 +1,7 @@
 // What is wrong with a program: all of it, as far as a limit.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -17,16 +18,19 @@ struct Problem {
   std::string kind;
   std::string text;
   std::string file{};  ///< of a subprogram that was called; else empty
+
+  friend bool operator==(const Problem&, const Problem&) = default;
 };
 
 class Problems {
  public:
   Problems(std::string file, std::size_t most) : file_(std::move(file)), most_(most) {}
 
+  /// What a loop meets in every pass is told once.
   void add(Problem problem) {
-    if (!has_room()) return;
     problem.file = called_;
-    found_.push_back(std::move(problem));
+    const bool told = std::find(found_.begin(), found_.end(), problem) != found_.end();
+    if (has_room() && !told) found_.push_back(std::move(problem));
   }
   /// The file that is being read where it is not the program itself; else empty.
   void stand_in(std::string_view called) { called_ = called; }

@@ -8,7 +8,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -71,7 +73,7 @@ class Builder {
  private:
   static constexpr int coordinates = M::axis_count;
   using Plain = cncplan::Machine<coordinates>;
-  using Read = cncplan::Block<coordinates>;
+  using Read = cncplan::ProgramBlock<Plain>;
 
   // What reads programs: axes without limits; a table's programs name X Y Z.
   static Plain plain(const M& machine) {
@@ -151,10 +153,20 @@ class Builder {
         origin.path = block.path;
       else if (const auto* arc = block.path.arc())
         origin.path = arc->arc();
+      else if (const auto* spline = block.path.template as<cncplan::path::Spline<coordinates>>())
+        origin.path = in_space(*spline);
       else
         origin.path = Line<3>(block.path.start().template head<3>(), block.path.end().template head<3>());
       return add(block);
     }
+  }
+
+  static cncplan::path::Spline<3> in_space(const cncplan::path::Spline<coordinates>& spline) {
+    cncplan::path::RationalCubic<3>::Controls controls;
+    for (std::size_t i = 0; i < controls.size(); ++i)
+      controls[i] = spline.curve().controls()[i].template head<3>();
+    const auto [second, third] = spline.curve().weights();
+    return cncplan::path::Spline<3>(cncplan::path::RationalCubic<3>(controls, second, third));
   }
 
   bool add(const typename M::Block& block) {
@@ -186,9 +198,9 @@ class Builder {
       const double radius = std::hypot(at.x(), at.y());
       if (!(radius >= machine_.smallest_radius)) return refuse_radius(radius, block.line, 1);
       using cncplan::kinematics::PolarMap;
-      const cncplan::path::Part<cncplan::path::Segment<3>> here(block.path, 0.0, 0.0);
-      add(copy(block, cncplan::plan::TablePath<PolarMap, cncplan::path::Segment<3>>(
-                          PolarMap{{at.x(), at.y(), table_}}, here)));
+      const cncplan::path::Part<ToolPath> here(block.path, 0.0, 0.0);
+      add(copy(block,
+               cncplan::plan::TablePath<PolarMap, ToolPath>(PolarMap{{at.x(), at.y(), table_}}, here)));
     } else {
       add(copy(block, *block.path.line()));
     }
@@ -248,9 +260,14 @@ template <class M>
 [[nodiscard]] Program<M> read_program(const Options& options, const support::Machine& file, const M& machine,
                                       Problems& problems) {
   namespace gcode = cncplan::gcode;
-  std::ifstream stream(options.program, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(options.program))
+  std::ifstream file_stream;
+  const bool piped = options.program == "-";
+  if (!piped) file_stream.open(options.program, std::ios::binary);
+  if (!piped && (!file_stream || std::filesystem::is_directory(options.program)))
     throw support::Failure(support::Exit::bad_input, fmt::format("{}: cannot be read", options.program));
+  std::stringstream whole;  // of standard input, which subprograms cannot go back in
+  if (piped) whole << std::cin.rdbuf();
+  std::istream& stream = piped ? static_cast<std::istream&>(whole) : file_stream;
   Program<M> program;
   program.file = options.program;
   gcode::Reader reader(file.dialect);

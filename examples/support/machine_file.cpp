@@ -184,7 +184,18 @@ void read_tools(const Section& section, Machine& machine) {
       section.refuse(node, fmt::format("'{}' is not a tool number", digits));
     for (const gcode::Tool& tool : machine.dialect.tools)
       if (tool.number == number) section.refuse(node, fmt::format("tool {} is there twice", number));
-    machine.dialect.tools.push_back({number, section.number(node, "tool length") * machine.unit});
+    gcode::Tool tool{.number = number};
+    if (node.is_table()) {
+      const Section of_tool = section.section(digits, node);
+      of_tool.allow({"length", "diameter"});
+      if (const toml::node* length = of_tool.find("length"))
+        tool.length = of_tool.number(*length, "tool length") * machine.unit;
+      if (const toml::node* diameter = of_tool.find("diameter"))
+        tool.diameter = of_tool.number(*diameter, "tool diameter") * machine.unit;
+    } else {
+      tool.length = section.number(node, "tool length") * machine.unit;
+    }
+    machine.dialect.tools.push_back(tool);
   }
 }
 
