@@ -32,6 +32,7 @@ template <class V>
   fill(point.position, tool.position, axes.position);
   fill(point.first, tool.first, axes.first);
   fill(point.second, tool.second, axes.second);
+  fill(point.third, tool.third, axes.third);
   return point;
 }
 

@@ -1,6 +1,7 @@
 // Why a planned motion is no faster at each place.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -21,10 +22,12 @@ enum class LimitedBy : std::uint8_t {
   jerk,           ///< it speeds up with changing acceleration
   junction,       ///< it slows down towards the end of a block
   look_ahead,     ///< it slows down towards a lower feed or a bend, or is held below its feed
+  tolerance,      ///< a bend that smoothing makes: it alone takes more than half of a limit
 };
 
-inline constexpr std::array<std::string_view, 8> limited_by_names{
-    "rest", "feed", "axis velocity", "curvature", "acceleration", "jerk", "junction", "look-ahead"};
+inline constexpr std::array<std::string_view, 9> limited_by_names{
+    "rest", "feed",     "axis velocity", "curvature", "acceleration",
+    "jerk", "junction", "look-ahead",    "tolerance"};
 
 namespace detail {
 
@@ -47,6 +50,41 @@ template <class T>
   return path.second.norm() > 0.0 ? LimitedBy::curvature : LimitedBy::look_ahead;
 }
 
+// Whether a block's path is bent by smoothing.
+template <class T>
+[[nodiscard]] bool smoothed(const T& trajectory, std::size_t block) {
+  if (!trajectory.path(block).exact()) return true;
+  const auto& made = trajectory.program()[block];
+  if constexpr (requires { made.source; })
+    return made.path.line() == nullptr && made.path.arc() == nullptr;
+  else
+    return false;
+}
+
+// The largest share that the tool's or an axis' acceleration or jerk takes of its limit.
+template <class M, class V>
+[[nodiscard]] double share_of_limits(const M& machine, const cncplan::AxisMotion<V>& axes) {
+  const auto tool = cncplan::tool_axes(machine);
+  double share = std::max(cncplan::in_space(axes.acceleration, tool).norm() / machine.limits.acceleration,
+                          cncplan::in_space(axes.jerk, tool).norm() / machine.limits.jerk);
+  for (int i = 0; i < axes.acceleration.size(); ++i) {
+    const auto& axis = machine.axes[static_cast<std::size_t>(i)];
+    share = std::max({share, std::abs(axes.acceleration[i]) / cncplan::least_acceleration(axis),
+                      std::abs(axes.jerk[i]) / axis.jerk});
+  }
+  return share;
+}
+
+// Half-way through a phase, by what the bend alone takes at that speed.
+template <class T>
+[[nodiscard]] bool limited_by_tolerance(const T& trajectory, const typename T::Phase& at) {
+  if (!smoothed(trajectory, at.block)) return false;
+  const auto half = at.phase.at(at.phase.duration / 2);
+  const auto bend = cncplan::motion(trajectory.path(at.block).point_at(half.position),
+                                    cncplan::State{half.position, half.velocity, 0.0, 0.0});
+  return share_of_limits(trajectory.machine(), bend) > 0.5;
+}
+
 }  // namespace detail
 
 /// Of each phase of a trajectory.
@@ -57,7 +95,9 @@ template <class T>
   for (std::size_t i = phases.size(); i-- > 0;) {
     const auto& [phase, block] = phases[i];
     const auto change = [](const cncplan::Phase& p) { return p.at(p.duration).velocity - p.velocity; };
-    if (phase.acceleration == 0.0 && phase.jerk == 0.0) {
+    if (detail::limited_by_tolerance(trajectory, phases[i])) {
+      result[i] = LimitedBy::tolerance;
+    } else if (phase.acceleration == 0.0 && phase.jerk == 0.0) {
       result[i] = detail::at_constant_speed(trajectory, phases[i]);
     } else if (!(change(phase) < 0.0)) {
       result[i] = phase.jerk != 0.0 ? LimitedBy::jerk : LimitedBy::acceleration;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,20 @@ struct Place {
   int line{};
   cncplan::junction::Kind kind{};
   cncplan::Vector3 offset = cncplan::Vector3::Zero();
+};
+
+/// States at instants, from the start to the end.
+struct SampleData {
+  double period{};  ///< s
+  std::vector<float> velocity, acceleration, jerk, wanted;
+  std::vector<double> travelled;  ///< mm from the program's start
+  std::vector<std::uint32_t> line, offset;
+  std::vector<cncplan::junction::Kind> kind;
+  std::vector<LimitedBy> limited_by;
+  std::vector<float> axes;  ///< position, velocity, acceleration and jerk of the channels
+
+  /// Bytes of one instant.
+  [[nodiscard]] static std::size_t size(std::size_t channels) { return 34 + 16 * channels; }
 };
 
 /// Phases drive blocks; the path of a block is made of pieces, straight ones with both ends, curved ones with
@@ -51,9 +66,17 @@ struct MotionData {
   std::vector<double> offsets;  ///< X, Y, Z each
   std::size_t channels = 3;
   double duration{};
-  double end_length{};   ///< mm
-  bool sampled = false;  ///< too long to be kept whole: straight lines from instant to instant
+  double end_length{};                ///< mm
+  std::optional<SampleData> samples;  ///< in place of all columns above where these would be too long
+
+  /// Bytes of its columns.
+  [[nodiscard]] std::size_t size() const {
+    return 45 * time.size() + 29 * line.size() + 9 * length.size() + 8 * points.size();
+  }
 };
+
+/// Bytes that a plan's columns may take.
+inline constexpr std::size_t most_bytes = 9'000'000;
 
 namespace detail {
 
@@ -108,17 +131,20 @@ void add_pieces(MotionData& data, double from, double to, const At& at, int dept
     put(data, *values);
 }
 
-inline void add_block(MotionData& data, const Place& place, double start, double wanted) {
-  const auto& o = place.offset;
-  const std::size_t known = data.offsets.size() / 3;
-  if (known == 0 || !std::equal(o.begin(), o.end(), data.offsets.end() - 3))
+// Of a place in the text, the number of its offset.
+inline std::uint32_t offset_index(MotionData& data, const cncplan::Vector3& o) {
+  if (data.offsets.empty() || !std::equal(o.begin(), o.end(), data.offsets.end() - 3))
     data.offsets.insert(data.offsets.end(), o.begin(), o.end());
+  return static_cast<std::uint32_t>(data.offsets.size() / 3 - 1);
+}
+
+inline void add_block(MotionData& data, const Place& place, double start, double wanted) {
   data.start.push_back(start);
   data.wanted.push_back(wanted);
   data.first_piece.push_back(static_cast<std::uint32_t>(data.length.size()));
   data.line.push_back(static_cast<std::uint32_t>(std::max(place.line, 0)));
   data.kind.push_back(place.kind);
-  data.offset.push_back(static_cast<std::uint32_t>(data.offsets.size() / 3 - 1));
+  data.offset.push_back(offset_index(data, place.offset));
 }
 
 template <class T>
@@ -151,38 +177,34 @@ void add_whole(MotionData& data, const T& trajectory, const ChannelsAt& channels
 }
 
 template <class T, class ChannelsAt, class PlaceOf>
-void add_samples(MotionData& data, const T& trajectory, std::size_t count, const ChannelsAt& channels_at,
+void add_samples(MotionData& data, const T& trajectory, const ChannelsAt& channels_at,
                  const PlaceOf& place_of) {
+  const std::size_t count = most_bytes / SampleData::size(data.channels);
+  SampleData& samples = data.samples.emplace();
+  samples.period = data.duration / static_cast<double>(count);
   const auto limited = limited_by(trajectory);
-  const double period = data.duration / static_cast<double>(count);
-  const auto position_at = [&](const typename T::SetPoint& p) {
-    const double within = p.along.position - trajectory.start_length(p.block);
-    return channels_at(p.block, within).position;
-  };
   std::size_t phase = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto here = trajectory.at(period * static_cast<double>(k));
-    const auto next = trajectory.at(period * static_cast<double>(k + 1));
+  for (std::size_t k = 0; k <= count; ++k) {
+    const auto here = trajectory.at(samples.period * static_cast<double>(k));
     while (phase + 1 < limited.size() && trajectory.phases()[phase + 1].phase.time <= here.time) ++phase;
-    add_block(data, place_of(here.block), here.along.position, wanted_speed(trajectory, here.block));
-    data.length.push_back(std::max(next.along.position - here.along.position, 0.0));
-    data.curved.push_back(0);
-    put(data, position_at(here));
-    put(data, position_at(next));
-    data.time.push_back(here.time);
-    data.within.push_back(0.0);
-    data.velocity.push_back(here.along.velocity);
-    data.acceleration.push_back(here.along.acceleration);
-    data.jerk.push_back(here.along.jerk);
-    data.block.push_back(static_cast<std::uint32_t>(k));
-    data.limited_by.push_back(limited[phase]);
+    const Place place = place_of(here.block);
+    samples.velocity.push_back(static_cast<float>(here.along.velocity));
+    samples.acceleration.push_back(static_cast<float>(here.along.acceleration));
+    samples.jerk.push_back(static_cast<float>(here.along.jerk));
+    samples.wanted.push_back(static_cast<float>(wanted_speed(trajectory, here.block)));
+    samples.travelled.push_back(here.along.position);
+    samples.line.push_back(static_cast<std::uint32_t>(std::max(place.line, 0)));
+    samples.offset.push_back(offset_index(data, place.offset));
+    samples.kind.push_back(place.kind);
+    samples.limited_by.push_back(limited[phase]);
+    const double within = here.along.position - trajectory.start_length(here.block);
+    const auto axes = cncplan::motion(channels_at(here.block, within), here.along);
+    for (const Channels* values : {&axes.position, &axes.velocity, &axes.acceleration, &axes.jerk})
+      for (const double value : *values) samples.axes.push_back(static_cast<float>(value));
   }
 }
 
 }  // namespace detail
-
-/// Phases and blocks that are kept whole, and the instants that a longer program is reduced to.
-inline constexpr std::size_t most_phases = 400000;
 
 /// The columns of a trajectory. channels_at(number of a block, s): the channels and their derivatives by
 /// length; place_of(block index): its place in the text.
@@ -194,11 +216,13 @@ template <class T, class ChannelsAt, class PlaceOf>
   data.end_length = trajectory.length();
   if (!trajectory.program().empty())
     data.channels = static_cast<std::size_t>(channels_at(0, 0.0).position.size());
-  data.sampled = trajectory.phases().size() > most_phases || trajectory.program().size() > most_phases;
-  if (data.sampled)
-    detail::add_samples(data, trajectory, most_phases / 2, channels_at, place_of);
-  else
-    detail::add_whole(data, trajectory, channels_at, place_of);
+  const MotionData empty = data;
+  const bool long_at_sight = 45 * trajectory.phases().size() > most_bytes;
+  if (!long_at_sight) detail::add_whole(data, trajectory, channels_at, place_of);
+  if (long_at_sight || data.size() > most_bytes) {
+    data = empty;
+    detail::add_samples(data, trajectory, channels_at, place_of);
+  }
   data.first_piece.push_back(static_cast<std::uint32_t>(data.length.size()));
   return data;
 }

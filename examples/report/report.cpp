@@ -29,30 +29,51 @@ Json column(const std::vector<T>& values) {
   return base64(std::as_bytes(std::span(values)));
 }
 
+Json to_json(const SampleData& samples) {
+  return {{"period", samples.period},
+          {"velocity", column(samples.velocity)},
+          {"acceleration", column(samples.acceleration)},
+          {"jerk", column(samples.jerk)},
+          {"wanted", column(samples.wanted)},
+          {"travelled", column(samples.travelled)},
+          {"line", column(samples.line)},
+          {"offset", column(samples.offset)},
+          {"kind", column(samples.kind)},
+          {"limitedBy", column(samples.limited_by)},
+          {"axes", column(samples.axes)}};
+}
+
 Json to_json(const Plan& plan) {
   const MotionData& m = plan.motion;
-  return {{"name", to_utf8(plan.name)},
-          {"duration", m.duration},
-          {"length", m.end_length},
-          {"channels", m.channels},
-          {"sampled", m.sampled},
-          {"time", column(m.time)},
-          {"within", column(m.within)},
-          {"velocity", column(m.velocity)},
-          {"acceleration", column(m.acceleration)},
-          {"jerk", column(m.jerk)},
-          {"block", column(m.block)},
-          {"limitedBy", column(m.limited_by)},
-          {"blockStart", column(m.start)},
-          {"blockWanted", column(m.wanted)},
-          {"blockFirstPiece", column(m.first_piece)},
-          {"blockLine", column(m.line)},
-          {"blockKind", column(m.kind)},
-          {"blockOffset", column(m.offset)},
-          {"pieceLength", column(m.length)},
-          {"pieceCurved", column(m.curved)},
-          {"points", column(m.points)},
-          {"offsets", m.offsets}};
+  Json json{{"name", to_utf8(plan.name)},
+            {"duration", m.duration},
+            {"length", m.end_length},
+            {"channels", m.channels},
+            {"offsets", m.offsets},
+            {"deviation",
+             {{"period", plan.deviation.period},
+              {"tolerance", plan.deviation.tolerance},
+              {"vectors", column(plan.deviation.vectors)}}}};
+  if (m.samples)
+    json["samples"] = to_json(*m.samples);
+  else
+    json.update({{"time", column(m.time)},
+                 {"within", column(m.within)},
+                 {"velocity", column(m.velocity)},
+                 {"acceleration", column(m.acceleration)},
+                 {"jerk", column(m.jerk)},
+                 {"block", column(m.block)},
+                 {"limitedBy", column(m.limited_by)},
+                 {"blockStart", column(m.start)},
+                 {"blockWanted", column(m.wanted)},
+                 {"blockFirstPiece", column(m.first_piece)},
+                 {"blockLine", column(m.line)},
+                 {"blockKind", column(m.kind)},
+                 {"blockOffset", column(m.offset)},
+                 {"pieceLength", column(m.length)},
+                 {"pieceCurved", column(m.curved)},
+                 {"points", column(m.points)}});
+  return json;
 }
 
 Json to_json(const cncplan::Limits& limits) {  // an infinite one becomes null
@@ -114,6 +135,7 @@ std::string data_of(const Report& report) {
     return Json{{"time", mark.time}, {"text", to_utf8(mark.text)}};
   });
   json["drawings"] = array_of(report.drawings, [](const Drawing& drawing) { return to_json(drawing); });
+  json["live"] = report.live;
   json["plans"] = array_of(report.plans, [](const Plan& plan) { return to_json(plan); });
   return json.dump();
 }

@@ -34,9 +34,17 @@ struct Drawing {
   std::vector<cncplan::Vector3> points;  ///< ends of lines, two by two
 };
 
+/// From the programmed path to the driven one, at instants from the start to the end.
+struct Deviation {
+  double period{};             ///< s
+  double tolerance{};          ///< mm; 0: not one for all
+  std::vector<float> vectors;  ///< X, Y, Z each, mm; empty where the programmed path is driven
+};
+
 struct Plan {
   std::string name;
   MotionData motion;
+  Deviation deviation{};
 };
 
 struct Report {
@@ -50,6 +58,7 @@ struct Report {
   std::vector<Mark> marks;
   std::vector<Drawing> drawings;
   std::vector<Plan> plans;  ///< of the same text; the first one is shown first
+  bool live = false;        ///< the page is served, and asks the program that runs for its set points
 };
 
 /// Refuses where the build had no libraries to make the page of. Throws `Failure`.

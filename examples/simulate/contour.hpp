@@ -45,7 +45,10 @@ class TaylorFollower {
 /// the nearest parameter by Newton's method, from a guess that is close.
 class PathDistance {
  public:
-  double operator()(const Sample& sample) {
+  double operator()(const Sample& sample) { return gap(sample).norm(); }
+
+  /// From the programmed path to the sample, mm.
+  cncplan::Vector3 gap(const Sample& sample) {
     using cncplan::BasicVector3;
     if (sample.motion != motion_) exact_ = extended(sample.motion->path);
     motion_ = sample.motion;
@@ -58,7 +61,7 @@ class PathDistance {
       if (!(slope > 0.0L)) break;
       u = std::clamp(u - gap.dot(at.first) / slope, 0.0L, exact_.parameter_end());
     }
-    return static_cast<double>((exact_.position(u) - point).norm());
+    return (point - exact_.position(u)).cast<double>();
   }
 
  private:

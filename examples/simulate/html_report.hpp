@@ -1,11 +1,17 @@
 // A run as the report that a browser shows.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
+#include "contour.hpp"
 #include "events.hpp"
 #include "machine.hpp"
 #include "measures.hpp"
@@ -53,6 +59,43 @@ template <class M, class Trajectory>
   });
 }
 
+/// How far the driven path is from the programmed one; nothing where that is driven.
+template <class M, class Trajectory>
+[[nodiscard]] report::Deviation deviation_of(const Options& options, const Program<M>& program,
+                                             const Trajectory& trajectory) {
+  report::Deviation result;
+  if (!(options.tolerance > 0.0) || !(trajectory.duration() > 0.0)) return result;
+  constexpr double shortest = 0.0005, most = 60000;
+  const double count = std::ceil(std::min(most, trajectory.duration() / shortest));
+  result.period = trajectory.duration() / count;
+  const bool one = std::none_of(program.blocks.begin(), program.blocks.end(),
+                                [](const auto& block) { return block.tolerance.has_value(); });
+  result.tolerance = one ? options.tolerance : 0.0;
+  std::vector<double> motion_start(program.motions.size());
+  for (std::size_t i = program.blocks.size(); i-- > 0;)
+    motion_start[program.motion_of[i]] = trajectory.start_length(i);
+  PathDistance distance;
+  Sample sample;
+  for (double k = 0.0; k <= count; ++k) {
+    const auto point = trajectory.at(k * result.period);
+    const std::size_t motion = program.motion_of[point.block];
+    sample.motion = &program.motions[motion];
+    sample.position = tool_at(trajectory.machine(), point);
+    sample.within = point.along.position - motion_start[motion];
+    for (const double gap : distance.gap(sample)) result.vectors.push_back(static_cast<float>(gap));
+  }
+  return result;
+}
+
+/// A run as one of the plans of a report.
+template <class M, class Trajectory>
+[[nodiscard]] report::Plan plan_of(const Options& options, const support::Machine& file,
+                                   const Program<M>& program, const Trajectory& trajectory) {
+  const std::string name =
+      options.tolerance > 0.0 ? fmt::format("tolerance {} mm", options.tolerance) : std::string("exact path");
+  return {name, motion_of(file, program, trajectory), deviation_of(options, program, trajectory)};
+}
+
 /// What there is to be seen of a run.
 template <class M, class Trajectory>
 [[nodiscard]] report::Report html_report(const Options& options, const support::Machine& file,
@@ -72,7 +115,7 @@ template <class M, class Trajectory>
   if (options.events)
     for (const Event& event : read_events(*options.events))
       result.marks.push_back({event.time, event_text(event)});
-  result.plans.push_back({"plan", motion_of(file, program, trajectory)});
+  result.plans.push_back(plan_of(options, file, program, trajectory));
   return result;
 }
 

@@ -3,6 +3,7 @@
 Values at the cursor are compared with the rows of --samples, which the page has never seen."""
 
 import csv
+import json
 import os
 import random
 import re
@@ -34,8 +35,9 @@ class Run:
             self.program = program
         self.page = os.path.join(self.folder.name, "part.html")
         samples = os.path.join(self.folder.name, "part.csv")
-        subprocess.run([SIMULATE, self.program, "--report", self.page, "--samples", samples, "--quiet", *options],
-                       check=True, stderr=subprocess.DEVNULL)
+        run = subprocess.run([SIMULATE, self.program, "--report", self.page, "--samples", samples, "--quiet", "--json", *options],
+                             check=True, stderr=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        self.summary = json.loads(run.stdout)
         with open(samples, newline="") as file:
             self.samples = [{name: float(x) for name, x in row.items()} for row in csv.DictReader(file)]
         self.browser = Browser()
@@ -183,6 +185,79 @@ def check_charts(run):
     check(most <= max(row[1] for row in rows) + NEAR, "the chart leaves out the highest speed")
 
 
+def two_plans():
+    """A program within a tolerance beside the exact one: times, deviation, charts over the path's length."""
+    path = os.path.join(EXAMPLES, "programs", "pocket.ngc")
+    exact = json.loads(subprocess.run([SIMULATE, path, "--tolerance", "0", "--json", "--quiet"], check=True,
+                                      stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout)
+    with Run(path, "--tolerance", "0.05", "--compare", "0") as run:
+        check_page(run, text_of(path))
+        times = run.value("cncplan.motions.map(m => m.duration)")
+        check(abs(times[0] - run.summary["time_s"]) < NEAR and abs(times[1] - exact["time_s"]) < NEAR, f"times are {times}")
+        shown = run.value("document.getElementById('plans').textContent")
+        check("tolerance 0.05 mm" in shown and "exact path" in shown, f"the table says {shown}")
+        largest = run.value("""Math.max(...Array.from({length: 20000}, (_, k) => k * cncplan.motions[0].duration / 19999)
+            .map(t => cncplan.motions[0].deviation({time: t})))""")
+        check(0.98 * run.summary["deviation_mm"] <= largest <= 1.001 * run.summary["deviation_mm"],
+              f"the largest deviation is {largest}, not {run.summary['deviation_mm']}")
+        check(run.value("cncplan.motions[1].deviates") is False, "the exact path deviates")
+        # magnified: the farthest vertex of the path moves by as many deviations
+        moved = run.value("""(() => { const select = document.getElementById('magnify'), v = cncplan.view; select.value = '100';
+            select.dispatchEvent(new Event('change')); let most = 0;
+            for (let k = 0; k < v.driven.length; k += 3)
+              most = Math.max(most, Math.hypot(...[0, 1, 2].map(i => v.positions[k + i] - v.driven[k + i])));
+            return most; })()""")
+        check(0.9 * 99 * largest <= moved <= 1.01 * 99 * largest, f"100 times a deviation of {largest} is {moved}")
+        run.value("""(() => { const over = document.getElementById('over'); over.value = 'length'; over.dispatchEvent(new Event('change')); })()""")
+        for row in run.samples[:: max(1, len(run.samples) // 20)]:
+            t = run.value(f"cncplan.motions[0].timeAtLength({row['s']!r})")
+            check(abs(run.value(f"cncplan.motions[0].at({t!r}).s") - row["s"]) < NEAR, f"no instant of length {row['s']}")
+        names = run.value("cncplan.charts.charts[0].graph.getLabels()")
+        check(names == ["x", "speed", "programmed", "speed, exact path", "programmed, exact path"], f"the chart has {names}")
+        end = run.value("cncplan.charts.charts[0].graph.xAxisRange()[1]")
+        check(abs(end - run.summary["length_mm"]) < 1e-3, f"the charts end at {end}")
+        box = run.value("""(() => { const p = document.querySelector('#charts .plot'); p.scrollIntoView({block: 'center'});
+            const b = p.getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()""")
+        run.browser.move(box[0] + 0.6 * box[2], box[1] + 0.5 * box[3])
+        s = run.value("cncplan.charts.charts[0].graph.toDataXCoord(0.6 * document.querySelector('#charts .plot').clientWidth)")
+        check(abs(run.cells()["s"] - s) < 0.01 * end, f"the cursor is at {run.cells()['s']} mm, the pointer at {s}")
+        run.browser.key("p")
+        check(run.value("document.getElementById('plan').selectedIndex") == 1, "P shows no other plan")
+        run.check_opened()
+
+
+def paper():
+    """Printed, nothing is cut off, and what is for the screen only is left out."""
+    path = os.path.join(EXAMPLES, "programs", "pocket.ngc")
+    with Run(path) as run:
+        run.value("""addEventListener('beforeprint', () => { window.printed = [document.body.offsetWidth,
+            ...[...document.querySelectorAll('.plot canvas, #view canvas')].map(c => c.getBoundingClientRect().right)]; })""")
+        pages = run.browser.call("Page.printToPDF", printBackground=True, paperWidth=8.27, paperHeight=11.69)["data"]
+        check(len(pages) > 20000, "there is nothing on paper")
+        width, *rights = run.value("window.printed")
+        check(len(rights) > 5 and max(rights) <= width + 30, f"pictures reach to {max(rights)} px on paper {width} px wide")
+        wide = run.value("document.querySelector('#charts .plot canvas').getBoundingClientRect().width")
+        check(wide > width, "the page on the screen stays as narrow as paper")
+        run.check_opened()
+
+
+def long_program():
+    """A million lines: kept as instants, which the page says; those between them are near."""
+    lines = b"".join(b"G1 X%.3f Y%.3f F1200\n" % (i % 1000 * 0.1, i // 1000 * 0.1) for i in range(1000000))
+    with Run(lines, "--vmax", "50", "--tolerance", "0", "--period", "0.5") as run:
+        run.check_opened()
+        run.check_lines(400000)
+        told = run.value("document.getElementById('notes').textContent")
+        check("1000000 lines" in told and "the first 400000" in told and "kept whole" in told, f"the page says {told}")
+        check(os.path.getsize(run.page) < 30e6, f"the page has {os.path.getsize(run.page)} bytes")
+        check(run.seconds < 20, f"the page took {run.seconds:.1f} s to open")
+        for row in random.Random(1).sample(run.samples, 20):
+            run.value(f"cncplan.setTime({row['t']!r})")
+            seen = run.cells()
+            gap = max(abs(seen[name.upper()] - row[name]) for name in "xyz")
+            check(gap < 1.0, f"t={row['t']!r}: {gap} mm from the sample")
+
+
 def nothing():
     program = b"G21\n(nothing moves)\nM2\n"
     with Run(program) as run:
@@ -229,7 +304,7 @@ def rotary():
 
 CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_figure7"),
          "short lines": lambda: example("short_lines"), "nothing": nothing, "one motion": one_motion,
-         "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary}
+         "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "two plans": two_plans, "paper": paper, "long program": long_program}
 
 for case in sys.argv[3:]:
     CASES[case]()

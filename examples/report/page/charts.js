@@ -1,4 +1,4 @@
-// What happens over time: charts that share the time and the cursor.
+// What happens over time or over the path's length: charts that share that axis and the cursor.
 
 const seriesColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#666666', '#000000', '#8c6d1f'];
 
@@ -12,41 +12,68 @@ function chartsOf(motion) {
   return [
     {title: 'speed along the path, mm/s', series: [
       {name: 'speed', value: s => s.v, limit: limit(motion.limits[0])},
-      {name: 'programmed', value: (s, m) => { const w = m.block.wanted[s.block]; return isFinite(w) ? w : NaN; }}]},
+      ...(motion.wanted ? [{name: 'programmed', value: (s, m) => m.wanted(s)}] : [])]},
     {title: `velocity, ${unit}/s`, series: perAxis('velocity', 0)},
     {title: `acceleration, ${unit}/s²`, series: [...perAxis('acceleration', 1), along(s => s.a, 1)]},
     {title: `jerk, ${unit}/s³`, series: [...perAxis('jerk', 2), along(s => s.j, 2)]},
     {title: 'step rate, 1/s', series: motion.axes.map(axis => ({
       name: axis.name, value: s => Math.abs(s.velocity[axis.channel]) * axis.stepsPerUnit}))},
+    ...(motion.deviates ? [{title: 'deviation from the programmed path, mm', series: [
+      {name: 'deviation', value: (s, m) => m.deviation(s), limit: motion.tolerance || undefined}]}] : []),
   ];
 }
 
-// Rows of time and values within a window. Where it holds more than can be drawn, each column of the picture has
+// The smallest and the largest values of each column of a picture.
+class Columns {
+  constructor(from, to, count = 1000) {
+    Object.assign(this, {from, width: (to - from) / count, count, low: [], high: []});
+  }
+  put(x, values) {
+    const column = Math.min(Math.max(Math.floor((x - this.from) / this.width), 0), this.count - 1);
+    this.low[column] = this.low[column]?.map((y, k) => Math.min(y, values[k])) ?? values;
+    this.high[column] = this.high[column]?.map((y, k) => Math.max(y, values[k])) ?? values;
+  }
+  rows() {
+    const rows = [];
+    for (let column = 0; column < this.low.length; ++column) {
+      if (!this.low[column]) continue;
+      rows.push([this.from + column * this.width, ...this.low[column]],
+                [this.from + (column + 0.5) * this.width, ...this.high[column]]);
+    }
+    return rows;
+  }
+}
+
+// What charts are drawn over: a place of a state, the time at a place, and where the end is.
+const chartAxes = {
+  time: {name: 'time, s', of: state => state.time, timeAt: (motion, x) => x, end: motion => motion.duration},
+  length: {name: 'path length, mm', of: state => state.s, timeAt: (motion, x) => motion.timeAtLength(x), end: motion => motion.length},
+};
+
+// Rows of places and values within a window. Where it holds more than can be drawn, each column of the picture has
 // its smallest and its largest value.
-function chartRows(motion, series, from, to) {
-  const columns = 1000, room = motion.room(), first = motion.phaseAt(from), last = motion.phaseAt(to);
-  const whole = 4 * (last - first + 1) <= 3 * columns, width = (to - from) / columns;
-  const rows = [], low = [], high = [];
-  const put = (t, state) => {
-    const values = series.map(one => one.value(state, motion));
-    if (whole) return rows.push([t, ...values]);
-    const column = Math.min(Math.max(Math.floor((t - from) / width), 0), columns - 1);
-    low[column] = low[column]?.map((x, k) => Math.min(x, values[k])) ?? values;
-    high[column] = high[column]?.map((x, k) => Math.max(x, values[k])) ?? values;
+function chartRows(motion, series, from, to, axis = chartAxes.time) {
+  if (motion.count === 0) return [[0, ...series.map(() => 0)]];
+  const columns = new Columns(from, to), room = motion.room(), rows = [];
+  const begin = axis.timeAt(motion, from), finish = axis.timeAt(motion, to);
+  const first = motion.phaseAt(begin), last = motion.phaseAt(finish);
+  const whole = 5 * (last - first + 1) <= 3 * columns.count;
+  const put = (i, t) => {
+    const state = motion.inPhase(i, t, room), values = series.map(one => one.value(state, motion));
+    if (whole) rows.push([axis.of(state), ...values]); else columns.put(axis.of(state), values);
   };
-  for (let i = first; i <= last && i < motion.count; ++i) {
-    const start = Math.max(motion.phase.time[i], from), end = Math.min(motion.phase.time[i] + motion.durationOf(i), to);
-    const parts = Math.max(whole ? 4 : 1, Math.ceil((end - start) / width));
+  for (let i = first; i <= last; ++i) {
+    const start = Math.max(motion.phase.time[i], begin), end = Math.min(motion.phase.time[i] + motion.durationOf(i), finish);
+    const turning = motion.turning(i), seconds = axis === chartAxes.time ? columns.width : (finish - begin) / columns.count;
+    const parts = Math.max(whole ? 4 : 1, Math.min(Math.ceil((end - start) / seconds), 4 * columns.count));
     for (let k = 0; k <= parts; ++k) {
       const t = k === parts ? end : start + (end - start) * k / parts;
-      put(t, motion.inPhase(i, t, room));
+      if (turning < t && turning >= t - (end - start) / parts && k > 0) put(i, turning);
+      put(i, t);
     }
   }
-  for (let column = 0; column < low.length; ++column) {
-    if (!low[column]) continue;
-    rows.push([from + column * width, ...low[column]], [from + (column + 0.5) * width, ...high[column]]);
-  }
-  return rows.length > 0 ? rows : [[0, ...series.map(() => 0)]];
+  const result = whole ? rows : columns.rows();
+  return result.length > 0 ? result : [[from, ...series.map(() => 0)]];
 }
 
 class Charts {
@@ -54,13 +81,21 @@ class Charts {
     this.element = element;
     this.marks = marks;
     this.hovered = () => {};
-    this.time = 0;
+    this.axis = chartAxes.time;
+    this.state = null;
   }
 
-  show(motion) {
+  // `other`: a motion to compare with, or nothing.
+  show(motion, other = null) {
     this.motion = motion;
+    this.other = other;
     this.element.replaceChildren();
-    this.window = this.all = [0, motion.duration > 0 ? motion.duration : 1];
+    clearTimeout(this.timer);
+    for (const chart of this.charts ?? []) chart.graph.destroy();
+    this.charts = undefined;
+    const end = Math.max(this.axis.end(motion), other ? this.axis.end(other) : 0);
+    this.window = this.all = [0, end > 0 ? end : 1];
+    this.state ??= motion.at(0);
     this.charts = chartsOf(motion).map(chart => this.add(chart));
     this.fill();
   }
@@ -74,9 +109,12 @@ class Charts {
     box.append(heading, plot);
     this.element.append(box);
     const colors = chart.series.map((_, k) => seriesColors[k % seriesColors.length]);
-    const zeros = chart.series.map(() => 0);
+    const names = chart.series.map(one => one.name), others = this.other ? names.map(name => `${name}, ${this.other.name}`) : [];
+    const zeros = [...names, ...others].map(() => 0);
     const graph = new Dygraph(plot, [[0, ...zeros], [1, ...zeros]], {
-      labels: ['t', ...chart.series.map(one => one.name)], colors, strokeWidth: 1.5, legend: 'never', animatedZooms: false,
+      labels: ['x', ...names, ...others], colors: [...colors, ...(this.other ? colors : [])], strokeWidth: 1.5, legend: 'never',
+      animatedZooms: false, connectSeparatedPoints: true,
+      series: Object.fromEntries(others.map(name => [name, {strokePattern: [2, 3], strokeWidth: 1.2}])),
       axisLabelFontSize: 13, highlightCircleSize: 0, axes: {y: {axisLabelWidth: 70, pixelsPerLabel: 22}},
       underlayCallback: (context, area, g) => this.underlay(context, area, g, chart, colors),
       zoomCallback: (from, to) => this.zoom(from, to),
@@ -85,8 +123,8 @@ class Charts {
     plot.append(cursor);
     plot.addEventListener('mousemove', event => {
       if (event.buttons !== 0) return;
-      const t = graph.toDataXCoord(event.clientX - plot.getBoundingClientRect().left);
-      if (t >= 0 && t <= this.motion.duration) this.hovered(t);
+      const x = graph.toDataXCoord(event.clientX - plot.getBoundingClientRect().left);
+      if (x >= 0 && x <= this.axis.end(this.motion)) this.hovered(this.axis.timeAt(this.motion, x));
     });
     plot.addEventListener('wheel', event => {
       event.preventDefault();
@@ -114,17 +152,18 @@ class Charts {
     context.strokeStyle = context.fillStyle = '#444';
     context.font = '12px sans-serif';
     for (const mark of this.marks) {
-      const x = graph.toDomXCoord(mark.time);
+      const x = graph.toDomXCoord(this.axis.of(this.motion.at(mark.time)));
       context.strokeRect(x, area.y, 0, area.h);
       context.fillText(mark.text, x + 3, area.y + 11);
     }
     context.restore();
   }
 
-  zoomAbout(t, factor) {
+  zoomAbout(x, factor) {
     const [from, to] = this.window;
-    this.zoom(t - (t - from) * factor, t + (to - t) * factor);
+    this.zoom(x - (x - from) * factor, x + (to - x) * factor);
   }
+  zoomAtCursor(factor) { this.zoomAbout(this.axis.of(this.state), factor); }
   zoom(from, to) {
     const least = 1e-6;
     from = Math.max(from, this.all[0]);
@@ -143,17 +182,21 @@ class Charts {
 
   fill() {
     const series = this.charts.flatMap(chart => chart.series);
-    const rows = chartRows(this.motion, series, ...this.window);
+    const rows = this.motion.rows?.(series, ...this.window) ?? chartRows(this.motion, series, ...this.window, this.axis);
+    const others = this.other ? chartRows(this.other, series, ...this.window, this.axis) : [];
     this.filling = true;
     let first = 1;
     for (const chart of this.charts) {
-      const end = first + chart.series.length;
-      const file = rows.map(row => [row[0], ...row.slice(first, end)]);
+      const end = first + chart.series.length, none = chart.series.map(() => null);
+      let file = rows.map(row => [row[0], ...row.slice(first, end)]);
+      if (this.other)
+        file = [...file.map(row => [...row, ...none]), ...others.map(row => [row[0], ...none, ...row.slice(first, end)])]
+          .sort((a, b) => a[0] - b[0]);
       chart.graph.updateOptions({file, dateWindow: [...this.window], valueRange: this.rangeOf(chart, file)});
       first = end;
     }
     this.filling = false;
-    this.put(this.time);
+    this.put(this.state);
   }
   // With the limits in it.
   rangeOf(chart, rows) {
@@ -172,16 +215,18 @@ class Charts {
     return [least < 0 ? least - margin : 0, most + margin];
   }
 
-  // Puts the cursor at an instant; `state`, if given, is what the titles tell.
-  put(t, state) {
-    this.time = t;
+  // Puts the cursor where a state is.
+  put(state) {
+    this.state = {...state, velocity: [...state.velocity], acceleration: [...state.acceleration], jerk: [...state.jerk]};
     for (const chart of this.charts) {
-      const x = chart.graph.toDomXCoord(t), area = chart.graph.getArea();
+      const x = chart.graph.toDomXCoord(this.axis.of(state)), area = chart.graph.getArea();
       chart.cursor.hidden = !(x >= area.x - 1 && x <= area.x + area.w + 1);
       chart.cursor.style.left = `${x - 1}px`;
-      if (state) this.tell(chart, state);
+      this.tell(chart, state);
     }
   }
+  // Fits the pictures to the room that they have.
+  resize() { for (const chart of this.charts) chart.graph.resize(); }
   tell(chart, state) {
     chart.heading.replaceChildren(chart.title, ...chart.series.map((one, k) => {
       const entry = document.createElement('span');

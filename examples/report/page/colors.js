@@ -4,7 +4,7 @@
 const scaleStops = [[68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137],
                     [53, 183, 121], [109, 205, 89], [180, 222, 44], [253, 231, 37]];
 const distinct = [[153, 153, 153], [0, 114, 178], [86, 180, 233], [0, 158, 115], [230, 159, 0], [213, 94, 0],
-                  [204, 121, 167], [60, 60, 60]];
+                  [204, 121, 167], [60, 60, 60], [240, 228, 66]];
 
 // r, g, b from 0 to 1; x from 0 to 1. The light end is left out: it does not show on white.
 function scaleColor(x) {
@@ -27,7 +27,8 @@ function colorModes(limitNames) {
     {name: 'jerk', unit: 'mm/s³', value: s => norm(s.jerk), top: limit(2)},
     {name: 'curvature', unit: '1/mm', value: s => norm(s.second)},
     {name: 'speed against programmed feed', unit: '',
-     value: (s, m) => { const w = m.block.wanted[s.block]; return w > 0 && isFinite(w) ? s.v / w : 1; }, top: () => 1},
+     value: (s, m) => { const w = m.wanted(s); return w > 0 ? s.v / w : 1; }, top: () => 1},
+    {name: 'deviation', unit: 'mm', value: (s, m) => m.deviation(s)},
     {name: 'what limits the speed', names: limitNames, kind: (s, m) => m.phase.limitedBy[s.phase] ?? 0},
     {name: 'rapid, line, arc', names: kindNames, kind: (s, m) => [5, 1, 3][m.kindOf(s)], colors: [5, 1, 3]},
   ];

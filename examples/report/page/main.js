@@ -4,8 +4,8 @@ const cncplan = (() => {
   const byId = id => document.getElementById(id);
   const report = JSON.parse(byId('data').textContent);
   const lines = report.text.split('\n').slice(0, report.keptLines);
-  const motions = report.plans.map(plan => new Motion(plan, report.axes, report.limits));
-  const modes = colorModes(report.limitedByNames);
+  const motions = report.plans.map(plan => motionOf(plan, report.axes, report.limits));
+  const modes = colorModes(report.limitedByNames).filter(one => one.name !== 'deviation' || motions.some(m => m.deviates));
   const charts = new Charts(byId('charts'), report.marks);
   const program = new ProgramText(byId('program'), lines);
   let motion = motions[0], view = null, time = 0, mode = modes[0], room = motion.room();
@@ -21,7 +21,7 @@ const cncplan = (() => {
     const state = motion.at(t, room);
     time = state.time;
     view?.put(state);
-    charts.put(time, state);
+    charts.put(state);
     program.mark(motion.lineOf(state));
     showState(report, motion, state);
     byId('slider').value = time;
@@ -39,10 +39,13 @@ const cncplan = (() => {
   function showMotion(index) {
     motion = motions[index];
     room = motion.room();
-    const sums = sweep(motion, lines.length);
+    const sums = sweep(motion, lines.length, report.limitedByNames.length);
     byId('slider').max = motion.duration;
-    view?.show(motion);
-    charts.show(motion);
+    const other = motions.length > 1 ? motions[(index + 1) % motions.length] : null;
+    byId('plan').selectedIndex = index;
+    byId('magnify-label').hidden = !motion.deviates;
+    view?.show(motion, other);
+    charts.show(motion, other);
     program.show(sums.byLine);
     showSummary(report, motion);
     showLimited(report, motion, sums);
@@ -75,10 +78,31 @@ const cncplan = (() => {
   byId('plan-label').hidden = motions.length < 2;
   byId('plan').append(...motions.map(one => element('option', {textContent: one.name})));
   byId('plan').addEventListener('change', event => showMotion(event.target.selectedIndex));
+  byId('magnify').addEventListener('change', event => view?.magnify(Number(event.target.value)));
+  byId('over').addEventListener('change', event => {
+    charts.axis = chartAxes[event.target.value];
+    charts.show(charts.motion, charts.other);
+  });
+  function chooseNext(id) {
+    const select = byId(id);
+    if (select.parentElement.hidden) return;
+    select.selectedIndex = (select.selectedIndex + 1) % select.length;
+    select.dispatchEvent(new Event('change'));
+  }
+
+  // On paper, pictures are as wide as the page.
+  function fitPaper(printing) {
+    document.body.classList.toggle('paper', printing);
+    charts.resize();
+    view?.resize();
+    view?.draw();
+  }
+  addEventListener('beforeprint', () => fitPaper(true));
+  addEventListener('afterprint', () => fitPaper(false));
 
   const views = [...document.querySelectorAll('[data-view]')];
   const keys = {
-    ' ': () => player.toggle(),
+    ' ': () => (live ? live.toggle() : player.toggle()),
     ArrowRight: event => setTime(time + (event.shiftKey ? 0.1 : 0.001)),
     ArrowLeft: event => setTime(time - (event.shiftKey ? 0.1 : 0.001)),
     ArrowDown: () => stepMotion(1),
@@ -87,8 +111,11 @@ const cncplan = (() => {
     End: () => setTime(motion.duration),
     f: () => byId('fit').click(),
     c: () => setMode((modes.indexOf(mode) + 1) % modes.length),
-    '+': () => charts.zoomAbout(time, 0.5),
-    '-': () => charts.zoomAbout(time, 2),
+    l: () => chooseNext('over'),
+    m: () => chooseNext('magnify'),
+    p: () => chooseNext('plan'),
+    '+': () => charts.zoomAtCursor(0.5),
+    '-': () => charts.zoomAtCursor(2),
     0: () => charts.zoom(...charts.all),
     '?': () => byId('help-button').click(),
   };
@@ -105,12 +132,17 @@ const cncplan = (() => {
   for (const text of report.warnings) note('warnings', text);
   if (report.keptLines < report.lines)
     note('notes', `The program has ${report.lines} lines; the text is that of the first ${report.keptLines}.`);
-  if (motion.sampled)
+  if (motion instanceof SampledMotion)
     note('notes', `The program is too long to be kept whole: the motion is drawn from instant to instant, ` +
-         `${shortNumber(motion.duration / motion.count)} s apart; between them values are approximate.`);
+         `${shortNumber(motion.period)} s apart; between them values are approximate.`);
   if (motion.count === 0 || !(motion.duration > 0)) note('notes', 'Nothing moves.');
   showPeaks(report);
+  showPlans(motions);
+  const live = report.live ? new Live(byId('live'), report, motions[0], (t, tool) => {
+    setTime(t);
+    view?.tool.position.fromArray(tool);
+  }) : null;
   showMotion(0);
-  return {report, lines, motions, view, charts, program, player, setTime, goToLine, setMode,
+  return {live, report, lines, motions, view, charts, program, player, setTime, goToLine, setMode,
           state: () => motion.at(time), time: () => time};
 })();

@@ -18,24 +18,29 @@ function lastNotAbove(values, x, from = 0, to = values.length) {
 
 class Motion {
   constructor(plan, axes, limits) {
-    const f64 = name => decode(Float64Array, plan[name]);
-    const u32 = name => decode(Uint32Array, plan[name]);
-    const u8 = name => decode(Uint8Array, plan[name]);
     this.name = plan.name;
     this.duration = plan.duration;
     this.length = plan.length;
     this.channels = plan.channels;
-    this.sampled = plan.sampled;
     this.axes = axes;
     this.limits = limits.map(x => x ?? Infinity);
+    this.offsets = plan.offsets;
+    this.deviations = {period: plan.deviation.period, vectors: decode(Float32Array, plan.deviation.vectors)};
+    this.tolerance = plan.deviation.tolerance;
+    this.take(plan);
+    this.count = this.phase.time.length;
+  }
+
+  take(plan) {
+    const f64 = name => decode(Float64Array, plan[name]);
+    const u32 = name => decode(Uint32Array, plan[name]);
+    const u8 = name => decode(Uint8Array, plan[name]);
     this.phase = {time: f64('time'), within: f64('within'), v: f64('velocity'), a: f64('acceleration'),
                   j: f64('jerk'), block: u32('block'), limitedBy: u8('limitedBy')};
     this.block = {start: f64('blockStart'), wanted: f64('blockWanted'), firstPiece: u32('blockFirstPiece'),
                   line: u32('blockLine'), kind: u8('blockKind'), offset: u32('blockOffset')};
     this.piece = {length: f64('pieceLength'), curved: u8('pieceCurved')};
     this.points = f64('points');
-    this.offsets = plan.offsets;
-    this.count = this.phase.time.length;
     this.placePieces();
   }
 
@@ -61,6 +66,11 @@ class Motion {
     return (i + 1 < this.count ? this.phase.time[i + 1] : this.duration) - this.phase.time[i];
   }
   phaseAt(t) { return lastNotAbove(this.phase.time, t); }
+
+  // X, Y and Z of places on the path, all ends of pieces among them.
+  forPlaces(visit) {
+    for (const at of this.piece.at) visit(this.points, at);
+  }
 
   // Position and three derivatives by length, of every channel, at a place of a block; into `out`.
   path(block, within, out) {
@@ -133,6 +143,41 @@ class Motion {
     return out;
   }
 
+  // When the path is s mm long.
+  timeAtLength(s) {
+    if (this.count === 0) return 0;
+    const room = this.room();
+    this.phaseStart ??= Float64Array.from(this.phase.time, (t, i) => this.inPhase(i, t, room).s);
+    const i = lastNotAbove(this.phaseStart, s);
+    let from = this.phase.time[i], to = from + this.durationOf(i);
+    for (let k = 0; k < 50 && to > from; ++k) {
+      const middle = (from + to) / 2;
+      if (this.inPhase(i, middle, room).s < s) from = middle; else to = middle;
+    }
+    return to;
+  }
+  // Where a phase's speed turns, if it does: the instant of its highest or lowest speed.
+  turning(i) {
+    const tau = -this.phase.a[i] / this.phase.j[i];
+    return tau > 0 && tau < this.durationOf(i) ? this.phase.time[i] + tau : undefined;
+  }
+
+  // From the programmed path to where it is; into `out`.
+  deviationAt(t, out) {
+    const {period, vectors} = this.deviations, last = vectors.length / 3 - 1;
+    if (last < 1) return out.fill(0);
+    const at = Math.min(Math.max(t / period, 0), last), i = Math.min(Math.floor(at), last - 1), part = at - i;
+    for (let k = 0; k < 3; ++k) out[k] = vectors[3 * i + k] + part * (vectors[3 * i + 3 + k] - vectors[3 * i + k]);
+    return out;
+  }
+  deviation(state) { return norm(this.deviationAt(state.time, this.gap ??= [0, 0, 0])); }
+  get deviates() { return this.deviations.vectors.length > 0; }
+
+  // Speed that the program asks for; NaN where it asks for none.
+  wanted(state) {
+    const speed = this.block.wanted[state.block];
+    return isFinite(speed) ? speed : NaN;
+  }
   lineOf(state) { return this.block.line[state.block] ?? 0; }
   kindOf(state) { return this.block.kind[state.block] ?? 0; }
   // In the program's coordinates.
@@ -159,6 +204,57 @@ class Motion {
     }
     return most;
   }
+}
+
+// A motion that is known at instants only; between them values are approximate.
+class SampledMotion extends Motion {
+  take(plan) {
+    const samples = plan.samples, f32 = name => decode(Float32Array, samples[name]);
+    const line = decode(Uint32Array, samples.line), n = line.length;
+    this.period = samples.period;
+    this.travelled = decode(Float64Array, samples.travelled);
+    this.values = f32('axes');
+    const v = f32('velocity'), a = f32('acceleration'), j = f32('jerk');
+    this.phase = {time: Float64Array.from(line, (_, i) => i * this.period), v, a, j,
+                  block: Uint32Array.from(line, (_, i) => i), limitedBy: decode(Uint8Array, samples.limitedBy)};
+    this.phase.time[n - 1] = this.duration;
+    this.block = {line, wanted: f32('wanted'), kind: decode(Uint8Array, samples.kind), offset: decode(Uint32Array, samples.offset)};
+  }
+  forPlaces(visit) {
+    for (let i = 0; i < this.count; ++i) visit(this.values, 4 * this.channels * i);
+  }
+  turning() { return undefined; }
+  durationOf(i) { return i + 1 < this.count ? this.phase.time[i + 1] - this.phase.time[i] : 0; }
+  inPhase(i, t, out) {
+    const n = this.channels, next = Math.min(i + 1, this.count - 1), seconds = this.durationOf(i);
+    const part = seconds > 0 ? Math.min(Math.max((t - this.phase.time[i]) / seconds, 0), 1) : 0;
+    const between = (values, from, to) => values[from] + part * (values[to] - values[from]);
+    // the cubic with these values and slopes at both ends
+    const cubic = (p0, v0, p1, v1) => {
+      const d = p1 - p0, a = v0 * seconds, b = v1 * seconds;
+      return p0 + part * (a + part * (3 * d - 2 * a - b + part * (a + b - 2 * d)));
+    };
+    const from = 4 * n * i, to = 4 * n * next, all = this.values;
+    for (let k = 0; k < n; ++k) {
+      out.position[k] = cubic(all[from + k], all[from + n + k], all[to + k], all[to + n + k]);
+      out.velocity[k] = between(all, from + n + k, to + n + k);
+      out.acceleration[k] = between(all, from + 2 * n + k, to + 2 * n + k);
+      out.jerk[k] = between(all, from + 3 * n + k, to + 3 * n + k);
+    }
+    out.v = between(this.phase.v, i, next);
+    out.a = between(this.phase.a, i, next);
+    out.j = between(this.phase.j, i, next);
+    out.s = cubic(this.travelled[i], this.phase.v[i], this.travelled[next], this.phase.v[next]);
+    for (let k = 0; k < n; ++k) {
+      out.first[k] = out.v > 0 ? out.velocity[k] / out.v : 0;
+      out.second[k] = out.v > 0 ? (out.acceleration[k] - out.first[k] * out.a) / out.v ** 2 : 0;
+    }
+    return Object.assign(out, {time: t, phase: i, block: i});
+  }
+}
+
+function motionOf(plan, axes, limits) {
+  return plan.samples ? new SampledMotion(plan, axes, limits) : new Motion(plan, axes, limits);
 }
 
 // Of X, Y and Z.

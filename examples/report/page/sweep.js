@@ -1,8 +1,8 @@
 // One walk over a motion for all that adds up over time: time by line, by speed, by what limits it.
 
-function sweep(motion, lineCount) {
+function sweep(motion, lineCount, limitCount) {
   const byLine = new Float64Array(lineCount + 1), lengthByLine = new Float64Array(lineCount + 1);
-  const byLimit = new Float64Array(8);
+  const byLimit = new Float64Array(limitCount);
   let top = 0;
   for (let i = 0; i < motion.count; ++i) top = Math.max(top, motion.phase.v[i]);
   const bins = 40, bySpeed = new Float64Array(bins);

@@ -9,7 +9,8 @@ class View {
     this.renderer.setClearColor(0xffffff);
     element.appendChild(this.renderer.domElement);
     this.scene = new THREE.Scene();
-    this.orbit = new Orbit(element, () => this.render());
+    this.orbit = new Orbit(element, () => this.turn());
+    this.magnified = 1;
     this.orbit.clicked = event => this.pick(event);
     this.picked = () => {};
     for (const drawing of drawings) this.addDrawing(drawing);
@@ -43,10 +44,11 @@ class View {
     return Math.max(1, Math.min(200, Math.ceil(Math.max(bend * length / 0.1, 60 * length / diagonal))));
   }
 
-  show(motion) {
+  // `other`: a motion to compare with, or nothing.
+  show(motion, other = null) {
     this.motion = motion;
     const room = motion.room(), box = new THREE.Box3(), point = new THREE.Vector3();
-    for (const at of motion.piece.at) box.expandByPoint(point.fromArray(motion.points, at));
+    motion.forPlaces((values, at) => box.expandByPoint(point.fromArray(values, at)));
     const diagonal = Math.max(box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length(), 1e-9);
     const times = [], phases = [];
     for (let i = 0; i < motion.count; ++i) {
@@ -58,40 +60,106 @@ class View {
     }
     this.times = Float64Array.from(times);
     this.phases = Uint32Array.from(phases);
-    const positions = new Float32Array(3 * times.length), distances = new Float32Array(times.length);
+    const driven = new Float32Array(3 * times.length), distances = new Float32Array(times.length);
     const solid = [], dashed = [];
     for (let k = 0; k < times.length; ++k) {
       const state = motion.inPhase(phases[k >> 1], times[k], room);
-      positions.set(state.position.subarray(0, 3), 3 * k);
-      box.expandByPoint(point.fromArray(positions, 3 * k));
+      driven.set(state.position.subarray(0, 3), 3 * k);
+      box.expandByPoint(point.fromArray(driven, 3 * k));
       distances[k] = state.s;
       (motion.kindOf(state) === 0 ? dashed : solid).push(k);
     }
     this.box = box;
-    this.positions = positions;
-    this.colors = new THREE.BufferAttribute(new Float32Array(3 * times.length), 3);
+    this.driven = driven;
+    this.positions = driven.slice();
     const attribute = (values, n) => new THREE.BufferAttribute(values, n);
-    const position = attribute(positions, 3), distance = attribute(distances, 1);
-    const lines = (indices, material) => {
+    this.colors = attribute(new Float32Array(3 * times.length), 3);
+    this.place = attribute(this.positions, 3);
+    const distance = attribute(distances, 1);
+    const lines = (position, indices, material) => {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', position);
       if (material.vertexColors) geometry.setAttribute('color', this.colors);
-      geometry.setAttribute('lineDistance', distance);
+      if (material.isLineDashedMaterial) geometry.setAttribute('lineDistance', distance);
       if (indices) geometry.setIndex(attribute(Uint32Array.from(indices), 1));
       return new THREE.LineSegments(geometry, material);
     };
-    if (this.path) this.scene.remove(this.path);
+    this.forget();
     this.path = new THREE.Group();
-    const dash = diagonal / 150;
-    this.path.add(lines(solid, new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors})));
-    this.path.add(lines(dashed, new THREE.LineDashedMaterial(
-        {vertexColors: THREE.VertexColors, dashSize: dash, gapSize: dash})));
-    this.current = lines(null, new THREE.LineBasicMaterial({color: 0x000000, depthTest: false}));
+    const colored = {vertexColors: THREE.VertexColors}, dash = diagonal / 150;
+    this.fine = [lines(this.place, solid, new THREE.LineBasicMaterial(colored)),
+                 lines(this.place, dashed, new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
+    this.coarse = lines(this.place, this.fewer(times.length), new THREE.LineBasicMaterial(colored));
+    this.coarse.visible = false;
+    this.current = lines(this.place, null, new THREE.LineBasicMaterial({color: 0x000000, depthTest: false}));
     this.current.renderOrder = 1;
-    this.path.add(this.current);
+    this.path.add(...this.fine, this.coarse, this.current);
+    if (motion.deviates) {
+      const programmed = attribute(this.moved(-1), 3);
+      const line = lines(programmed, null, new THREE.LineBasicMaterial({color: 0x999999, depthWrite: false}));
+      line.renderOrder = -1;
+      this.fine.push(line);
+      this.path.add(line);
+    }
+    if (other) {
+      const places = [];
+      other.forPlaces((values, at) => places.push(values[at], values[at + 1], values[at + 2]));
+      const line = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0xcc79a7, depthWrite: false}));
+      line.renderOrder = -1;
+      line.geometry.setAttribute('position', attribute(Float32Array.from(places), 3));
+      this.fine.push(line);
+      this.path.add(line);
+    }
     for (const part of this.path.children) part.frustumCulled = false;
     this.scene.add(this.path);
+    this.magnify(this.magnified);
     this.orbit.fit(box);
+  }
+  forget() {
+    if (!this.path) return;
+    this.scene.remove(this.path);
+    for (const part of this.path.children) {
+      part.geometry.dispose();
+      part.material.dispose();
+    }
+  }
+
+  // The places, so many deviations farther from the programmed path.
+  moved(deviations) {
+    const result = this.driven.slice(), gap = [0, 0, 0];
+    for (let k = 0; k < this.times.length; ++k) {
+      this.motion.deviationAt(this.times[k], gap);
+      for (let axis = 0; axis < 3; ++axis) result[3 * k + axis] += deviations * gap[axis];
+    }
+    return result;
+  }
+  // Shows the deviation so many times as large as it is.
+  magnify(factor) {
+    this.magnified = factor;
+    this.positions.set(factor === 1 ? this.driven : this.moved(factor - 1));
+    this.place.needsUpdate = true;
+    this.render();
+  }
+
+  // Indices of fewer lines, for while the view turns: each in place of some that follow each other.
+  fewer(count) {
+    const most = 30000, step = 2 * Math.ceil(count / 2 / most), indices = [];
+    for (let k = 0; k < count; k += step) indices.push(k, Math.min(k + step, count) - 1);
+    return indices;
+  }
+  // The view has been turned, moved or zoomed.
+  turn() {
+    const many = this.times?.length > 60000;
+    if (many) {
+      this.refine(false);
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => { this.refine(true); this.render(); }, 250);
+    }
+    this.render();
+  }
+  refine(fine) {
+    for (const part of this.fine) part.visible = fine;
+    this.coarse.visible = !fine;
   }
 
   // Gives back what the legend tells.
