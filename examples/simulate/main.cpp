@@ -11,6 +11,7 @@
 #include <memory>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "html_report.hpp"
 #include "options.hpp"
@@ -19,6 +20,8 @@
 #include "read_program.hpp"
 #include "report.hpp"
 #include "run.hpp"
+#include "serve.hpp"
+#include "serve/web_server.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
 #include "support/gnuplot.hpp"
@@ -85,18 +88,37 @@ void check_size(const Measures& measures, const Options& options, const support:
   }
 }
 
+// An executor keeps the exact path; its corners are as fast as ones rounded within the tolerance.
+void settle_for_executor(Options& options) {
+  if (options.corner_tolerance < 0.0)
+    throw Failure(Exit::bad_input, "--serve passes corners by --tolerance: it goes without --junction");
+  if (options.tolerance > 0.0) {
+    options.corner_tolerance = options.tolerance;
+    options.junction = junction_choice(fmt::format("deviation={}", options.tolerance));
+  }
+  options.tolerance = 0.0;
+}
+
 // Refuses what the options ask for and the machine cannot do.
 void settle(Options& options, const support::Machine& machine) {
   const auto refuse = [](const char* why) { throw Failure(Exit::bad_input, why); };
-  if (options.check && (options.motions || options.blocks || options.samples || options.steps ||
-                        options.plot || options.report || options.events))
+  const bool writes =
+      options.motions || options.blocks || options.samples || options.steps || options.plot || options.report;
+  if (options.check && (writes || options.events || options.serve))
     refuse("--check plans nothing: it goes without outputs and events");
+  if (options.serve && (writes || options.events || options.json || options.count_steps || options.smooth))
+    refuse("--serve runs the program as it is: it goes without outputs, events and --smooth");
+  if (options.compare && !options.report) refuse("--compare goes with --report");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
     refuse("--tool-length is for machines with a tilting axis");
   const bool as_planned = options.law == Law::seven && options.planning == Planning::span &&
                           options.interpolator == Interpolator::exact;
   if (options.events && !as_planned)
     refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
+  if (options.serve && !as_planned)
+    refuse("--serve goes with --profile seven, --plan span and --interpolator exact only");
+  if (options.compare.value_or(0.0) > 0.0 && (!as_planned || machine.kinematics != Kinematics::cartesian))
+    refuse("--compare above 0 is for what --tolerance above 0 is for");
   if (options.events && options.smooth == Smooth::best)
     refuse("--smooth best is for motion without events: its speed is planned as a whole");
   if (machine.kinematics != Kinematics::cartesian) {
@@ -106,6 +128,7 @@ void settle(Options& options, const support::Machine& machine) {
           "driven exactly");
     options.tolerance = 0.0;
   }
+  if (options.serve) settle_for_executor(options);
   if (options.smooth && !(options.tolerance > 0.0)) refuse("--smooth goes with a --tolerance above 0");
   if (options.interpolator == Interpolator::taylor &&
       (machine.kinematics != Kinematics::cartesian || machine.axes.size() > 3))
@@ -121,7 +144,8 @@ constexpr std::size_t checked_problems = 100;
 
 // Samples, steps and all else that is wanted of a run.
 template <class M>
-int write_out(const Options& options, const support::Machine& file, const Program<M>& program, Run<M> run) {
+int write_out(const Options& options, const support::Machine& file, const Program<M>& program, Run<M> run,
+              const std::vector<report::Plan>& others) {
   const Measures& measures = run.measures();
   check_size(measures, options, file);
   if (options.plot) support::make_folder(*options.plot);
@@ -155,7 +179,11 @@ int write_out(const Options& options, const support::Machine& file, const Progra
     run.step([&](const cncplan::step::Edge& edge) { progress.reach(measures.duration + edge.time); });
   }
 
-  if (page != nullptr) report::write(*page, html_report(options, file, program, measures, run.trajectory()));
+  if (page != nullptr) {
+    auto shown = html_report(options, file, program, measures, run.trajectory());
+    shown.plans.insert(shown.plans.end(), others.begin(), others.end());
+    report::write(*page, shown);
+  }
 
   files.finish();
   if (options.plot) draw(*options.plot, options.quiet, file, drawn);
@@ -168,27 +196,33 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   return static_cast<int>(Exit::done);
 }
 
-// A mill's program within a tolerance, at the level `best`.
-template <int N>
-int run_smoothly(const Options& options, const support::Machine& file, const Mill<N>& mill,
-                 const Program<Mill<N>>& program) {
-  double seconds = 0.0;
-  const auto planned = [&] {
-    const Stopwatch watch(seconds);
-    return cncplan::plan_smooth(
-        program.blocks, SmoothMill<N>{mill},
-        {.tolerance = options.tolerance,
-         .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree});
-  }();
-  if (!planned) {
-    auto error = planned.error();
-    error.file = program.file;
-    throw Failure(Exit::bad_input, cncplan::to_text(error));
-  }
-  Program<SmoothMill<N>> pieces{program, {planned->program().begin(), planned->program().end()}};
-  pieces.motion_of.clear();
-  for (const auto& piece : pieces.blocks) pieces.motion_of.push_back(program.motion_of[piece.source]);
-  return write_out(options, file, pieces, Run<SmoothMill<N>>(options, file, pieces, *planned, seconds));
+// Plans a program and hands it to `take` with the blocks that it is planned as: pieces of its own, where it
+// is a mill's within a tolerance at the level `best`.
+template <class M, class Take>
+int with_plan(const Options& options, const support::Machine& file, const M& machine,
+              const Program<M>& program, const Take& take) {
+  if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
+    if (options.tolerance > 0.0 && !options.events && options.smooth != Smooth::fast) {
+      using Smoothed = SmoothMill<M::axis_count>;
+      double seconds = 0.0;
+      const auto planned = [&] {
+        const Stopwatch watch(seconds);
+        return cncplan::plan_smooth(
+            program.blocks, Smoothed{machine},
+            {.tolerance = options.tolerance,
+             .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree});
+      }();
+      if (!planned) {
+        auto error = planned.error();
+        error.file = program.file;
+        throw Failure(Exit::bad_input, cncplan::to_text(error));
+      }
+      Program<Smoothed> pieces{program, {planned->program().begin(), planned->program().end()}};
+      pieces.motion_of.clear();
+      for (const auto& piece : pieces.blocks) pieces.motion_of.push_back(program.motion_of[piece.source]);
+      return take(pieces, Run<Smoothed>(options, file, pieces, *planned, seconds));
+    }
+  return take(program, Run<M>(options, file, machine, program));
 }
 
 template <class M>
@@ -204,17 +238,31 @@ int run(const Options& options, const support::Machine& file, const M& machine) 
   problems.refuse();
   if (options.check) return static_cast<int>(Exit::done);
 
-  if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
-    if (options.tolerance > 0.0 && !options.events && options.smooth != Smooth::fast)
-      return run_smoothly(options, file, machine, program);
-  return write_out(options, file, program, Run<M>(options, file, machine, program));
+  if (options.serve) {
+    const Run<M> planned(options, file, machine, program);
+    return serve_program(options, file, machine, program,
+                         html_report(options, file, program, planned.measures(), planned.trajectory()));
+  }
+  std::vector<report::Plan> others;
+  if (options.compare) {
+    Options other = options;
+    other.tolerance = *options.compare;
+    with_plan(other, file, machine, program, [&](const auto& planned, const auto& run) {
+      others.push_back(plan_of(other, file, planned, run.trajectory()));
+      return 0;
+    });
+  }
+  return with_plan(options, file, machine, program, [&](const auto& planned, auto run) {
+    return write_out(options, file, planned, std::move(run), others);
+  });
 }
 
 int run(Options options) {
   support::Machine file;
   if (options.machine) file = support::read_machine(*options.machine);
   settle(options, file);
-  if (options.report) report::check_libraries();
+  if (options.report || options.serve) report::check_libraries();
+  if (options.serve) serve::check_libraries();
   if (file.kinematics == Kinematics::tire_mold) {
     auto machine = machine_of<Rows>(file, options.limits);
     machine.tool_length = options.tool_length.value_or(0.0);

@@ -48,6 +48,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   Options options;
   std::optional<std::string> junction;
   std::optional<double> tolerance;
+  std::optional<std::string> served;
   CLI::App app(
       "Plans a G-code program under speed, acceleration and jerk limits, samples it, and turns it into step "
       "and direction edges at their exact times.",
@@ -101,10 +102,17 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--motions", options.motions, "write the program's motions, CSV");
   app.add_option("--blocks", options.blocks, "write the planned blocks, CSV");
   support::add_run_options(app, options);
+  app.add_option("--compare", options.compare,
+                 "with --report: a second plan beside the first, within this tolerance, mm")
+      ->check(support::not_negative());
+  app.add_option("--serve", served,
+                 "run the program in real time, and let a browser see and steer it: PORT of this machine, or "
+                 "ADDRESS:PORT");
   app.add_flag("--count-steps", options.count_steps,
                "make and count step edges where neither --steps nor --machine asks for them");
   if (!support::parse(app, argc, argv)) return std::nullopt;
   settle_corners(options, junction, tolerance);
+  if (served) options.serve = serve::parse_address(*served);
   support::refuse_shared_files({{"PROGRAM", options.program},
                                 {"--machine", options.machine},
                                 {"--events", options.events},

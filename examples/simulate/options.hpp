@@ -6,6 +6,7 @@
 
 #include "cncplan/cncplan.hpp"
 #include "junction_choice.hpp"
+#include "serve/address.hpp"
 #include "support/arguments.hpp"
 
 namespace simulate {
@@ -29,6 +30,8 @@ struct Options : support::RunOptions {
   double rotary_tolerance = 0.05;     ///< degrees
   std::optional<double> tool_length;  ///< mm
   std::optional<std::string> events;
+  std::optional<double> compare;  ///< mm: a second plan's tolerance, for the report
+  std::optional<serve::Address> serve;
   std::optional<int> from_line;
   bool check = false;  ///< read the program, plan nothing
   std::optional<std::string> motions;

@@ -86,10 +86,10 @@ class Browser:
                 return answer["result"]
             self._note(answer)
 
-    def open(self, path):
-        """Seconds until the page has loaded and its scripts have run."""
+    def open(self, place):
+        """A file or an http address; seconds until the page has loaded and its scripts have run."""
         start = time.monotonic()
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        self.call("Page.navigate", url=place if place.startswith("http://") else "file://" + os.path.abspath(place))
         while self._note(self._message()) != "Page.loadEventFired":
             pass
         return time.monotonic() - start

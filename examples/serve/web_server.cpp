@@ -1,0 +1,100 @@
+#include "web_server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <pthread.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <charconv>
+#include <csignal>
+#include <thread>
+
+#include "support/failure.hpp"
+#include "support/main_program.hpp"
+
+namespace serve {
+
+namespace {
+
+using support::Exit;
+using support::Failure;
+
+sigset_t end_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+// A number, all of the text.
+template <class T>
+bool read_number(std::string_view text, T& value) {
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return code == std::errc{} && end == text.data() + text.size();
+}
+
+// As it is: the library would compress a body, which takes longer than sending it to this machine.
+void answer(httplib::Response& response, std::string text, const char* type) {
+  const std::size_t size = text.size();
+  response.set_content_provider(
+      size, type, [text = std::move(text)](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        return sink.write(text.data() + offset, length);
+      });
+}
+
+// Another site's page, open in the same browser, must not move anything.
+bool from_own_page(const httplib::Request& request) {
+  return !request.has_header("Origin") ||
+         request.get_header_value("Origin") == "http://" + request.get_header_value("Host");
+}
+
+}  // namespace
+
+void check_libraries() {}
+
+void block_signals() {
+  const sigset_t set = end_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+void run_server(const Address& address, const std::string& page, const Handlers& handlers) {
+  httplib::Server server;
+  server.new_task_queue = [] { return new httplib::ThreadPool(16); };  // a page waits in one of them
+  server.set_keep_alive_timeout(1);                                    // s; nothing but this waits at the end
+  server.set_socket_options([](socket_t socket) {  // not SO_REUSEPORT: a port in use is to be refused
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  server.Get("/", [&](const httplib::Request&, httplib::Response& response) {
+    answer(response, page, "text/html; charset=utf-8");
+  });
+  server.Get("/rows", [&](const httplib::Request& request, httplib::Response& response) {
+    long long after = 0;
+    if (!read_number(request.get_param_value("after"), after)) return void(response.status = 400);
+    answer(response, handlers.rows(after), "application/json");
+  });
+  server.Post("/ask/(\\w+)", [&](const httplib::Request& request, httplib::Response& response) {
+    if (!from_own_page(request)) return void(response.status = 403);
+    const bool known = handlers.ask(request.matches[1].str(), request.get_param_value("value"));
+    response.status = known ? 204 : 400;
+  });
+
+  const int port = address.port > 0 ? (server.bind_to_port(address.host, address.port) ? address.port : -1)
+                                    : server.bind_to_any_port(address.host);
+  if (port < 0)
+    throw Failure(Exit::other, fmt::format("--serve: {} port {} cannot be taken: {}", address.host,
+                                           address.port, std::generic_category().message(errno)));
+  const bool has_colon = address.host.find(':') != std::string::npos;
+  support::print(fmt::format("http://{}:{}/\n", has_colon ? "[" + address.host + "]" : address.host, port));
+  std::thread listener([&server] { server.listen_after_bind(); });
+  const sigset_t set = end_signals();
+  int signal = 0;
+  sigwait(&set, &signal);
+  handlers.end();
+  server.stop();
+  listener.join();
+}
+
+}  // namespace serve
