@@ -76,7 +76,7 @@ struct MotionData {
 };
 
 /// Bytes that a plan's columns may take.
-inline constexpr std::size_t most_bytes = 9'000'000;
+inline constexpr std::size_t most_bytes = 8'500'000;
 
 namespace detail {
 
