@@ -143,13 +143,13 @@ class View {
 
   // Indices of fewer lines, for while the view turns: each in place of some that follow each other.
   fewer(count) {
-    const most = 30000, step = 2 * Math.ceil(count / 2 / most), indices = [];
+    const most = 12000, step = 2 * Math.ceil(count / 2 / most), indices = [];
     for (let k = 0; k < count; k += step) indices.push(k, Math.min(k + step, count) - 1);
     return indices;
   }
   // The view has been turned, moved or zoomed.
   turn() {
-    const many = this.times?.length > 60000;
+    const many = this.times?.length > 24000;
     if (many) {
       this.refine(false);
       clearTimeout(this.timer);
