@@ -16,7 +16,8 @@ using namespace cncplan;
 int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
   using F = test::PlayerFaults;
   using Worst = test::Worst<F, std::uint64_t>;
-  // jerks have 1e-6: a leg that ends by rounding short of a junction leaves its last 1e-10 s to the next tick
+  // jerks have 1e-6: a profile that ends by rounding short of a junction leaves its last 1e-10 s to the next
+  // tick
   Worst all[] = {{"jerk (relative)", &F::jerk, 1e-6},
                  {"acceleration (relative)", &F::acceleration, 1e-9},
                  {"speed (relative)", &F::speed, 1e-9},

@@ -18,24 +18,24 @@ struct Stop {
   State end;
 };
 
-// Leg after leg to rest, as a player drives them.
+// Profile after profile to rest, as a player drives them.
 Stop brake(State now, std::vector<plan::BlockCaps> zones) {
   Stop stop;
   for (int leg_number = 0; leg_number < 100; ++leg_number) {
     const Limits& limits = zones.front().limits;
-    auto leg = plan::BasicBrake<double>(zones).leg(now);
-    const double length = leg.length();
-    while (leg.left() > 0.0) {
-      const State state = leg.state();
+    auto profile = plan::BasicBrake<double>(zones).profile(now);
+    const double length = profile.length();
+    while (profile.left() > 0.0) {
+      const State state = profile.state();
       stop.worst = std::max({stop.worst, std::abs(state.acceleration) / limits.acceleration - 1,
                              std::abs(state.jerk) / limits.jerk - 1});
-      const double edge = leg.to_edge();
+      const double edge = profile.to_edge();
       stop.time += edge;
-      if (edge >= leg.left()) break;
-      leg.advance(edge);
+      if (edge >= profile.left()) break;
+      profile.advance(edge);
     }
-    leg.advance(leg.left());
-    stop.end = now = leg.state();
+    profile.advance(profile.left());
+    stop.end = now = profile.state();
     if (now.velocity < 1e-8) break;
     zones.front().length -= length;
     if (zones.size() > 1 && zones.front().length < 1e-9) zones.erase(zones.begin());

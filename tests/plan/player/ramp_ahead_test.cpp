@@ -20,19 +20,19 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
   double excess = 0.0;
   for (int i = 0; i < 3000; ++i) {
     std::vector<plan::PlayedBlock> memory(32);
-    plan::BasicRoad<double> road(memory);
+    plan::BasicPathAhead<double> path(memory);
     for (int b = 0; b < 20; ++b) {
       Limits of_block = limits;
       if (random.integer(0, 3) == 0)
         of_block = {random.uniform(10, 30), random.uniform(300, 1000), random.uniform(3000, 10000)};
       const double cap = random.integer(0, 2) == 0 ? random.uniform(0, 30) : 1e3;
-      road.ring.push({{random.log_uniform(0.05, 5), cap, of_block, 0.0}, 30.0});
+      path.ring.push({{random.log_uniform(0.05, 5), cap, of_block, 0.0}, 30.0});
     }
-    road.ring.take();
-    const Limits& here = road.ring[0].caps.limits;
+    path.ring.take();
+    const Limits& here = path.ring[0].caps.limits;
     const double a = random.uniform(-1, 1) * here.acceleration;
     const double v = random.uniform(0, here.velocity) + (a < 0 ? a * a / (2 * here.jerk) : 0.0);
-    const auto ramp = plan::ramp_ahead(road, {0, 0.0}, {0, v, a, 0}, random.uniform(0, 30));
+    const auto ramp = plan::ramp_ahead(path, {0, 0.0}, {0, v, a, 0}, random.uniform(0, 30));
     refused += ramp ? 0 : 1;
     if (!ramp) continue;
     ++ramps;
@@ -40,14 +40,14 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
     for (int k = 0; k <= 400; ++k) {
       const State state = ramp->at(ramp->duration() * k / 400);
       const auto before = at.block;
-      at = road.advance({0, 0.0}, state.position);
-      const Limits& there = road.ring[at.block].caps.limits;
+      at = path.advance({0, 0.0}, state.position);
+      const Limits& there = path.ring[at.block].caps.limits;
       const double allowed = std::max(there.velocity, at.block == 0 ? v : 0.0);
       excess = std::max({excess, state.velocity / allowed - 1,
                          std::abs(state.acceleration) / there.acceleration - 1,
                          std::abs(state.jerk) / there.jerk - 1});
       if (at.block == before) continue;
-      const double cap = road.ring[at.block].caps.entry;
+      const double cap = path.ring[at.block].caps.entry;
       const double crossed = ramp->at(ramp->time_at(state.position - at.along)).velocity;
       excess = std::max(excess, (crossed - cap) / 30.0);
     }
@@ -60,10 +60,10 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
 
 TEST_CASE("a ramp that crests above both its speeds is held to a junction there") {
   std::vector<plan::PlayedBlock> memory(4);
-  plan::BasicRoad<double> road(memory);
-  road.ring.push({{0.2, 0.0, limits, 0.0}, 30.0});
-  road.ring.push({{5.0, 1e3, {10.3, 1000.0, 10000.0}, 0.0}, 30.0});
-  road.ring.take();
+  plan::BasicPathAhead<double> path(memory);
+  path.ring.push({{0.2, 0.0, limits, 0.0}, 30.0});
+  path.ring.push({{5.0, 1e3, {10.3, 1000.0, 10000.0}, 0.0}, 30.0});
+  path.ring.take();
   // 10 mm/s and rising: over 11 before it can come down to 10.2
-  CHECK_FALSE(plan::ramp_ahead(road, {0, 0.0}, {0, 10.0, 150.0, 0}, 10.2));
+  CHECK_FALSE(plan::ramp_ahead(path, {0, 0.0}, {0, 10.0, 150.0, 0}, 10.2));
 }

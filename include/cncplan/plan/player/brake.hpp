@@ -11,7 +11,7 @@
 #include <span>
 
 #include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/player/leg.hpp"
+#include "cncplan/plan/player/running_profile.hpp"
 
 namespace cncplan::plan {
 
@@ -41,7 +41,7 @@ class BasicBrake {
   }
 
   /// The motion from a safe state to the end of the first zone, or to rest.
-  [[nodiscard]] BasicLeg<S> leg(const BasicState<S>& from) const {
+  [[nodiscard]] BasicRunningProfile<S> profile(const BasicState<S>& from) const {
     const BasicLimits<S>& limits = zones_[0].limits;
     std::array<BasicPhase<S>, 3> phases{};
     std::size_t count = 0;
@@ -64,7 +64,7 @@ class BasicBrake {
       if (!whole) append(run(now, limits.jerk, -now.acceleration / limits.jerk, 0).phase);
       if (!whole || to_border) break;
     }
-    return BasicLeg<S>(std::span<const BasicPhase<S>>(phases.data(), count), now.position);
+    return BasicRunningProfile<S>(std::span<const BasicPhase<S>>(phases.data(), count), now.position);
   }
 
  private:

@@ -13,9 +13,9 @@
 
 #include "cncplan/plan/player/brake_ahead.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
-#include "cncplan/plan/player/leg.hpp"
+#include "cncplan/plan/player/path_ahead.hpp"
 #include "cncplan/plan/player/ramp_ahead.hpp"
-#include "cncplan/plan/player/road.hpp"
+#include "cncplan/plan/player/running_profile.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/from_state.hpp"
 
@@ -65,7 +65,7 @@ struct BasicPlayedPart {
 /// acceleration and jerk stay within limits.
 ///
 /// Plans reach as far as the blocks ahead can matter. Where a way down begins that more blocks might spare,
-/// and at the end of each leg that they might better, the rest is planned anew.
+/// and at the end of each profile that they might better, the rest is planned anew.
 template <std::floating_point S>
 class BasicPlayer {
  public:
@@ -75,35 +75,35 @@ class BasicPlayer {
   /// `keep_behind` blocks stay in memory for running backwards; fewer where that would not leave room for
   /// `memory.ahead`, none where it is negative.
   explicit BasicPlayer(const BasicPlayerMemory<S>& memory, std::int64_t keep_behind = 0)
-      : memory_(memory), road_(memory.blocks) {
+      : memory_(memory), path_(memory.blocks) {
     const std::size_t gates = std::min(memory.gates.size(), memory.spare_gates.size());
     memory_.ahead = memory.ahead.first(std::min(memory.ahead.size(), std::max<std::size_t>(gates, 1) - 1));
-    const std::int64_t room = road_.ring.capacity() - static_cast<std::int64_t>(memory_.ahead.size());
+    const std::int64_t room = path_.ring.capacity() - static_cast<std::int64_t>(memory_.ahead.size());
     keep_behind_ = std::clamp(keep_behind, std::int64_t{0}, std::max(room, std::int64_t{0}));
   }
 
   /// Takes the next block of the program. False when there is no room. What a block may be is said there. Of
   /// all members this one alone may be called by another thread than the one that ticks.
-  bool push(const Block& block) { return road_.ring.push(block); }
+  bool push(const Block& block) { return path_.ring.push(block); }
   /// A block that is kept.
-  [[nodiscard]] const Block& operator[](std::int64_t block) const { return road_.ring[block]; }
+  [[nodiscard]] const Block& operator[](std::int64_t block) const { return path_.ring[block]; }
   /// The oldest block that is kept; the one behind the last that a tick has seen.
-  [[nodiscard]] std::int64_t oldest() const { return road_.ring.oldest(); }
-  [[nodiscard]] std::int64_t end() const { return road_.ring.end(); }
+  [[nodiscard]] std::int64_t oldest() const { return path_.ring.oldest(); }
+  [[nodiscard]] std::int64_t end() const { return path_.ring.end(); }
   /// Lets the oldest block go, if the machine is behind it; whether it was.
   bool forget_oldest() {
-    if (road_.ring.oldest() >= at_.block) return false;
-    return road_.ring.release(road_.ring.oldest() + 1);
+    if (path_.ring.oldest() >= at_.block) return false;
+    return path_.ring.release(path_.ring.oldest() + 1);
   }
 
   /// Comes to rest as soon as the limits allow; `resume` goes on from there.
-  void hold() { ask(road_.asked.held, true); }
-  void resume() { ask(road_.asked.held, false); }
+  void hold() { ask(path_.asked.held, true); }
+  void resume() { ask(path_.asked.held, false); }
 
   /// Comes to rest likewise, and does not go on: the program ends there.
   void stop() {
     wait_for(S(0));
-    ask(road_.asked.stopped, true);
+    ask(path_.asked.stopped, true);
   }
 
   /// Comes to rest with acceleration and jerk limits of its own, not both infinite; then it is held. Limits
@@ -112,36 +112,36 @@ class BasicPlayer {
   void quick_stop(S acceleration, S jerk) {
     hold();
     if (idle_) return;
-    const BasicState<S> now = leg_.state();
+    const BasicState<S> now = running_.state();
     const BasicSpot<S> at = locate();
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    road_.above = leg_above_;
-    BasicLimits<S> limits = road_.strongest(at, fastest_ahead(road_, at, now));
+    path_.above = running_above_;
+    BasicLimits<S> limits = path_.strongest(at, fastest_ahead(path_, at, now));
     limits.velocity = S(1);  // plays no part
     limits.acceleration = std::max({limits.acceleration, acceleration, std::abs(now.acceleration)});
     limits.jerk = std::max(limits.jerk, jerk);
     const auto ramp = profile::stop(state, limits);
     if (!ramp) return;
-    follow(BasicLeg<S>(*ramp), at, no_gate);
+    follow(BasicRunningProfile<S>(*ramp), at, no_gate);
     pending_ = false;
   }
 
   /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is NaN. Values outside are cut.
-  void feed_override(S share) { ask(road_.asked.feed_share, share_up_to(S(2), share)); }
+  void feed_override(S share) { ask(path_.asked.feed_share, share_up_to(S(2), share)); }
   /// Share of the rapid rate, 0 to 1, likewise.
-  void rapid_override(S share) { ask(road_.asked.rapid_share, share_up_to(S(1), share)); }
+  void rapid_override(S share) { ask(path_.asked.rapid_share, share_up_to(S(1), share)); }
 
   /// Runs backwards along the path, as far as blocks are kept, or forwards again. It comes to rest in
   /// between.
-  void backwards(bool wanted) { ask(road_.asked.direction, wanted ? -1 : 1); }
+  void backwards(bool wanted) { ask(path_.asked.direction, wanted ? -1 : 1); }
 
   /// Stops behind every block (single step): `resume` runs the next one.
-  void single_step(bool wanted) { ask(road_.asked.single_step, wanted); }
+  void single_step(bool wanted) { ask(path_.asked.single_step, wanted); }
   /// Whether blocks with an optional stop stop, and those with a program stop; `resume` goes on.
-  void optional_stop(bool wanted) { ask(road_.asked.optional_stops, wanted); }
-  void program_stop(bool wanted) { ask(road_.asked.program_stops, wanted); }
+  void optional_stop(bool wanted) { ask(path_.asked.optional_stops, wanted); }
+  void program_stop(bool wanted) { ask(path_.asked.program_stops, wanted); }
   /// Stops before the first block of this line of the program; `resume` goes on. 0: none.
-  void pause_at(int line) { ask(road_.asked.pause_line, line); }
+  void pause_at(int line) { ask(path_.asked.pause_line, line); }
 
   /// At rest: forgets all blocks; the next one that is pushed has this number, and the motion begins at its
   /// start. The way there is the caller's, as is all that the blocks before would have brought about (tools,
@@ -149,10 +149,10 @@ class BasicPlayer {
   /// for a number below 0.
   bool skip_to(std::int64_t block) {
     if (!idle_ || block < 0) return false;
-    road_.ring.restart(block);
-    road_.asked.direction = road_.direction = 1;
-    road_.asked.stopped = false;
-    road_.passed_pause = -1;
+    path_.ring.restart(block);
+    path_.asked.direction = path_.direction = 1;
+    path_.asked.stopped = false;
+    path_.passed_pause = -1;
     at_ = {block, S(0)};
     wait_for(S(0));
     pending_ = false;
@@ -170,14 +170,14 @@ class BasicPlayer {
   template <std::invocable<const BasicPlayedPart<S>&> Visit>
   BasicPlayed<S> tick(S period, Visit&& visit, bool tell = true) {
     const auto advance = [&](S seconds, S left) {
-      tell ? drive(seconds, period - left, visit) : leg_.advance(seconds);
+      tell ? drive(seconds, period - left, visit) : running_.advance(seconds);
     };
     look();
-    if (pending_ || (could_better() && leg_.to_turn() <= S(0))) renew();
+    if (pending_ || (could_better() && running_.to_turn() <= S(0))) renew();
     S left = period;
     int plans = most_plans;
-    const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: legs end blocks
-    for (std::size_t hops = 0; (left > S(0) || leg_over()) && hops < most_hops; ++hops) {
+    const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: profiles end blocks
+    for (std::size_t hops = 0; (left > S(0) || profile_over()) && hops < most_hops; ++hops) {
       if (const S wait = waits(); wait > S(0)) {
         const S waited = std::min(wait, left);
         dwell_.add(waited);
@@ -185,25 +185,26 @@ class BasicPlayer {
       } else if (idle_) {
         if (!pending_ || plans-- == 0) break;
         renew();
-      } else if (const S turn = leg_.to_turn(); plans > 0 && could_better() && turn > S(0) && turn <= left) {
+      } else if (const S turn = running_.to_turn();
+                 plans > 0 && could_better() && turn > S(0) && turn <= left) {
         advance(turn, left);
         left -= turn;
         --plans;
         const BasicSpot<S> at = locate();
-        if (plan_from(at, leg_.state().velocity)) adopt(at);
-      } else if (left < leg_.left()) {
+        if (plan_from(at, running_.state().velocity)) adopt(at);
+      } else if (left < running_.left()) {
         advance(left, left);
         left = S(0);
       } else {
-        const S over = leg_.left();
+        const S over = running_.left();
         advance(over, left);
         left -= over;
-        if (next_leg(plans > 0)) --plans;
+        if (next_profile(plans > 0)) --plans;
       }
     }
     rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
     const BasicPlayed<S> now = played();
-    road_.ring.release(at_.block - keep_behind_);
+    path_.ring.release(at_.block - keep_behind_);
     return now;
   }
 
@@ -211,8 +212,8 @@ class BasicPlayer {
   [[nodiscard]] S until_change() const {
     if (waits() > S(0)) return waits();
     if (idle_) return std::numeric_limits<S>::infinity();
-    const S turn = leg_.to_turn();
-    return could_better() && turn > S(0) ? std::min(turn, leg_.to_edge()) : leg_.to_edge();
+    const S turn = running_.to_turn();
+    return could_better() && turn > S(0) ? std::min(turn, running_.to_edge()) : running_.to_edge();
   }
 
   /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
@@ -220,12 +221,12 @@ class BasicPlayer {
 
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && !(waits() > S(0)) && road_.direction > 0 && at_.block >= road_.ring.pushed();
+    return idle_ && !(waits() > S(0)) && path_.direction > 0 && at_.block >= path_.ring.pushed();
   }
   /// Whether it rests and will not go on by itself.
   [[nodiscard]] bool rests() const {
-    const bool nothing_ahead = road_.direction > 0 && at_.block >= road_.ring.pushed();
-    return idle_ && !(waits() > S(0)) && (road_.asked.held || road_.asked.stopped || nothing_ahead);
+    const bool nothing_ahead = path_.direction > 0 && at_.block >= path_.ring.pushed();
+    return idle_ && !(waits() > S(0)) && (path_.asked.held || path_.asked.stopped || nothing_ahead);
   }
   /// Where it is, at rest or in motion.
   [[nodiscard]] BasicPlayed<S> place() {
@@ -233,7 +234,7 @@ class BasicPlayer {
     return played();
   }
   /// Whether it rests because of `stop`.
-  [[nodiscard]] bool stopped() const { return road_.asked.stopped && idle_; }
+  [[nodiscard]] bool stopped() const { return path_.asked.stopped && idle_; }
 
  private:
   static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
@@ -248,28 +249,28 @@ class BasicPlayer {
     pending_ = true;
   }
 
-  // Goes on in the leg, part by part, `passed` seconds into the tick.
+  // Goes on in the profile, part by part, `passed` seconds into the tick.
   template <class Visit>
   void drive(S seconds, S passed, Visit& visit) {
     while (seconds > S(0)) {
-      const BasicSpot<S> at = road_.snapped(locate());
-      const BlockRing<S>& ring = road_.ring;
-      const BasicState<S> now = leg_.state();
-      const S edge = leg_.to_edge();
+      const BasicSpot<S> at = path_.snapped(locate());
+      const BlockRing<S>& ring = path_.ring;
+      const BasicState<S> now = running_.state();
+      const S edge = running_.to_edge();
       BasicPlayedPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
                                now.acceleration, now.jerk},
                               at.block,
                               at.along,
-                              road_.direction};
-      if (ring.holds(at.block + road_.direction) && ring.holds(at.block)) {
+                              path_.direction};
+      if (ring.holds(at.block + path_.direction) && ring.holds(at.block)) {
         const S until = part.phase.tau_at(ring.length(at.block) - at.along);
         if (until > S(0)) part.phase.duration = std::min(part.phase.duration, until);
       }
       if (ring.holds(at.block)) {
-        if (road_.direction < 0) part.along = ring.length(at.block) - at.along;
+        if (path_.direction < 0) part.along = ring.length(at.block) - at.along;
         visit(std::as_const(part));
       }
-      leg_.advance(part.phase.duration);
+      running_.advance(part.phase.duration);
       passed += part.phase.duration;
       seconds -= part.phase.duration;
     }
@@ -277,7 +278,7 @@ class BasicPlayer {
 
   // Takes notice of blocks that were pushed.
   void look() {
-    if (!road_.ring.take()) return;
+    if (!path_.ring.take()) return;
     more_ = true;
     pending_ = pending_ || idle_;
   }
@@ -289,34 +290,34 @@ class BasicPlayer {
     dwell_.add(-seconds);
   }
 
-  // Whether blocks that the plan does not know could spare the way down that this leg ends with.
+  // Whether blocks that the plan does not know could spare the way down that this profile ends with.
   [[nodiscard]] bool could_better() const {
-    return more_ && !leg_settled_ && leg_.state().position > road_rounding<S>;
+    return more_ && !running_settled_ && running_.state().position > path_rounding<S>;
   }
 
-  [[nodiscard]] bool leg_over() const { return !idle_ && !(leg_.left() > S(0)); }
+  [[nodiscard]] bool profile_over() const { return !idle_ && !(running_.left() > S(0)); }
 
-  // Where it is now. The block goes along, the leg's start then lies before it. At rest a block of no length
-  // is not passed by.
+  // Where it is now. The block goes along, the profile's start then lies before it. At rest a block of no
+  // length is not passed by.
   BasicSpot<S> locate() {
     if (idle_) return at_;
-    const S position = leg_.state().position;
-    const BasicSpot<S> at = road_.advance(at_, position);
+    const S position = running_.state().position;
+    const BasicSpot<S> at = path_.advance(at_, position);
     if (at.block != at_.block) at_ = {at.block, at.along - position};
     return at;
   }
 
   [[nodiscard]] BasicPlayed<S> played() {
-    const BlockRing<S>& ring = road_.ring;
+    const BlockRing<S>& ring = path_.ring;
     if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
-    const BasicState<S> now = leg_.state();
+    const BasicState<S> now = running_.state();
     BasicSpot<S> at = locate();
     if (!ring.holds(at.block) ||
         (waits() > S(0) && ring.holds(at.block - 1)))  // behind the last, or dwelling
-      at = {at.block - road_.direction, ring.length(at.block - road_.direction)};
+      at = {at.block - path_.direction, ring.length(at.block - path_.direction)};
     const S whole = ring.length(at.block);
     const S travelled = std::min(at.along, whole);
-    const S sign = static_cast<S>(road_.direction);
+    const S sign = static_cast<S>(path_.direction);
     return {at.block,
             sign > S(0) ? travelled : whole - travelled,
             sign * now.velocity,
@@ -329,7 +330,7 @@ class BasicPlayer {
   void renew() {
     if (waits() > S(0)) return;
     const bool asked = std::exchange(pending_, false);
-    road_.above = road_.asks_above();
+    path_.above = path_.asks_above();
     if (idle_)
       start();
     else
@@ -337,50 +338,50 @@ class BasicPlayer {
   }
 
   void start() {
-    if (road_.asked.held || road_.asked.stopped || road_.ring.end() == road_.ring.oldest()) return;
-    at_ = road_.turn_round(at_);
+    if (path_.asked.held || path_.asked.stopped || path_.ring.end() == path_.ring.oldest()) return;
+    at_ = path_.turn_round(at_);
     if (at_.along == S(0) && pauses_here()) return;
     if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
   }
 
   bool replan(bool asked) {
-    const BasicState<S> now = leg_.state();
+    const BasicState<S> now = running_.state();
     const BasicSpot<S> at = locate();
-    if (!road_.ring.holds(at.block)) return false;
-    if (road_.must_rest(at.block)) {
-      road_.above = leg_above_;
-      const auto leg = brake_ahead(road_, at, now, memory_.ahead);
-      if (leg) follow(*leg, at, no_gate);
-      return leg.has_value();
+    if (!path_.ring.holds(at.block)) return false;
+    if (path_.must_rest(at.block)) {
+      path_.above = running_above_;
+      const auto braking = brake_ahead(path_, at, now, memory_.ahead);
+      if (braking) follow(*braking, at, no_gate);
+      return braking.has_value();
     }
-    if (now.acceleration == S(0) && now.velocity <= road_.wanted_speed(at.block) &&
+    if (now.acceleration == S(0) && now.velocity <= path_.wanted_speed(at.block) &&
         plan_from(at, now.velocity)) {
       adopt(at);
       return true;
     }
     // From below the feed to above it, the lower acceleration limits there hold from the ramp on, or from its
     // end; from above, up to its end.
-    if (replan(asked, now, at, leg_above_ || road_.asks_above())) return true;
-    return road_.asks_above() && !leg_above_ && replan(asked, now, at, false);
+    if (replan(asked, now, at, running_above_ || path_.asks_above())) return true;
+    return path_.asks_above() && !running_above_ && replan(asked, now, at, false);
   }
 
   // By a ramp under the limits above the feed, or those up to it.
   bool replan(bool asked, const BasicState<S>& now, const BasicSpot<S>& at, bool ramp_above) {
-    const bool above = road_.asks_above();
+    const bool above = path_.asks_above();
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    road_.above = above;
-    const S wanted = road_.wanted_speed(at.block);
-    road_.above = ramp_above;
-    const S settled = profile::settled_speed(state, road_.limits(at.block));
+    path_.above = above;
+    const S wanted = path_.wanted_speed(at.block);
+    path_.above = ramp_above;
+    const S settled = profile::settled_speed(state, path_.limits(at.block));
     for (const S target : {wanted, settled > negligible_speed<S> ? std::min(settled, wanted) : S(0)}) {
-      road_.above = ramp_above;
-      const auto ramp = ramp_ahead(road_, at, now, target);
-      road_.above = above;
-      if (!ramp || !plan_from(road_.advance(at, ramp->length()), target)) continue;
+      path_.above = ramp_above;
+      const auto ramp = ramp_ahead(path_, at, now, target);
+      path_.above = above;
+      if (!ramp || !plan_from(path_.advance(at, ramp->length()), target)) continue;
       if (!asked && !betters(*ramp)) continue;
       take_spare();
-      follow(BasicLeg<S>(*ramp), at, 0);
-      leg_above_ = ramp_above;
+      follow(BasicRunningProfile<S>(*ramp), at, 0);
+      running_above_ = ramp_above;
       return true;
     }
     return false;
@@ -389,8 +390,8 @@ class BasicPlayer {
   // Plans from a spot at a speed with zero acceleration, into the spare gates. False if the speed is too high
   // there.
   bool plan_from(const BasicSpot<S>& from, S speed) {
-    road_.above = road_.asks_above();
-    const auto [blocks, whole] = road_.ahead(from, speed, memory_.ahead);
+    path_.above = path_.asks_above();
+    const auto [blocks, whole] = path_.ahead(from, speed, memory_.ahead);
     spare_whole_ = whole;
     spare_count_ = 0;
     if (blocks == 0) return speed == S(0);
@@ -401,12 +402,12 @@ class BasicPlayer {
     return !(memory_.spare_gates[0].speed < speed);
   }
 
-  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the leg ends, no
-  // slower there, and does not brake there. A way down that has begun is given up for nothing less: once the
-  // brake is released it has to begin anew.
+  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the profile ends,
+  // no slower there, and does not brake there. A way down that has begun is given up for nothing less: once
+  // the brake is released it has to begin anew.
   [[nodiscard]] bool betters(const profile::BasicProfile<S>& ramp) const {
-    const BasicState<S> now = leg_.state(), end = leg_.end();
-    S left = leg_.length() - now.position;
+    const BasicState<S> now = running_.state(), end = running_.end();
+    S left = running_.length() - now.position;
     S time = ramp.time_at(left);
     BasicState<S> there = ramp.at(time);
     left -= ramp.length();
@@ -421,15 +422,15 @@ class BasicPlayer {
       left -= profile->length();
       gate = next;
     }
-    constexpr S but_for_rounding = S(1) - road_rounding<S>;
-    return time < leg_.left() * but_for_rounding && there.velocity >= end.velocity * but_for_rounding;
+    constexpr S but_for_rounding = S(1) - path_rounding<S>;
+    return time < running_.left() * but_for_rounding && there.velocity >= end.velocity * but_for_rounding;
   }
 
   // Makes the plan in the spare gates the one that holds.
   void take_spare() {
     std::swap(memory_.gates, memory_.spare_gates);
     gate_count_ = spare_count_;
-    plan_above_ = road_.asks_above();
+    plan_above_ = path_.asks_above();
     more_ = !spare_whole_;
   }
 
@@ -443,13 +444,13 @@ class BasicPlayer {
       begin_span(0);
   }
 
-  // Drives a leg; behind it the plan goes on at a gate, or the machine comes to rest.
-  void follow(const BasicLeg<S>& leg, const BasicSpot<S>& from, std::size_t gate) {
+  // Drives a profile; behind it the plan goes on at a gate, or the machine comes to rest.
+  void follow(const BasicRunningProfile<S>& profile, const BasicSpot<S>& from, std::size_t gate) {
     at_ = from;
-    leg_ = leg;
+    running_ = profile;
     next_gate_ = gate;
-    if (gate != no_gate) leg_above_ = plan_above_;
-    leg_settled_ = gate == no_gate || gate == 0 || memory_.gates[gate].settled;
+    if (gate != no_gate) running_above_ = plan_above_;
+    running_settled_ = gate == no_gate || gate == 0 || memory_.gates[gate].settled;
     idle_ = false;
   }
 
@@ -459,30 +460,31 @@ class BasicPlayer {
     if (const auto profile = planner.profile(gate, next)) {
       const Gate& end = memory_.gates[next];
       const profile::BasicRampLaw<S> law = profile::seven_phase_law(end.limits);
-      return follow(BasicLeg<S>(*profile, S(2) * law.half_duration(std::sqrt(end.speed))), at_, next);
+      return follow(BasicRunningProfile<S>(*profile, S(2) * law.half_duration(std::sqrt(end.speed))), at_,
+                    next);
     }
     const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
                                     memory_.gates[gate].limits);
-    follow(BasicLeg<S>(*stop), at_, no_gate);
+    follow(BasicRunningProfile<S>(*stop), at_, no_gate);
   }
 
-  // The leg is over: the next one, or rest. True if it has planned, where that is allowed.
-  bool next_leg(bool may_plan) {
-    const BasicState<S> end = leg_.state();
+  // The profile is over: the next one, or rest. True if it has planned, where that is allowed.
+  bool next_profile(bool may_plan) {
+    const BasicState<S> end = running_.state();
     const BasicSpot<S> from = at_;
-    at_ = road_.snapped(road_.advance(at_, leg_.length()));
+    at_ = path_.snapped(path_.advance(at_, running_.length()));
     const bool rests = !(end.velocity > negligible_speed<S>);
     const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
     if (next_gate_ == no_gate) {
-      road_.above = leg_above_;
-      if (!rests && road_.ring.holds(at_.block))
-        return follow(braking_on(road_, at_, end, memory_.ahead), at_, no_gate), false;
-      return at_junction && !road_.asked.stopped ? rest_as_planned() : rest(), false;
+      path_.above = running_above_;
+      if (!rests && path_.ring.holds(at_.block))
+        return follow(braking_on(path_, at_, end, memory_.ahead), at_, no_gate), false;
+      return at_junction && !path_.asked.stopped ? rest_as_planned() : rest(), false;
     }
     if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
     // a ramp that began on the way to a stop, and ends there
-    const std::int64_t done = at_.block - road_.direction;
-    if (rests && at_junction && road_.ring.holds(done) && road_.stops_behind(done))
+    const std::int64_t done = at_.block - path_.direction;
+    if (rests && at_junction && path_.ring.holds(done) && path_.stops_behind(done))
       return rest_as_planned(), false;
     // nothing that comes can change where a span ends that is settled
     const bool plans = may_plan && more_ && !memory_.gates[next_knot<S>(memory_.gates, next_gate_)].settled;
@@ -495,11 +497,11 @@ class BasicPlayer {
 
   // The plan ends here, at a junction; or a brake does, which may be the plan's own.
   void rest_as_planned() {
-    const std::int64_t done = at_.block - road_.direction;
-    const Block* const block = road_.ring.holds(done) ? &road_.ring[done] : nullptr;
-    BasicRequests<S>& asked = road_.asked;
-    if (block != nullptr && road_.direction > 0) wait_for(block->caps.pause);
-    if (block != nullptr ? road_.holds_behind(*block) : asked.single_step) asked.held = true;
+    const std::int64_t done = at_.block - path_.direction;
+    const Block* const block = path_.ring.holds(done) ? &path_.ring[done] : nullptr;
+    BasicRequests<S>& asked = path_.asked;
+    if (block != nullptr && path_.direction > 0) wait_for(block->caps.pause);
+    if (block != nullptr ? path_.holds_behind(*block) : asked.single_step) asked.held = true;
     pauses_here();
     rest();
   }
@@ -507,37 +509,38 @@ class BasicPlayer {
   // Holds at a junction where a pause is asked for. Whether one is.
   bool pauses_here() {
     const std::int64_t done = at_.block - 1;
-    const bool pauses = road_.pauses_before(at_.block, road_.ring.holds(done) ? road_.ring[done].line : 0);
+    const bool pauses = path_.pauses_before(at_.block, path_.ring.holds(done) ? path_.ring[done].line : 0);
     if (pauses) {
-      road_.asked.held = true;
-      road_.passed_pause = at_.block;
+      path_.asked.held = true;
+      path_.passed_pause = at_.block;
     }
     return pauses;
   }
 
   void rest() {
-    leg_ = {};
-    leg_settled_ = true;
+    running_ = {};
+    running_settled_ = true;
     idle_ = true;
-    pending_ = !road_.asked.held;
+    pending_ = !path_.asked.held;
   }
 
   BasicPlayerMemory<S> memory_;
-  BasicRoad<S> road_;
+  BasicPathAhead<S> path_;
   std::int64_t keep_behind_ = 0;
-  BasicSpot<S> at_;  // where the leg started, seen from the block the machine is in; at rest, where that is
-  BasicLeg<S> leg_;
+  BasicSpot<S>
+      at_;  // where the profile started, seen from the block the machine is in; at rest, where that is
+  BasicRunningProfile<S> running_;
   std::size_t gate_count_ = 0;
   std::size_t spare_count_ = 0;
   std::size_t next_gate_ = no_gate;
-  BasicElapsed<S> dwell_;     // s to its end, below 0
-  S rested_{};                // s
-  bool plan_above_ = false;   // the plan is made for more than the feed
-  bool leg_above_ = false;    // the leg is
-  bool pending_ = false;      // a request has not been met yet
-  bool more_ = false;         // there are blocks that the plan does not know
-  bool spare_whole_ = false;  // the plan in the spare gates knows all
-  bool leg_settled_ = false;  // what comes cannot change where the leg ends
+  BasicElapsed<S> dwell_;         // s to its end, below 0
+  S rested_{};                    // s
+  bool plan_above_ = false;       // the plan is made for more than the feed
+  bool running_above_ = false;    // the profile is
+  bool pending_ = false;          // a request has not been met yet
+  bool more_ = false;             // there are blocks that the plan does not know
+  bool spare_whole_ = false;      // the plan in the spare gates knows all
+  bool running_settled_ = false;  // what comes cannot change where the profile ends
   bool idle_ = true;
 };
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "cncplan/plan/player/road.hpp"
+#include "cncplan/plan/player/path_ahead.hpp"
 #include "cncplan/profile/from_state.hpp"
 
 namespace cncplan::plan {
@@ -34,16 +34,16 @@ template <std::floating_point S>
 /// The ramp from the state at a spot to a speed with zero acceleration, under the lowest limits of all blocks
 /// that it touches. Nothing where a cap ahead forbids it, or the state is beyond these limits.
 template <std::floating_point S>
-[[nodiscard]] std::optional<profile::BasicProfile<S>> ramp_ahead(const BasicRoad<S>& road,
+[[nodiscard]] std::optional<profile::BasicProfile<S>> ramp_ahead(const BasicPathAhead<S>& path,
                                                                  const BasicSpot<S>& from,
                                                                  const BasicState<S>& now, S target) {
   const profile::BasicStartState<S> start{now.velocity, now.acceleration};
-  BasicLimits<S> limits = road.limits(from.block);
+  BasicLimits<S> limits = path.limits(from.block);
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    if (std::abs(now.acceleration) > limits.acceleration * (S(1) + road_rounding<S>)) return {};
+    if (std::abs(now.acceleration) > limits.acceleration * (S(1) + path_rounding<S>)) return {};
     const S settled = profile::settled_speed(start, limits);
-    if (settled < -road_rounding<S>) return {};
+    if (settled < -path_rounding<S>) return {};
     const profile::BasicProfile<S> ramp = detail::ramp_profile(start, target, limits);
     const S whole = ramp.length();
     const bool crests = now.acceleration > S(0) && target < settled;  // goes above both speeds
@@ -54,21 +54,21 @@ template <std::floating_point S>
     BasicSpot<S> at = from;
     S position = S(0);
     S speed = now.velocity;
-    for (S until = road.ring.length(at.block) - at.along;; until += road.ring.length(at.block)) {
-      const BasicLimits<S>& there = road.limits(at.block);
+    for (S until = path.ring.length(at.block) - at.along;; until += path.ring.length(at.block)) {
+      const BasicLimits<S>& there = path.limits(at.block);
       touched.acceleration = std::min(touched.acceleration, there.acceleration);
       touched.jerk = std::min(touched.jerk, there.jerk);
       // at speed it must not end at a junction, which would go unseen
-      const bool last = !(until < (target > S(0) ? whole + road_rounding<S> : whole));
+      const bool last = !(until < (target > S(0) ? whole + path_rounding<S> : whole));
       const S next_speed = last ? target : ramp.at(ramp.time_at(until)).velocity;
       const bool crest_here = crest.position >= position && crest.position <= until;
       const S highest = crest_here ? crest.velocity : std::max(speed, next_speed);
       const S allowed = std::max(there.velocity, at.block == from.block ? now.velocity : S(0));
       if (fastest > allowed * tolerance && highest > allowed * tolerance) return {};
       if (last) break;
-      if (!road.ring.holds(at.block + road.direction) || road.stops_behind(at.block)) return {};
-      at.block += road.direction;
-      if (next_speed > road.junction_cap(at.block) * tolerance) return {};
+      if (!path.ring.holds(at.block + path.direction) || path.stops_behind(at.block)) return {};
+      at.block += path.direction;
+      if (next_speed > path.junction_cap(at.block) * tolerance) return {};
       position = until;
       speed = next_speed;
     }

@@ -1,4 +1,4 @@
-#include "cncplan/plan/player/leg.hpp"
+#include "cncplan/plan/player/running_profile.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,22 +9,22 @@
 
 using namespace cncplan;
 
-TEST_CASE("a leg says what its profile says, whatever the steps") {
+TEST_CASE("a running profile says what its profile says, whatever the steps") {
   test::Random random;
   double worst = 0.0;
   for (int i = 0; i < 300; ++i) {
     const Limits limits{30.0, random.log_uniform(100, 2000), random.log_uniform(1000, 50000)};
     const auto profile = profile::seven_phase(random.log_uniform(0.01, 20), {0.0, 0.0}, limits);
     REQUIRE(profile);
-    plan::BasicLeg<double> leg(*profile);
-    CHECK(leg.length() == profile->length());
-    CHECK(leg.left() == profile->duration());
+    plan::BasicRunningProfile<double> running(*profile);
+    CHECK(running.length() == profile->length());
+    CHECK(running.left() == profile->duration());
     double time = 0.0;
-    while (leg.left() > 1e-9) {
-      const double step = std::min(leg.left() * random.uniform(0, 1), random.log_uniform(1e-5, 1e-1));
-      leg.advance(step);
+    while (running.left() > 1e-9) {
+      const double step = std::min(running.left() * random.uniform(0, 1), random.log_uniform(1e-5, 1e-1));
+      running.advance(step);
       time += step;
-      const State is = leg.state(), should = profile->at(time);
+      const State is = running.state(), should = profile->at(time);
       worst = std::max({worst, std::abs(is.position - should.position) / profile->length(),
                         std::abs(is.velocity - should.velocity) / limits.velocity});
     }
@@ -36,25 +36,25 @@ TEST_CASE("edges are where the jerk changes, the turn lies in the cruise, before
   const Limits limits{30.0, 1000.0, 10000.0};
   const auto profile = profile::seven_phase(20.0, {0.0, 0.0}, limits);
   const auto phases = profile->phases();
-  plan::BasicLeg<double> leg(*profile);
+  plan::BasicRunningProfile<double> running(*profile);
   const double down = profile->duration() - phases[4].time;
-  CHECK(leg.to_turn() == Approx(phases[4].time - 0.25 * down));
+  CHECK(running.to_turn() == Approx(phases[4].time - 0.25 * down));
   for (const double jerk : {10000.0, -10000.0, 0.0, -10000.0, 10000.0}) {
-    CHECK(leg.state().jerk == jerk);
-    const double edge = leg.to_edge();
-    leg.advance(edge / 2);
-    CHECK(leg.state().jerk == jerk);
-    CHECK(leg.to_edge() == Approx(edge / 2));
-    leg.advance(leg.to_edge());
+    CHECK(running.state().jerk == jerk);
+    const double edge = running.to_edge();
+    running.advance(edge / 2);
+    CHECK(running.state().jerk == jerk);
+    CHECK(running.to_edge() == Approx(edge / 2));
+    running.advance(running.to_edge());
   }
-  CHECK(leg.to_turn() < 0.0);
-  CHECK(leg.left() == Approx(0.0).margin(1e-15));
+  CHECK(running.to_turn() < 0.0);
+  CHECK(running.left() == Approx(0.0).margin(1e-15));
 }
 
 TEST_CASE("without a cruise the turn is at the top, no phases are rest") {
   const auto profile = profile::seven_phase(0.5, {0.0, 0.0}, Limits{30.0, 1000.0, 10000.0});
-  CHECK(plan::BasicLeg<double>(*profile).to_turn() == Approx(profile->duration() / 2));
-  const plan::BasicLeg<double> none;
+  CHECK(plan::BasicRunningProfile<double>(*profile).to_turn() == Approx(profile->duration() / 2));
+  const plan::BasicRunningProfile<double> none;
   CHECK(none.state() == State{});
   CHECK(none.left() == 0.0);
 }

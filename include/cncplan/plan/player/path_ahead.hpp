@@ -15,7 +15,7 @@ namespace cncplan::plan {
 
 /// What rounding may amount to, in mm and mm/s and relative to limits: over some hundred mm of path.
 template <std::floating_point S>
-inline constexpr S road_rounding = std::max(S(1e-9), S(512) * std::numeric_limits<S>::epsilon());
+inline constexpr S path_rounding = std::max(S(1e-9), S(512) * std::numeric_limits<S>::epsilon());
 
 /// What is asked of a machine that runs, and stands until something else is asked.
 template <std::floating_point S>
@@ -39,12 +39,12 @@ struct Ahead {
 
 /// Blocks in memory, seen in the direction of travel.
 template <std::floating_point S>
-class BasicRoad {
+class BasicPathAhead {
  public:
   using Block = BasicPlayedBlock<S>;
   using Spot = BasicSpot<S>;
 
-  explicit BasicRoad(std::span<Block> memory) : ring(memory) {}
+  explicit BasicPathAhead(std::span<Block> memory) : ring(memory) {}
 
   BlockRing<S> ring;
   BasicRequests<S> asked;
@@ -102,7 +102,7 @@ class BasicRoad {
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
       const S length = ring.length(from.block);
       const bool stops = stops_behind(from.block) || !(junction_cap(from.block + direction) > S(0));
-      if (from.along < (stops ? length + road_rounding<S> : length)) break;
+      if (from.along < (stops ? length + path_rounding<S> : length)) break;
       from.along -= length;
       from.block += direction;
     }
@@ -112,8 +112,8 @@ class BasicRoad {
   /// A spot that is a junction but for rounding, at the junction.
   [[nodiscard]] Spot snapped(Spot spot) const {
     if (!ring.holds(spot.block)) return spot;
-    if (spot.along >= ring.length(spot.block) - road_rounding<S>) return {spot.block + direction, S(0)};
-    return {spot.block, spot.along < road_rounding<S> ? S(0) : spot.along};
+    if (spot.along >= ring.length(spot.block) - path_rounding<S>) return {spot.block + direction, S(0)};
+    return {spot.block, spot.along < path_rounding<S> ? S(0) : spot.along};
   }
 
   /// Takes the direction that is asked for; where a spot is in that one.

@@ -15,13 +15,13 @@ namespace cncplan::plan {
 
 /// Phases that follow each other, and a time within them that only grows. Phases of no duration are left out.
 template <std::floating_point S>
-class BasicLeg {
+class BasicRunningProfile {
  public:
   static constexpr std::size_t most_phases = profile::BasicProfile<S>::phase_count;
 
-  BasicLeg() = default;
+  BasicRunningProfile() = default;
   /// `braking`: seconds from the end speed to rest, which may be asked behind the end.
-  explicit BasicLeg(const profile::BasicProfile<S>& profile, S braking = S(0))
+  explicit BasicRunningProfile(const profile::BasicProfile<S>& profile, S braking = S(0))
       : duration_(profile.duration()), length_(profile.length()) {
     const auto phases = profile.phases();
     // Still within the cruise, where it can be planned anew: a ramp that ends at speed can be 9 % longer than
@@ -33,7 +33,7 @@ class BasicLeg {
     advance(S(0));  // over a phase that is gone by rounding
   }
   /// At most `most_phases`, each with the time at which it starts, and the length of them all.
-  BasicLeg(std::span<const BasicPhase<S>> phases, S length) : length_(length) {
+  BasicRunningProfile(std::span<const BasicPhase<S>> phases, S length) : length_(length) {
     for (const BasicPhase<S>& phase : phases) append(phase);
     if (count_ > 0) duration_ = phases_[count_ - 1].time + phases_[count_ - 1].duration;
     advance(S(0));
