@@ -42,6 +42,7 @@ struct Disturbance {
   long restless = 0;  ///< ticks for which there are any
   double period = 1e-3;
   double rounding = 1e-9;  ///< relative, of what is compared
+  bool restarts = false;   ///< it is stopped on the way, and begins anew from there
 };
 
 template <class Executor>
@@ -194,37 +195,64 @@ class TickCheck {
   Point before_{};
 };
 
-/// Runs blocks, with requests and starved look-ahead for a while, then undisturbed to the end.
+/// Runs blocks, with requests and starved look-ahead for a while, then undisturbed to the end. Where it is to
+/// restart, it is stopped first, and the rest of the blocks is run from the line on at which it stands.
 template <std::size_t capacity, MachineModel M, class B>
 ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& random, const Disturbance& how) {
   using S = typename M::Scalar;
-  constexpr long most_ticks = 2'000'000;
-  const auto owner = std::make_unique<Executor<M, capacity, B>>(machine);
+  using Runner = Executor<M, capacity, B>;
+  constexpr long most_ticks = 200'000;
+  const auto owner = std::make_unique<Runner>(machine);
   auto& executor = *owner;
-  TickCheck<M, typename Executor<M, capacity, B>::SetPoint, B> check(machine, blocks, how);
   const int lines = blocks.back().line;
+  const long stops_at = how.restarts ? random.integer(1, static_cast<int>(how.restless)) : most_ticks;
   std::size_t fed = 0;
-  for (long tick = 0; tick < most_ticks; ++tick) {
-    const bool restless = tick < how.restless;
-    if (!restless || random.integer(0, 9) != 0)
-      while (fed < blocks.size() && executor.push(blocks[fed]))
-        if (++fed == blocks.size()) executor.end_of_program();
-    if (tick == how.restless) calm(executor);
-    if (restless && random.integer(1, how.mean_gap) == 1) {
-      ++check.faults.requests;
-      ask(executor, random, lines);
+  typename Runner::SetPoint last{};
+  const auto drive = [&](const std::vector<B>& given, ExecutorFaults& faults, bool stops) {
+    TickCheck<M, typename Runner::SetPoint, B> check(machine, given, how);
+    fed = 0;
+    for (long tick = 0; tick < most_ticks; ++tick) {
+      const bool restless = tick < how.restless;
+      if (!restless || random.integer(0, 9) != 0)
+        while (fed < given.size() && executor.push(given[fed]))
+          if (++fed == given.size()) executor.end_of_program();
+      if (tick == how.restless) calm(executor);
+      if (stops && tick == stops_at) executor.stop();
+      if (restless && random.integer(1, how.mean_gap) == 1) {
+        ++check.faults.requests;
+        ask(executor, random, lines);
+      }
+      if (fed == 0) continue;
+      last = executor.tick(static_cast<S>(how.period));
+      check.take(last);
+      if (!executor.finished()) continue;
+      check.faults.finished = true;
+      check.faults.duration =
+          static_cast<double>(tick + 1) * how.period - static_cast<double>(executor.rested());
+      break;
     }
-    if (fed == 0) continue;
-    check.take(executor.tick(static_cast<S>(how.period)));
-    if (!executor.finished()) continue;
-    check.faults.finished = true;
-    check.faults.duration =
-        static_cast<double>(tick + 1) * how.period - static_cast<double>(executor.rested());
-    break;
-  }
-  check.faults.failed = executor.error().has_value();
-  check.finish();
-  return check.faults;
+    check.faults.failed = executor.error().has_value();
+    if (!stops) check.finish();
+    faults = check.faults;
+  };
+  ExecutorFaults faults;
+  drive(blocks, faults, how.restarts);
+  if (!how.restarts || !faults.finished || faults.failed) return faults;
+  // anew where the block that it stands on is the first of its line
+  std::size_t from = last.block;
+  if (from > 0 && blocks[from - 1].line == blocks[from].line) return faults;
+  calm(executor);
+  if (!executor.restart(blocks[from].line, last.position)) faults.failed = true;
+  ExecutorFaults second;
+  drive({blocks.begin() + static_cast<std::ptrdiff_t>(from), blocks.end()}, second, false);
+  second.ticks += faults.ticks, second.requests += faults.requests;
+  for (const auto member :
+       {&ExecutorFaults::velocity, &ExecutorFaults::acceleration, &ExecutorFaults::jerk, &ExecutorFaults::way,
+        &ExecutorFaults::rate, &ExecutorFaults::change, &ExecutorFaults::place})
+    second.*member = std::max(second.*member, faults.*member);
+  second.failed = second.failed || faults.failed;
+  second.words_wrong = second.words_wrong || faults.words_wrong;
+  return second;
 }
 
 /// All blocks of lines of G-code; fewer where a line is wrong.

@@ -293,7 +293,7 @@ class Executor {
   void release() {
     if (player_.oldest() == player_.end()) return feed_.release(told_);
     const std::int64_t furthest =
-        static_cast<std::int64_t>(last_.block) - static_cast<std::int64_t>(capacity);
+        std::max(static_cast<std::int64_t>(last_.block), told_ - 1) - static_cast<std::int64_t>(capacity);
     while (player_[player_.oldest()].block < furthest && player_.forget_oldest()) {
     }
     feed_.release(std::min(told_, player_[player_.oldest()].block));

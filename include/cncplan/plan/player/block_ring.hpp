@@ -62,7 +62,8 @@ class BlockRing {
   bool push(const Block& block) {
     const std::int64_t number = pushed_.load(std::memory_order_relaxed);
     if (number - released_.load(std::memory_order_acquire) >= capacity()) return false;
-    memory_[static_cast<std::size_t>(number % capacity())] = block;
+    memory_[write_] = block;
+    write_ = write_ + 1 < memory_.size() ? write_ + 1 : 0;
     pushed_.store(number + 1, std::memory_order_release);
     return true;
   }
@@ -81,6 +82,7 @@ class BlockRing {
     const std::int64_t oldest = std::min(number, end_ - 1);
     if (oldest <= oldest_) return false;
     oldest_ = oldest;
+    if (oldest_ - first_ >= capacity()) first_ += capacity();
     released_.store(oldest, std::memory_order_release);
     return true;
   }
@@ -90,18 +92,23 @@ class BlockRing {
   [[nodiscard]] bool holds(std::int64_t number) const { return number >= oldest_ && number < end_; }
   [[nodiscard]] S length(std::int64_t number) const { return (*this)[number].caps.length; }
   [[nodiscard]] const Block& operator[](std::int64_t number) const {
-    return memory_[static_cast<std::size_t>(number % capacity())];
+    const std::int64_t place = number - first_;  // a division would take longer than all else in a tick
+    return memory_[static_cast<std::size_t>(place < capacity() ? place : place - capacity())];
   }
 
   /// Forgets all blocks; the next one has this number. Not while anything is pushed.
   void restart(std::int64_t number) {
-    oldest_ = end_ = number;
+    first_ = oldest_ = end_ = number;
+    write_ = 0;
     released_.store(number, std::memory_order_release);
     pushed_.store(number, std::memory_order_release);
   }
 
  private:
   std::span<Block> memory_;
+  std::size_t write_ = 0;  // where the next block goes
+  std::int64_t first_ =
+      0;  // the number of a block at the start of the memory, the last that is not above the oldest
   std::int64_t oldest_ = 0;
   std::int64_t end_ = 0;
   std::atomic<std::int64_t> pushed_{0};

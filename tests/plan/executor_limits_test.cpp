@@ -1,0 +1,130 @@
+// Holds and raised feeds against what every axis bears.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/executor_check.hpp"
+#include "support/executor_machines.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+constexpr double period = 1e-3;
+
+// The least time to rest from a speed and an acceleration, by trying every peak p of the brake: at full jerk
+// to -p, along it, at full jerk to 0.
+long double least_time_to_rest(long double v, long double a, long double most_a, long double j) {
+  long double best = std::numeric_limits<long double>::infinity();
+  constexpr int peaks = 200'000;
+  for (int i = 1; i <= peaks; ++i) {
+    const long double p = most_a * i / peaks;
+    if (p < -a) continue;
+    const long double left = v + (a * a - 2 * p * p) / (2 * j);  // speed that the two ramps leave
+    if (left >= 0) best = std::min(best, (a + 2 * p) / j + left / p);
+  }
+  return best;
+}
+
+// Limits along a line, from those of the axes and the tool.
+struct LineLimits {
+  long double acceleration, jerk;
+};
+template <MachineModel M, class B>
+LineLimits line_limits(const M& machine, const B& block) {
+  const auto move = block.path.end() - block.path.start();
+  long double tool_sq = 0;
+  for (int i = 0; i < 3; ++i) tool_sq += static_cast<long double>(move[i]) * move[i];
+  const long double length = std::sqrt(tool_sq);
+  LineLimits limits{machine.limits.acceleration, machine.limits.jerk};
+  for (int i = 0; i < M::axis_count; ++i) {
+    const long double share = std::abs(static_cast<long double>(move[i])) / length;
+    if (!(share > 0)) continue;
+    const auto& axis = machine.axes[static_cast<std::size_t>(i)];
+    limits.acceleration = std::min(limits.acceleration, axis.acceleration / share);
+    limits.jerk = std::min(limits.jerk, axis.jerk / share);
+  }
+  return limits;
+}
+
+// A long move of all axes at once.
+std::vector<std::string> long_move(test::Random& random) {
+  char text[160];
+  std::snprintf(text, sizeof text, "G1 X%.3f Y%.3f Z%.3f A%.3f C%.3f U%.3f F%.0f", random.uniform(-90, 90),
+                random.uniform(-90, 90), random.uniform(20, 50), random.uniform(-90, 90),
+                random.uniform(-90, 90), random.uniform(-50, 50), random.log_uniform(300, 2500));
+  return {text};
+}
+
+using Runner = Executor<Machine<6>, 16>;
+
+void load(Runner& executor, const std::vector<ProgramBlock<Machine<6>>>& blocks) {
+  for (const auto& block : blocks) REQUIRE(executor.push(block));
+  executor.end_of_program();
+}
+
+// Seconds to rest of a motion of six axes that is held at a random instant, over the least there are.
+double time_to_rest(test::Random& random) {
+  const auto lines = long_move(random);
+  CAPTURE(lines.front());
+  const auto blocks = test::blocks_of(lines, test::six_axes);
+  const auto executor = std::make_unique<Runner>(test::six_axes);
+  load(*executor, blocks);
+  SetPoint<6> now;
+  const int ticks = random.integer(20, 900);
+  for (int tick = 0; tick < ticks; ++tick) now = executor->tick(period);
+  executor->feed_hold();
+  double time = 0;
+  for (int tick = 0; tick < 20'000 && !(executor->rested() > 0); ++tick, time += period)
+    executor->tick(period);
+  const auto [acceleration, jerk] = line_limits(test::six_axes, blocks.front());
+  const auto least = least_time_to_rest(now.along.velocity, now.along.acceleration, acceleration, jerk);
+  return static_cast<double>((time - executor->rested()) / least);
+}
+
+}  // namespace
+
+TEST_CASE("a hold of six axes comes to rest in the least time, by search", "[executor]") {
+  test::Random random;
+  for (int i = 0; i < 60; ++i) CHECK(time_to_rest(random) == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("arcs at half the machine's speed keep their limits at twice the feed", "[executor]") {
+  // of the tool alone: how much a bend leaves of its limits depends on the speed more than it does for axes
+  constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+  test::Random random;
+  double fastest = 0;
+  for (int i = 0; i < 40; ++i) {
+    const double radius = random.log_uniform(1.5, 6), feed = 15;
+    char text[120];
+    std::snprintf(text, sizeof text, "G3 X0 Y0 Z%.3f I%.4f J0 F%.0f", random.uniform(-1, 1), radius,
+                  60 * feed);
+    const std::vector<std::string> lines(4, text);
+    CAPTURE(text);
+    const auto blocks = test::blocks_of(lines, mill);
+    const auto executor = std::make_unique<Executor<Machine<3>, 32>>(mill);
+    test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(mill, blocks,
+                                                                             {1, 1, period, 1e-12});
+    for (const auto& block : blocks) REQUIRE(executor->push(block));
+    executor->end_of_program();
+    executor->feed_override(2);
+    for (int tick = 0; tick < 100'000 && !executor->finished(); ++tick) {
+      if (tick % 150 == 149) executor->feed_override(random.coin() ? 2 : random.uniform(0.9, 1.9));
+      const auto point = executor->tick(period);
+      check.take(point);
+      fastest = std::max(fastest, point.along.velocity / feed);
+    }
+    CHECK(executor->finished());
+    CHECK(check.faults.velocity < 1e-9);
+    CHECK(check.faults.acceleration < 1e-9);
+    CHECK(check.faults.jerk < 1e-9);
+    CHECK(check.faults.change < 1e-6);
+  }
+  CHECK(fastest > 1.9);
+}

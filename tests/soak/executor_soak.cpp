@@ -1,0 +1,99 @@
+// Random programs on machines of three and six axes, behind a map and on curves of one's own, under random
+// requests at random instants, with starved look-ahead, stops and restarts; every set point is held
+// against the limits of tool and axes by differencing. Prints the worst of each fault with its sequence. Exit
+// 1 if a bound is broken.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "soak/worst.hpp"
+#include "support/executor_check.hpp"
+#include "support/executor_machines.hpp"
+
+namespace {
+
+using namespace cncplan;
+using Faults = test::ExecutorFaults;
+
+template <MachineModel M, class B>
+Faults run(const M& machine, const std::vector<B>& blocks, test::Random& random, double rounding) {
+  const test::Disturbance how{random.integer(0, 3) == 0 ? 1 : random.integer(2, 100), 1000, 1e-3, rounding,
+                              random.integer(0, 3) == 0};
+  return random.coin() ? test::run<4>(machine, blocks, random, how)
+                       : test::run<32>(machine, blocks, random, how);
+}
+
+template <MachineModel M>
+Faults run_lines(const M& machine, const std::array<double, 3>& center, const std::string& letters,
+                 test::Random& random, double rounding = 1e-12) {
+  PlanOptions options;
+  std::copy(center.begin(), center.end(), options.start.begin());
+  const auto lines = test::random_lines(random, random.integer(1, 40), center, 20, letters);
+  return run(machine, test::blocks_of(lines, machine, options), random, rounding);
+}
+
+// In `float` nothing is counted but what the first table has no number for.
+Faults one(std::uint64_t sequence, test::Random& random) {
+  switch (sequence % 5) {
+    case 0:
+      return run_lines(test::six_axes, {0, 0, 0}, "ACU", random);
+    case 1:
+      return run_lines(test::polar, {60, 0, 0}, "", random);
+    case 2:
+      return run(test::slow_axes<double>, test::random_waves(random, random.integer(1, 12)), random, 1e-12);
+    case 3:
+      return run_lines(test::slow_axes<float>, {0, 0, 0}, "", random, 4e-5);
+    default:
+      return run_lines(test::slow_axes<double>, {0, 0, 0}, "", random);
+  }
+}
+
+int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+  using Worst = test::Worst<Faults, std::uint64_t>;
+  const auto table = [](double relative) {
+    return std::array{Worst{"velocity of an axis (relative)", &Faults::velocity, relative},
+                      Worst{"acceleration of an axis (relative)", &Faults::acceleration, relative},
+                      Worst{"jerk of an axis (relative)", &Faults::jerk, relative},
+                      Worst{"way of an axis over a tick (mm)", &Faults::way, 0},
+                      Worst{"velocity against way (relative)", &Faults::rate, relative},
+                      Worst{"change of acceleration (relative)", &Faults::change, std::max(relative, 1e-6)},
+                      Worst{"place (mm)", &Faults::place, 0},
+                      Worst{"dwells (s)", &Faults::dwell, 0},
+                      Worst{"end (mm)", &Faults::end, relative}};
+  };
+  auto all = table(1e-9), all_float = table(1e-3);
+  std::uint64_t ticks = 0, requests = 0, wrong = 0;
+  for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {
+    test::Random random(seed + sequence * 0x9e3779b97f4a7c15);
+    const Faults faults = one(sequence, random);
+    ticks += static_cast<std::uint64_t>(faults.ticks);
+    requests += static_cast<std::uint64_t>(faults.requests);
+    for (Worst& worst : sequence % 5 == 3 ? all_float : all) worst.take(faults, sequence);
+    if ((faults.words_wrong || faults.failed || !faults.finished) && wrong++ == 0)
+      std::printf("words %d, failed %d, finished %d: sequence %llu\n", faults.words_wrong, faults.failed,
+                  faults.finished, static_cast<unsigned long long>(sequence));
+  }
+  const auto print = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("seed %llu, sequences %llu to %llu: %llu requests, %llu ticks\n", print(seed), print(first),
+              print(first + count - 1), print(requests), print(ticks));
+  const auto literal = [](std::uint64_t sequence) { return "sequence " + std::to_string(sequence); };
+  const bool held = test::report(std::span<const Worst>(all), literal);
+  std::printf("float\n");
+  return test::report(std::span<const Worst>(all_float), literal) && held && wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("random programs under random requests on machines of several axes");
+  std::uint64_t seed = test::seed();
+  std::uint64_t first = 0;
+  double count = 1e3;
+  app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
+  app.add_option("--first", first, "the first sequence, to see one again")->capture_default_str();
+  app.add_option("--count", count, "how many sequences")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  return soak(seed, first, static_cast<std::uint64_t>(count));
+}
