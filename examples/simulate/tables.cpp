@@ -11,9 +11,10 @@ namespace {
 
 using namespace cncplan;
 
-std::string_view name(junction::Kind kind) {
+std::string_view kind_of(const Origin& motion) {
+  if (motion.path.line() == nullptr && motion.path.arc() == nullptr) return "spline";
   constexpr std::array<std::string_view, 3> names{"rapid", "line", "arc"};
-  return names[static_cast<std::size_t>(kind)];
+  return names[static_cast<std::size_t>(motion.kind)];
 }
 
 int g_code(Plane plane) {
@@ -42,7 +43,7 @@ void write_motions(std::ostream& out, const ProgramText& program) {
     if (!(motion.length > 0.0)) continue;
     const Vector3 start = motion.path.start() - motion.offset;
     const Vector3 end = motion.path.end() - motion.offset;
-    out << motion.line << ',' << name(motion.kind) << ',' << g_code(motion.plane);
+    out << motion.line << ',' << kind_of(motion) << ',' << g_code(motion.plane);
     put(out, start.x(), start.y(), start.z(), end.x(), end.y(), end.z());
     if (const path::Arc* arc = motion.path.arc()) {
       const Vector3 center = arc->center() - motion.offset;

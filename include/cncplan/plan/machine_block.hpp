@@ -30,6 +30,25 @@ struct BasicBlock {
   std::optional<S> tolerance{};  ///< mm from the path; that of the options where there is none
   gcode::Word word{};            ///< told where the block begins; no letter: none
 
+  /// The same block among those whose paths are of more kinds.
+  template <class... More>
+  operator BasicBlock<S, N, Curves..., More...>() const {  // NOLINT: nothing is lost
+    BasicBlock<S, N, Curves..., More...> block;
+    block.path =
+        path.visit([](const auto& kind) -> path::BasicSegment<S, N, Curves..., More...> { return kind; });
+    block.feed = feed;
+    block.pause = pause;
+    block.exact_stop = exact_stop;
+    block.exact_path = exact_path;
+    block.goes_on = goes_on;
+    block.rapid = rapid;
+    block.line = line;
+    block.column = column;
+    block.tolerance = tolerance;
+    block.word = word;
+    return block;
+  }
+
   friend bool operator==(const BasicBlock&, const BasicBlock&) = default;
 };
 

@@ -276,20 +276,7 @@ class SmoothPlanner {
 
   // A block as it is, without phases.
   Out& add_block(std::size_t source) {
-    const B& from = blocks_[source];
-    Out block;
-    block.path = from.path.visit([](const auto& kind) -> typename Out::Path { return kind; });
-    block.feed = from.feed;
-    block.pause = from.pause;
-    block.exact_stop = from.exact_stop;
-    block.exact_path = from.exact_path;
-    block.goes_on = from.goes_on;
-    block.rapid = from.rapid;
-    block.line = from.line;
-    block.column = from.column;
-    block.tolerance = from.tolerance;
-    block.word = from.word;
-    block.source = source;
+    Out block{blocks_[source], source};
     smoothing_.blocks.emplace_back();
     return out_.emplace_back(block);
   }
