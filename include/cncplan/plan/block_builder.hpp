@@ -256,10 +256,14 @@ class BlockBuilder {
   [[nodiscard]] Expected<Programmed> spline(const gcode::Motion& motion, const Coordinates& start,
                                             const Coordinates& end) const {
     const auto [first, second, third] = axes(motion.plane);
+    const auto offset = [&](int axis) {
+      const auto word = static_cast<std::size_t>(space_[static_cast<std::size_t>(axis)]);
+      return motion.offset[word];
+    };
     const auto control = [&, i = first, k = second](const gcode::SplineControl& in_plane) {
       Coordinates point = start;
-      point[i] = static_cast<Scalar>(in_plane.first + motion.offset[static_cast<std::size_t>(space_[i])]);
-      point[k] = static_cast<Scalar>(in_plane.second + motion.offset[static_cast<std::size_t>(space_[k])]);
+      point[i] = static_cast<Scalar>(in_plane.first + offset(i));
+      point[k] = static_cast<Scalar>(in_plane.second + offset(k));
       return point;
     };
     const auto& [one, two] = motion.controls;
