@@ -32,8 +32,11 @@ inline const std::string& ball() {
   return text;
 }
 
+/// Of the program.
+using Block = ProgramBlock<Machine<3>>;
+
 /// Its blocks, in place of those that were there. False if it does not read.
-inline bool read_blocks(const std::string& text, std::vector<Block<3>>& blocks) {
+inline bool read_blocks(const std::string& text, std::vector<Block>& blocks) {
   blocks.clear();
   const gcode::Dialect dialect = dialect_of(mill);
   gcode::Reader reader(dialect);

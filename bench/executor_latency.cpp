@@ -22,7 +22,7 @@ constexpr double period = 1e-3;
 // Ticks from the program's start to its end, and again; `ask` is called before each. Pushes are not timed,
 // nor is `plan`, which the main loop calls where `background` is set.
 template <class Ask>
-void measure(const char* name, const std::vector<Block<3>>& program, std::size_t count, bool background,
+void measure(const char* name, const std::vector<bench::Block>& program, std::size_t count, bool background,
              const Ask& ask) {
   bench::Latencies latencies(count);
   std::size_t done = 0, first_run = 0;
@@ -48,7 +48,7 @@ void measure(const char* name, const std::vector<Block<3>>& program, std::size_t
 
 int main(int argc, char** argv) {
   const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 10'000'000;
-  std::vector<Block<3>> blocks;
+  std::vector<bench::Block> blocks;
   if (!bench::read_blocks(bench::ball(), blocks))
     return std::fprintf(stderr, "the program does not read\n"), 1;
   bench::Latencies nothing(count);

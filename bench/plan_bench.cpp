@@ -20,13 +20,13 @@ using bench::ball;
 
 using Spans = std::vector<plan::Span>;
 
-std::vector<Block<3>> ball_blocks(benchmark::State& state) {
-  std::vector<Block<3>> blocks;
+std::vector<bench::Block> ball_blocks(benchmark::State& state) {
+  std::vector<bench::Block> blocks;
   if (!bench::read_blocks(ball(), blocks)) state.SkipWithError("the program does not read");
   return blocks;
 }
 
-auto cells_of(const std::vector<Block<3>>& blocks) {
+auto cells_of(const std::vector<bench::Block>& blocks) {
   return plan::make_cells(std::span(blocks), bench::mill, bench::joint_rules);
 }
 
@@ -40,7 +40,7 @@ bool look_ahead(const plan::BasicCells<double>& cells, std::vector<plan::Gate>& 
 }
 
 // The same blocks one by one through a window.
-bool plan_through(std::size_t window, const std::vector<Block<3>>& blocks, Spans& spans) {
+bool plan_through(std::size_t window, const std::vector<bench::Block>& blocks, Spans& spans) {
   const auto cells = cells_of(blocks);
   if (!cells) return false;
   std::vector<plan::BlockCaps> ahead(window);

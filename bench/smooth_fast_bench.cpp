@@ -29,7 +29,7 @@ void smooth_ball_sizes(benchmark::State& state) {
   const PlanOptions options{.tolerance = 0.01};
   const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, options);
   if (!program) return state.SkipWithError("the program does not read");
-  const std::span<const Block<3>> blocks(program->blocks);
+  const std::span<const bench::Block> blocks(program->blocks);
   for (auto _ : state)
     benchmark::DoNotOptimize(plan::smoothing(blocks, bench::mill, plan::smoothing_rules<double>(options)));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));

@@ -21,7 +21,7 @@ using namespace cncplan;
 namespace {
 
 using Table = MappedMachine<kinematics::PolarMap>;
-using TablePath = plan::TablePath<kinematics::PolarMap, path::Segment<3>>;
+using TablePath = plan::TablePath<kinematics::PolarMap, MillBlock::Path>;
 using TableBlock = cncplan::Block<3, TablePath>;
 
 // What the paper says of a program: minutes, and Table 4's errors of the servo axes, root mean square and
@@ -68,10 +68,10 @@ constexpr std::array<Printed, 3> printed{{
 }};
 
 // The blocks round the table, C without a jump.
-std::vector<TableBlock> on_table(const std::vector<cncplan::Block<3>>& blocks, double smallest_radius) {
+std::vector<TableBlock> on_table(const std::vector<MillBlock>& blocks, double smallest_radius) {
   std::vector<TableBlock> result;
   double table = 0.0;
-  for (const cncplan::Block<3>& block : blocks) {
+  for (const MillBlock& block : blocks) {
     const auto followed = plan::follow_table(
         block.path, kinematics::PolarMap{}, smallest_radius, table, [&](const TablePath& path) {
           result.push_back({.path = path, .feed = block.feed, .rapid = block.rapid});
@@ -168,7 +168,7 @@ struct Run {
   std::vector<Tracked> tracked;
 };
 
-Run run(const std::vector<cncplan::Block<3>>& blocks, const support::Machine& machine) {
+Run run(const std::vector<MillBlock>& blocks, const support::Machine& machine) {
   Table table;
   for (std::size_t i = 0; i < table.axes.size(); ++i) table.axes[i] = machine.axis(i);
   table.limits.velocity = limits.velocity;
@@ -182,14 +182,14 @@ Run run(const std::vector<cncplan::Block<3>>& blocks, const support::Machine& ma
 
 }  // namespace
 
-std::vector<cncplan::Block<3>> blocks_of(generate::Kind kind, const std::array<double, 2>& table_center) {
+std::vector<MillBlock> blocks_of(generate::Kind kind, const std::array<double, 2>& table_center) {
   std::ostringstream stream;
   generate::write(stream, kind, 2022, 17);
   const std::string text = stream.str();
   const gcode::Dialect dialect = dialect_of(mill);
   gcode::Reader reader(dialect);
   BlockBuilder<Machine<3>> builder(mill, dialect);
-  std::vector<cncplan::Block<3>> blocks;
+  std::vector<MillBlock> blocks;
   const auto take = [&](gcode::Item item) {
     if (auto* motion = std::get_if<gcode::Motion>(&item))
       for (std::size_t i = 0; i < 2; ++i) motion->offset[i] -= table_center[i];

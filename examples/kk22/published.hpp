@@ -7,14 +7,15 @@
 
 #include "cncplan/cncplan.hpp"
 #include "experiments.hpp"
+#include "table_programs.hpp"
 
 namespace kk22 {
 
-using MillTrajectory = cncplan::Trajectory<cncplan::Machine<3>, cncplan::Block<3>>;
+using MillTrajectory = cncplan::Trajectory<cncplan::Machine<3>, MillBlock>;
 
 /// One profile of five phases a block, at the junction speeds of Table 3. By lengths in space the speed is
 /// capped by curvature; by lengths in the plane (section 3.1) it is not, as in the paper.
-inline MillTrajectory published_plan(const std::vector<cncplan::Block<3>>& blocks, Lengths lengths) {
+inline MillTrajectory published_plan(const std::vector<MillBlock>& blocks, Lengths lengths) {
   namespace plan = cncplan::plan;
   namespace published = cncplan::published;
   const plan::JointRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};  // the table alone

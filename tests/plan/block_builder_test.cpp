@@ -14,13 +14,13 @@ namespace {
 
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
-std::vector<Block<3>> blocks(std::string_view text) {
+std::vector<ProgramBlock<Machine<3>>> blocks(std::string_view text) {
   auto program = read_blocks(gcode::TextLines(text), mill, {});
   REQUIRE(program);
   return program->blocks;
 }
 
-Block<3> block(const gcode::Motion& motion) {
+ProgramBlock<Machine<3>> block(const gcode::Motion& motion) {
   const auto made = BlockBuilder<Machine<3>>(mill, dialect_of(mill)).take(motion);
   REQUIRE(made);
   REQUIRE(*made);

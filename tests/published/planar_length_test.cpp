@@ -21,8 +21,8 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
       "G01 X-10\nG03 X-20 Y-10 R10\n",
       mill);
   REQUIRE(whole);
-  const std::vector<Block<3>> blocks(whole->program().begin(), whole->program().end());
-  const std::span<const Block<3>> all(blocks);
+  const std::vector<ProgramBlock<Machine<3>>> blocks(whole->program().begin(), whole->program().end());
+  const std::span<const ProgramBlock<Machine<3>>> all(blocks);
   const plan::JointRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};
   auto cells = plan::make_cells<published::ToolLimits>(all, mill, rules).value();
   published::to_plane(all, cells);
@@ -36,7 +36,7 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
                                  std::span(speeds), std::back_inserter(spans)));
   auto phases = plan::block_phases(std::span<const plan::Span>(spans), cells);
   published::to_space(all, phases);
-  const Trajectory<Machine<3>, Block<3>> planned(mill, blocks, phases);
+  const Trajectory<Machine<3>, ProgramBlock<Machine<3>>> planned(mill, blocks, phases);
   // the helices from rest to rest at constant speed, then the stop before the line (Table 3)
   const double ramp = 2 * std::sqrt(30.0 / 10000.0);
   const auto motions = planned.blocks();

@@ -173,7 +173,7 @@ BlockBuilder<Machine<3>> builder(mill, dialect_of(mill));
 template <class Take>
 void make_cells(gcode::Reader& program, const Take& take) {
   std::array<gcode::Item, gcode::max_items_per_line> items;
-  plan::CellMaker<Machine<3>, Block<3>, junction::Deviation> maker(mill, {{0.01}, 0.01, 0.0});
+  plan::CellMaker<Machine<3>, ProgramBlock<Machine<3>>, junction::Deviation> maker(mill, {{0.01}, 0.01, 0.0});
   for (const std::string_view line : {"G21 G90 F1200", "G1 X10", "G3 X15 Y5 R5", "G4 P0.01", "G1 Y10", "X0",
                                       "Y0", "X5", "Y5", "X0", "Y0"}) {
     const auto end = program.read_line(line, items.begin());
@@ -194,7 +194,7 @@ void stream_a_program() {
   std::array<plan::Gate, 5> window_gates, held_gates;
   std::array<plan::Span, 8> spans;
   plan::StreamPlanner planner(plan::StreamMemory{window, window_gates, held_gates});
-  make_cells(reader_of_stream, [&](const Block<3>&, const plan::BlockCaps& caps) {
+  make_cells(reader_of_stream, [&](const ProgramBlock<Machine<3>>&, const plan::BlockCaps& caps) {
     sink = planner.push(caps, spans.begin()).has_value() ? 1.0 : 0.0;
   });
   sink = planner.finish(spans.begin()).has_value() ? 1.0 : 0.0;
