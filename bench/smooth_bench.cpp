@@ -14,7 +14,7 @@ using namespace cncplan;
 
 // The blocks of the program as one run. An item is a block; `seconds` is the motion's duration.
 void smooth_ball_best(benchmark::State& state) {
-  using Segment = path::BasicSegment<double, 3>;
+  using Segment = bench::Block::Path;
   const Limits& tool = bench::mill.limits;
   const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, PlanOptions{});
   if (!program) return state.SkipWithError("the program does not read");

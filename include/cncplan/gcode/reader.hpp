@@ -310,8 +310,8 @@ class Reader {
 
   [[nodiscard]] NamedCoordinates named_coordinates() const {
     NamedCoordinates named;
-    const std::size_t count = std::min<std::size_t>(axis_count(), max_axes);
-    for (std::size_t i = 0; i < count; ++i) named[i] = coordinate(i);
+    for (std::size_t i = 0; i < named.size(); ++i)
+      if (i < axis_count()) named[i] = coordinate(i);
     return named;
   }
 
