@@ -38,7 +38,7 @@ struct LineLimits {
 };
 template <MachineModel M, class B>
 LineLimits line_limits(const M& machine, const B& block) {
-  const auto move = block.path.end() - block.path.start();
+  const VectorN<double, M::axis_count> move = block.path.end() - block.path.start();
   long double tool_sq = 0;
   for (int i = 0; i < 3; ++i) tool_sq += static_cast<long double>(move[i]) * move[i];
   const long double length = std::sqrt(tool_sq);

@@ -119,7 +119,7 @@ def check_clicks(run):
     check(marked == str(line), f"line {line} was clicked and {marked} is marked")
     # in space: where the path is at half the time
     half = run.value("cncplan.setTime(0), cncplan.motions[0].duration / 2")
-    run.value("scrollTo(0, 0)")
+    run.value("document.getElementById('view').scrollIntoView({block: 'center'})")
     x, y = run.value(f"""(() => {{ const state = cncplan.motions[0].at({half!r}), box = document.getElementById('view').getBoundingClientRect();
         const p = new THREE.Vector3().fromArray(state.position).project(cncplan.view.orbit.camera);
         return [box.left + (1 + p.x) * box.width / 2, box.top + (1 - p.y) * box.height / 2]; }})()""")

@@ -46,8 +46,8 @@ TEST_CASE("real programs end with events, and take the planned time without any"
   test::Random random;
   const auto check = [&](const std::string& name, const std::string& program, int disturbed) {
     CAPTURE(name);
-    const double planned = folder.run(program + " --json --smooth fast").json()["time_s"];
-    const auto played = folder.run(program + " --json --events none.csv").json();
+    const double planned = folder.run(program + " --json --tolerance 0").json()["time_s"];
+    const auto played = folder.run(program + " --json --tolerance 0 --events none.csv").json();
     CHECK(played["time_s"].get<double>() == Approx(planned).epsilon(1e-3));
     CHECK(played["completed"] == true);
     for (int sequence = 0; sequence < disturbed; ++sequence) {

@@ -29,7 +29,7 @@ bool same_steps(const std::vector<test::VcdEdge>& a, const std::vector<test::Vcd
 
 test::Vcd steps_of(const test::Folder& folder, const std::string& machine, const std::string& name) {
   folder.write("m.toml", machine);
-  const auto run = folder.run_text(program, "--quiet --machine m.toml --steps " + name);
+  const auto run = folder.run_text(program, "--quiet --tolerance 0 --machine m.toml --steps " + name);
   INFO(run.err);
   REQUIRE(run.exit == 0);
   return test::Vcd(folder / name);
