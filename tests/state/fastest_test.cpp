@@ -63,6 +63,10 @@ TEST_CASE("a move to where an axis stands takes no time") {
 TEST_CASE("jerk alone that ends at the target is found where roundings are rooted") {
   // 0.5 + 3 - 1.5 = 2 and 0.5 + 1.5 - 0.5 = 1.5: the jerk of -3 for a second
   CHECK(fastest({{0, 0.5, 3}, {1.5, 2, 0}, {2, 2, 3, 3, 3}}).duration() == Approx(1).epsilon(1e-12));
+  // of starts beyond the limits: -2 + 4 - 1.5 = 0.5, -2 + 2 - 0.5 = -0.5; -1.5 + 4 - 1.5 = 1, -1.5 + 2 - 0.5
+  // = 0
+  CHECK(fastest({{0, -2, 4}, {-0.5, 0.5, 1}, {1, 1, 2, 2, 3}}).duration() == Approx(1).epsilon(1e-12));
+  CHECK(fastest({{0, -1.5, 4}, {0, 1, 1}, {2, 4, 2, 2, 3}}).duration() == Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("from rest to rest it is the known profile") {

@@ -94,7 +94,12 @@ class BasicExtremals {
                  rising_ ? task.per_fall : task.per_rise);
     gap_ = high_.velocity - low_.velocity;
     forbidden_ = low_.least * std::abs(low_.least) - gap_;
-    if (!level && forbidden_ <= rounding) forbidden_ = S(0);  // its root would be much more than rounding
+    // Where jerk alone leads to the target, rounding is not to take that motion away: the root of a rounding
+    // is much more than it.
+    if (!level && forbidden_ <= rounding) forbidden_ = S(0);
+    const S least_sq = high_.least * high_.least;
+    if (forbidden_ > S(0) && high_.least < S(0) && std::abs(forbidden_ - least_sq) <= rounding)
+      forbidden_ = least_sq;
     start_root_ = forbidden_ > S(0) ? std::max(high_.least, std::sqrt(forbidden_)) : high_.least;
     shift_ = v0 * a0 - v1 * a1 + (a1 * a1 * a1 - a0 * a0 * a0) / S(3);
   }
