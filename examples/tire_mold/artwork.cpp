@@ -29,9 +29,9 @@ std::vector<gcode::Word> words_of(const std::string& text) {
 }
 
 void check_codes(const std::string& file, int number, const Line& line) {
-  constexpr std::array elsewhere{5.0,  5.1,  5.2,  6.2,  7.0,  10.0, 28.0, 30.0, 38.2, 38.3, 38.4,
-                                 38.5, 43.1, 53.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3,
-                                 73.0, 81.0, 82.0, 83.0, 85.0, 86.0, 89.0, 93.0, 95.0, 96.0};
+  constexpr std::array elsewhere{7.0,  10.0, 28.0, 30.0, 38.2, 38.3, 38.4, 38.5, 43.1, 53.0,
+                                 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3, 73.0, 81.0,
+                                 82.0, 83.0, 85.0, 86.0, 89.0, 93.0, 95.0, 96.0};
   for (const gcode::Word& word : line.words) {
     if (word.letter != 'G') continue;
     const bool shift = word.number >= 92 && word.number < 93;
@@ -52,6 +52,8 @@ class Taker {
     if (!block) support::refuse(file_, block.error());
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
     const auto& way = (*block)->path;
+    if (way.arc() == nullptr && way.line() == nullptr)
+      support::refuse(file_, {{ErrorCode::not_supported, "spline", 0.0, 0.0}, motion.line, motion.column});
     const path::Segment<3> segment =
         way.arc() != nullptr ? path::Segment<3>(*way.arc()) : path::Segment<3>(*way.line());
     line_.moves.push_back({segment, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
