@@ -180,6 +180,17 @@ TEST_CASE("best: what has no such plan is planned as plan_blocks does", "[smooth
     for (const auto& point : planned->samples(1e-3)) CHECK(point.position[1] > -1e-9);
 }
 
+TEST_CASE("best: lines straight on run as on the exact path", "[smooth-blocks]") {
+  std::string straight = "F1800\n";
+  for (int i = 1; i <= 50; ++i) straight += "G1 X" + std::to_string(i * 0.2) + "\n";
+  const auto line = plan_smooth(blocks_of(straight), mill, {.tolerance = 0.01});
+  REQUIRE(line);
+  CHECK(cubics(*line) == 0);
+  // 10 mm from rest to rest: ramps of J t^2 = 30, and a cruise
+  const double ramp = std::sqrt(30.0 / 10000.0);
+  CHECK(line->duration() == Approx(10.0 / 30.0 + 2 * ramp).epsilon(1e-9));
+}
+
 TEST_CASE("best: errors say the block", "[smooth-blocks]") {
   const std::vector<ProgramBlock<Machine<3>>> apart{
       {.path = path::Line<3>(Vector3(0, 0, 0), Vector3(1, 0, 0)), .feed = 10, .line = 1},
