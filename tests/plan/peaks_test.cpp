@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/plan/plan_program.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -45,6 +47,22 @@ TEST_CASE("peaks are no lower than dense samples, and hardly higher") {
   }
   CHECK(found.tool.jerk >= tool * (1 - 2e-5));
   CHECK(found.tool.jerk <= 10000 * (1 + 1e-9));
+}
+
+TEST_CASE("peaks of a smoothed path are those inside cells, not of the cell beside") {
+  constexpr std::string_view text = R"(G21 G90 G17
+G1 X2.9768 Y-2.2540 Z0.3969
+G1 X2.8339 Y-2.4709 Z-0.4981
+G1 X3.1778 Y-2.4017 Z-1.0277
+G3 X3.19556 Y-2.50895 Z-1.0277 I-0.23921 J-0.09481 F2202.7
+M2)";
+  for (const double jerk : {3000.0, 10000.0, 30000.0, 100000.0}) {
+    const Machine<3> machine{.limits = {.velocity = 30, .acceleration = 1000, .jerk = jerk}};
+    const auto trajectory = plan_text(text, machine, {.tolerance = 0.01});
+    REQUIRE(trajectory);
+    INFO("jerk " << jerk);
+    CHECK(peaks(*trajectory).tool.jerk <= jerk * (1 + 1e-9));
+  }
 }
 
 TEST_CASE("the jump of velocity at a corner is the speed there times the jump of direction") {

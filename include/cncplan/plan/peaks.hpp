@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "cncplan/core/jet.hpp"
 #include "cncplan/core/limits.hpp"
@@ -37,7 +38,10 @@ class PeakSearch {
   using Peaks = BasicPeaks<Scalar, n>;
 
   explicit PeakSearch(const T& trajectory)
-      : trajectory_(trajectory), tool_axes_(tool_axes(trajectory.machine())) {}
+      : trajectory_(trajectory),
+        tool_axes_(tool_axes(trajectory.machine())),
+        rounding_(std::max(Scalar(1e-11),
+                           Scalar(16) * std::numeric_limits<Scalar>::epsilon() * trajectory.length())) {}
 
   [[nodiscard]] Peaks search() {
     for (const auto& [phase, block] : trajectory_.phases())
@@ -85,9 +89,15 @@ class PeakSearch {
     AxisMotion<BasicVector3<Scalar>> tool;
   };
 
+  // Third derivatives step where corrections change their form, which is where phases end: the path is looked
+  // at a little inside.
   template <class P>
   Look look(const P& path, const BasicPhase<Scalar>& phase, Scalar tau) {
     BasicState<Scalar> along = phase.at(tau);
+    const Scalar end = phase.at(phase.duration).position;
+    const auto [low, high] = std::minmax(phase.position, end);
+    const Scalar inside = std::min((high - low) / Scalar(2), rounding_);
+    along.position = std::clamp(along.position, low + inside, high - inside);
     along.position = std::clamp(along.position, Scalar(0), path.length());
     const Look seen{motion(path.point_at(along.position), along),
                     motion(tool_point(path, along.position, tool_axes_), along)};
@@ -166,6 +176,7 @@ class PeakSearch {
 
   const T& trajectory_;
   std::array<int, 3> tool_axes_;
+  Scalar rounding_;  // mm, of a length along the program
   Peaks peaks_;
 };
 
