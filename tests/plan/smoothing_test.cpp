@@ -119,6 +119,8 @@ TEST_CASE("the tool stops where it turns back, and where it must be exact", "[sm
   const auto rests = Approx(0).margin(1e-6);
   CHECK(exit_of_first("F1800 G1 Z-10\nZ0\n") == rests);
   CHECK(exit_of_first("F1800 G61.1 G1 X10\nX20\n") == rests);
+  CHECK(exit_of_first("F1800 G1 X10\nG61.1 X20 Y1\n") == rests);  // from the start of the exact block on
+  CHECK(exit_of_first("F1800 G1 X10\nG61 X20 Y1\n") == rests);
   CHECK(exit_of_first("F1800 G61 G1 X10\nX20 Y1\n") == rests);
   CHECK(exit_of_first("F1800 G64 P0 G1 X10\nX20 Y1\n") == rests);
   CHECK(exit_of_first("F1800 G61 G1 X10\nX20\n") == Approx(30));  // smooth: no reason to stop

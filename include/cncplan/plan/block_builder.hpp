@@ -185,7 +185,10 @@ class BlockBuilder {
                  .rapid = motion.kind == gcode::MotionKind::rapid,
                  .line = motion.line,
                  .column = motion.column};
-    if (motion.tolerance && *motion.tolerance > 0) result.tolerance = static_cast<Scalar>(*motion.tolerance);
+    if (exact_stop)
+      result.tolerance = Scalar(0);  // from its start on, where the block before may be smoothed
+    else if (motion.tolerance && *motion.tolerance > 0)
+      result.tolerance = static_cast<Scalar>(*motion.tolerance);
     result.path = path_of(*programmed);
     if constexpr (MappedModel<M>)
       if (result.rapid)
