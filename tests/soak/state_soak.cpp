@@ -27,7 +27,9 @@ int soak(std::uint64_t seed, std::uint64_t count, std::uint64_t every) {
       {"end of the fastest (relative)", &Errors::target, 1e-11},
       {"limits of the fastest (relative)", &Errors::limits, 1e-12},
       {"slower than brute force (relative)", &Errors::slower, 1e-9},
-      {"slower than the whole search", &Errors::searched, 1e-11},
+      // Near a target that jerk alone leads to, time grows with the cube root of what the position misses: a
+      // rounding of that is much more of the time.
+      {"slower than the whole search", &Errors::searched, 1e-9},
       {"end of a longer one (relative)", &Errors::lasting_target, 1e-11},
       {"limits of a longer one", &Errors::lasting_limits, 1e-11},
       {"duration of a longer one", &Errors::lasting_time, 1e-12}};
