@@ -69,6 +69,26 @@ TEST_CASE("jerk alone that ends at the target is found where roundings are roote
   CHECK(fastest({{0, -1.5, 4}, {0, 1, 1}, {2, 4, 2, 2, 3}}).duration() == Approx(1).epsilon(1e-12));
 }
 
+TEST_CASE("jerk alone that ends at the limit of the velocity is found, however the start is rounded") {
+  test::Random random;
+  int planned = 0;
+  for (int n = 0; n < 100000; ++n) {
+    AxisCase c = test::draw_axis_case(random);
+    const double v = c.limits.velocity_up, j = c.limits.jerk;
+    const double a = std::min(c.limits.acceleration_up, std::sqrt(2 * j * v)) * random.uniform(0.0, 1.0);
+    const double before = v - a * a / (2 * j), time = a / j;
+    if (before < 0) continue;
+    c.from = {0, before, a};
+    c.to = {time * (before + time * (a / 2 - time * j / 6)), v, 0};
+    ++planned;
+    const double late = fastest(c).duration() - time;
+    if (late <= 1e-12 * time + 8 * std::sqrt(1e-16 * v / j)) continue;
+    INFO(c.literal());
+    CHECK(late == 0);
+  }
+  CHECK(planned > 50000);
+}
+
 TEST_CASE("from rest to rest it is the known profile") {
   // J t^3 = 4 L / 8 for a quarter of the time
   const auto m = fastest({{0, 0, 0}, {1, 0, 0}, {1000, 1000, 1e6, 1e6, 10000}});

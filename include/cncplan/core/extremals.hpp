@@ -119,16 +119,17 @@ class BasicExtremals {
 
   /// The first motion over a distance, for a connected task whose motion of shortest duration goes no
   /// farther; false where it has to be searched for. If the curve has no local maximum there is one crossing
-  /// only, in the piece at whose end the distance is exceeded.
-  [[nodiscard]] bool only_over(S distance, Extremal& found) const {
+  /// only, in the piece at whose end the distance is exceeded. Where the highest velocity is zero that piece
+  /// may lack, by more than `slack`: no motion goes so far, and the cruise is infinite.
+  [[nodiscard]] bool only_over(S distance, S slack, Extremal& found) const {
     const Aim aim{distance + shift_, S(0)};
     const S s = start_root_;
     if (s > high_.most || has_maximum()) return false;
     const S gain = to_gain();
     const S left = aim.distance - ramp_distance(low_, gap_ + gain) - ramp_distance(high_, gain);
     if (left >= S(0)) {
-      if (!(task_.top > S(0))) return false;
-      found = to_top(left / task_.top);
+      const S at_rest = left > slack ? std::numeric_limits<S>::infinity() : S(0);
+      found = to_top(task_.top > S(0) ? left / task_.top : at_rest);
       return true;
     }
     const S low_break = low_.most * low_.most - gap_, high_break = high_.most * high_.most;
@@ -355,7 +356,8 @@ class BasicExtremals {
     if (from < S(0) || from * from < low_break) {
       const S free = std::min({low_break, high_.most * high_.most, most});
       const S z = std::sqrt(free), y = std::sqrt(gap_ + free);
-      if ((S(2) * low_.velocity + gap_ + free) * y + (S(2) * high_.velocity + free) * z >= distance) {
+      const S at_end = (S(2) * low_.velocity + gap_ + free) * y + (S(2) * high_.velocity + free) * z;
+      if (at_end >= distance || free == most) {  // rounding may miss the end of the last piece
         const S sum = low_.velocity + high_.velocity;
         const S start = sum_at(from);
         const S discriminant = S(4) * sum * sum - S(3) * gap_ * gap_;

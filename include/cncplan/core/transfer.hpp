@@ -51,17 +51,21 @@ class BasicTransfer {
     S sign{};  ///< +1 upwards, -1 downwards
   };
 
-  /// The first motion that takes `least` seconds at least and ends at the target. Only there, where a curve
-  /// meets the target, durations begin and cease to be possible.
+  /// The first motion that ends at the target, and the first that takes `least` seconds at least. Only there,
+  /// where a curve meets the target, durations begin and cease to be possible. Velocities that are rounded
+  /// move the end of the shortest motion by the root of that.
   [[nodiscard]] Crossing first() const {
     if (up_.connected()) {
       const S miss = up_.start_miss(distance_);
-      const bool up = miss <= S(0);
-      const S sign = up ? S(1) : S(-1);
-      const BasicExtremals<S>& extremals = up ? up_ : down_;
       if (std::abs(miss) <= slack_) return crossing(up_, up_.start_motion(), S(1));
-      Extremal found;
-      if (extremals.only_over(sign * distance_, found)) return crossing(extremals, found, sign);
+      const S v = std::abs(up_.task().start_velocity) + std::abs(up_.task().end_velocity);
+      constexpr S rounding = S(8) * std::numeric_limits<S>::epsilon();
+      if (std::abs(miss) > S(8) * slack_ + v * std::sqrt(rounding * v)) {  // else both curves are tried
+        const S sign = miss < S(0) ? S(1) : S(-1);
+        const BasicExtremals<S>& extremals = miss < S(0) ? up_ : down_;
+        Extremal found;
+        if (extremals.only_over(sign * distance_, slack_, found)) return crossing(extremals, found, sign);
+      }
     }
     return first_from(S(0));
   }
