@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "cncplan/core/bracketed_root.hpp"
+#include "cncplan/core/cube_root.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/state.hpp"
@@ -200,7 +201,7 @@ class FromState {
                                      .jerk = limits_.jerk};
     const BasicTransfer<S> transfer({S(0), start_.velocity, start_.acceleration}, {length_, end_, S(0)},
                                     forward);
-    const auto first = transfer.first_from(S(0));
+    const auto first = transfer.first();
     if (!std::isfinite(first.duration)) return {};
     return transfer.with_phases(first.extremal, first.sign,
                                 [&](const auto&... phases) { return profile_of(phases...); });
@@ -269,18 +270,39 @@ class FromState {
                             .down = {}});
   }
 
-  // The end speed nearest to the wanted one, on the way to it, that the length allows: the root of a direct
-  // ramp's distance. That changes by p/(2 J) + e/p with the speed e to which it leads, p being its peak.
+  // The end speed nearest to the wanted one, on the way to it, that the length allows. Where the acceleration
+  // is held, the length is quadratic in the time of that. Where it is not, the start is moved back to where
+  // the acceleration is zero: from there, with the time x to the peak, it is (2 v + J x^2) x.
   [[nodiscard]] S reachable() const {
     const S settled = std::max(settled_speed(start_, limits_), S(0));
-    const auto excess = [&](S speed) {
-      const BasicRamp<S> ramp = ramp_from(start_, speed, limits_);
-      const S p = ramp.acceleration;
-      return std::array<S, 3>{distance(start_, ramp) - length_, p / (S(2) * limits_.jerk) + speed / p,
-                              S(1) / p};
+    const S sign = end_ < settled ? S(-1) : S(1);
+    const S most = sign * limits_.acceleration;
+    if (!std::isfinite(limits_.jerk))
+      return std::sqrt(std::max(start_.velocity * start_.velocity + S(2) * most * length_, S(0)));
+    const S jerk = sign * limits_.jerk;
+    const S moved = start_.acceleration / jerk;
+    const S rise = limits_.acceleration / limits_.jerk;
+    const BasicRamp<S> full{std::abs(rise - moved), S(0), rise, most, moved > rise ? -jerk : jerk};
+    const S at_full = start_.velocity + ((start_.acceleration + most) * full.first + most * rise) / S(2);
+    if (sign * (end_ - at_full) >= S(0))
+      if (const S left = length_ - distance(start_, full); left >= S(0)) {
+        const S slope = at_full + most * rise / S(2);
+        const S root = std::sqrt(std::max(slope * slope + S(2) * most * left, S(0)));
+        return std::max(at_full + most * (S(2) * left / (slope + root)), S(0));
+      }
+    const S speed = start_.velocity - jerk * moved * moved / S(2);
+    const S length = length_ + moved * (speed + jerk * moved * moved / S(6));
+    const auto excess = [&](S x) {
+      return std::array<S, 3>{x * (S(2) * speed + jerk * x * x) - length, S(2) * speed + S(3) * jerk * x * x,
+                              S(6) * jerk * x};
     };
-    S speed = settled;
-    return excess(settled)[0] <= S(0) && root_between(excess, settled, end_, S(0), speed) ? speed : settled;
+    const S least = std::max(moved, S(0));
+    const S longest = std::max(least, std::sqrt(std::max((end_ - speed) / jerk, S(0))));
+    if (!(excess(least)[0] < S(0))) return settled;
+    S guess = speed > S(0) ? length / (S(2) * speed) : longest;
+    if (sign > S(0) && length > S(0)) guess = std::min(guess, rough_cube_root(length / jerk));
+    const S x = bracketed_root(excess, least, longest, std::clamp(guess, least, longest));
+    return std::max(speed + jerk * x * x, S(0));
   }
 
   S length_;
