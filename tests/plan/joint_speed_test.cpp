@@ -18,7 +18,8 @@ const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 1
 
 junction::Side side(const path::Segment<3>& segment, bool at_end) {
   const Block<3> block{.path = segment};
-  return plan::tool_side<Machine<3>>(block, plan::BlockEnds(block), at_end, tool_axes(mill));
+  return plan::tool_side<Machine<3>>(block.path, block.rapid, plan::PathEnds(block.path), at_end,
+                                     tool_axes(mill));
 }
 
 // The cells of blocks whose joints a policy alone judges.

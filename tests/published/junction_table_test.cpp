@@ -147,7 +147,8 @@ TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
   }
   blocks.push_back({.path = path::Line<3>(points[5], points[0])});
   const auto side = [](const Block<3>& block, bool at_end) {
-    return plan::tool_side<Machine<3>>(block, plan::BlockEnds(block), at_end, tool_axes(Machine<3>{}));
+    return plan::tool_side<Machine<3>>(block.path, block.rapid, plan::PathEnds(block.path), at_end,
+                                       tool_axes(Machine<3>{}));
   };
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
     CAPTURE(i);

@@ -47,10 +47,11 @@ class BasicSegment {
   /// Calls f with the path inside; all calls give the same type.
   template <class F>
   decltype(auto) visit(F&& f) const {
+    if (const Line* inside = line()) return f(*inside);  // most are: before a table of functions
     if constexpr (sizeof...(Curves) == 0) {
-      if (const Arc* inside = arc()) return f(*inside);
-      return f(*line());
+      return f(*arc());
     } else {
+      if (const Arc* inside = arc()) return f(*inside);
       return std::visit(std::forward<F>(f), shape_);
     }
   }

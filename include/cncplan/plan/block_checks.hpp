@@ -37,8 +37,10 @@ template <MachineModel M, Path P>
   const auto box = path.box();
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
-    const S rounding = S(64) * std::numeric_limits<S>::epsilon() *
-                       std::max({std::abs(box.low[i]), std::abs(box.high[i]), S(1)});
+    const S reach = std::max(std::abs(box.low[i]), std::abs(box.high[i]));
+    if (box.low[i] >= axis.low && box.high[i] <= axis.high && reach <= std::numeric_limits<S>::max())
+      continue;
+    const S rounding = S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1));
     const auto refuse = [&](ErrorCode code, S value, S bound) {
       return tl::unexpected(
           Error{code, axis_name(axis.letter), static_cast<double>(value), static_cast<double>(bound)});

@@ -46,6 +46,7 @@ class CutByLimits {
   /// the program asks for, `tool_speed` the most that the tool may.
   void begin(const B& block, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
     block_ = &block;
+    straight_ = path_.exact() && block.path.line() != nullptr;
     speed_ = speed;
     tool_speed_ = tool_speed;
     Part& whole = open_[0].part;
@@ -63,7 +64,7 @@ class CutByLimits {
     for (;;) {
       const Part& top = open_[--count_].part;
       const int depth = open_[count_].depth;
-      if (depth == deepest || !(top.limits.velocity < speed_)) return top;
+      if (straight_ || depth == deepest || !(top.limits.velocity < speed_)) return top;
       const Part part = top;
       const Scalar middle = part.from + (part.to - part.from) / Scalar(2);
       const Part first{part.from, middle, limits(machine, part.from, middle, speed_)};
@@ -77,7 +78,12 @@ class CutByLimits {
 
   /// The limits of a part of the block at any speed.
   [[nodiscard]] BasicLimits<Scalar> limits(const M& machine, Scalar from, Scalar to, Scalar speed) const {
-    return limits_along(bounds(from, to), machine, speed, tool_speed_, block_->path.length());
+    const auto along = [&](const auto& path) {
+      return limits_along(path.bounds(from, to), machine, speed, tool_speed_, path.length());
+    };
+    if constexpr (EnclosedPath<typename B::Path>)
+      if (!path_.exact()) return along(path_);
+    return block_->path.visit(along);
   }
 
  private:
@@ -89,14 +95,9 @@ class CutByLimits {
     int depth{};
   };
 
-  [[nodiscard]] BasicPathBounds<Scalar, M::axis_count> bounds(Scalar from, Scalar to) const {
-    if constexpr (EnclosedPath<typename B::Path>)
-      if (!path_.exact()) return path_.bounds(from, to);
-    return block_->path.bounds(from, to);
-  }
-
   const B* block_ = nullptr;
   smooth::Smoothed<typename B::Path> path_;
+  bool straight_ = false;  // its limits hold all along
   Scalar speed_{};
   Scalar tool_speed_{};
   std::array<Open, static_cast<std::size_t>(deepest + 1)> open_{};
@@ -124,7 +125,9 @@ class CellMaker {
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
 
   CellMaker(const M& machine, const JointRules<Scalar, Policy>& rules)
-      : machine_(machine), rules_(rules), tool_(tool_axes(machine)), turnings_(machine) {}
+      : machine_(machine), rules_(rules), tool_(tool_axes(machine)), turnings_(machine) {
+    for (const auto& axis : machine.axes) axes_limited_ = axes_limited_ || has_limits(axis);
+  }
 
   /// Begins with the next block, which is to stay until all its cells are made; one of no length has none.
   /// Errors: below_limit and above_limit where an axis would leave its travel; unreachable where the machine
@@ -134,40 +137,7 @@ class CellMaker {
   }
   /// The same where another path is driven in place of the block's, and its start is passed in another way.
   [[nodiscard]] Expected<void> begin(const B& block, const Driven& driven, Passing passing) {
-    const BlockEnds<B> ends(block);
-    if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
-    if (auto ok = within_travel(block.path, machine_); !ok) return ok;
-    if constexpr (EnclosedPath<typename B::Path>)
-      if (!driven.exact() && has_ends(machine_))
-        if (auto ok = within_travel(driven, machine_); !ok) return ok;
-    const Scalar length = block.path.length();
-    end_ = length > Scalar(0) ? ends.end.position : ends.start.position;
-    paused_ = std::exchange(pause_, Scalar(0));
-    if (length > Scalar(0)) {
-      const LengthOf counted = length_of(block.path, machine_);
-      counted_ = counted;
-      wanted_ = plan::wanted_speed(block, machine_, counted);
-      entry_ = Scalar(0);
-      joint_.after = ends.start.first;
-      joint_.tool.after = tool_side<M>(block, ends, false, tool_);
-      const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
-      if (before_ && counted == before_->counted && passing != Passing::stop)
-        entry_ = before_->goes_on || passing == Passing::smooth ? infinity : joint_speed(speed);
-      const bool straight = block.path.line() != nullptr;
-      joint_.before = ends.end.first;
-      joint_.tool.before = straight ? joint_.tool.after : tool_side<M>(block, ends, true, tool_);
-      before_ = Before{speed, counted, block.exact_path, block.goes_on};
-      block_ = &block;
-      driven_ = driven;
-      if constexpr (requires { cut_.drive(driven); }) cut_.drive(driven);
-      turnings_.begin(block.path);
-      cut_on(Scalar(0));
-    } else {
-      pause_ = paused_;
-    }
-    pause_ += block.pause;
-    if (block.exact_stop || block.pause > Scalar(0)) before_.reset();
-    return {};
+    return block.path.visit([&](const auto& path) { return begin_on(path, block, driven, passing); });
   }
 
   /// Whether all cells of the block have been made.
@@ -227,6 +197,46 @@ class CellMaker {
     bool goes_on{};
   };
 
+  // The block's path is of a kind that is known now.
+  template <Path P>
+  [[nodiscard]] Expected<void> begin_on(const P& path, const B& block, const Driven& driven,
+                                        Passing passing) {
+    const PathEnds ends(path);
+    if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
+    if (auto ok = within_travel(path, machine_); !ok) return ok;
+    if constexpr (EnclosedPath<typename B::Path>)
+      if (!driven.exact() && has_ends(machine_))
+        if (auto ok = within_travel(driven, machine_); !ok) return ok;
+    const Scalar length = path.length();
+    end_ = length > Scalar(0) ? ends.end.position : ends.start.position;
+    paused_ = std::exchange(pause_, Scalar(0));
+    if (length > Scalar(0)) {
+      const LengthOf counted = length_of(path, machine_);
+      counted_ = counted;
+      wanted_ = plan::wanted_speed(block, machine_, counted);
+      entry_ = Scalar(0);
+      joint_.after = ends.start.first;
+      joint_.tool.after = tool_side<M>(path, block.rapid, ends, false, tool_);
+      const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
+      if (before_ && counted == before_->counted && passing != Passing::stop)
+        entry_ = before_->goes_on || passing == Passing::smooth ? infinity : joint_speed(speed);
+      joint_.before = ends.end.first;
+      constexpr bool straight = std::same_as<P, typename B::Path::Line>;
+      joint_.tool.before = straight ? joint_.tool.after : tool_side<M>(path, block.rapid, ends, true, tool_);
+      before_ = Before{speed, counted, block.exact_path, block.goes_on};
+      block_ = &block;
+      driven_ = driven;
+      if constexpr (requires { cut_.drive(driven); }) cut_.drive(driven);
+      turnings_.begin(block.path);
+      cut_on(Scalar(0));
+    } else {
+      pause_ = paused_;
+    }
+    pause_ += block.pause;
+    if (block.exact_stop || block.pause > Scalar(0)) before_.reset();
+    return {};
+  }
+
   // At a joint with a block of this speed.
   [[nodiscard]] Scalar joint_speed(Scalar wanted) {
     joint_.tool.limits = machine_.limits;
@@ -235,7 +245,7 @@ class CellMaker {
     if (before_->exact_path)
       speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<Scalar>{}.speed_sq(joint_.tool));
     const Scalar speed = speed_sq > Scalar(0) ? std::sqrt(speed_sq) : Scalar(0);
-    if (rules_.tolerance < Scalar(0)) return speed;
+    if (rules_.tolerance < Scalar(0) || !axes_limited_) return speed;
     return std::min(speed, axis_corner_speed(joint_, machine_, rules_.tolerance, rules_.rotary_tolerance));
   }
 
@@ -253,6 +263,7 @@ class CellMaker {
   M machine_;
   JointRules<Scalar, Policy> rules_;
   std::array<int, 3> tool_;
+  bool axes_limited_ = false;  // any of them
   Turnings<M> turnings_;
   std::array<BasicTurning<Scalar>, static_cast<std::size_t>(M::axis_count)> turning_{};  // at the next cell
   std::size_t turning_count_ = 0;

@@ -60,50 +60,55 @@ template <MachineModel M>
   return speed;
 }
 
-/// The axes at both ends of a block.
-template <BlockModel B>
-struct BlockEnds {
-  using Point = PathPoint<VectorN<typename B::Scalar, B::axis_count>>;
+/// The axes at both ends of a path.
+template <class Vector>
+struct PathEnds {
+  PathPoint<Vector> start, end;
 
-  Point start, end;
-
-  explicit BlockEnds(const B& block)
-      : start(block.path.point_at(typename B::Scalar(0))), end(block.path.point_at(block.path.length())) {}
+  template <Path P>
+  explicit PathEnds(const P& path)
+      : start(path.point_at(typename P::Scalar(0))), end(path.point_at(path.length())) {}
 };
+template <class P>
+PathEnds(const P&) -> PathEnds<typename P::Vector>;
 
-/// One side of a joint, as junction policies see it.
-template <MachineModel M, BlockModel B>
-[[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const B& block, const BlockEnds<B>& ends,
+/// One side of a joint, as junction policies see it: a path, with what its axes are at its ends.
+template <MachineModel M, Path P>
+[[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const P& path, bool rapid,
+                                                                const PathEnds<typename P::Vector>& ends,
                                                                 bool at_end, const std::array<int, 3>& tool) {
   using S = typename M::Scalar;
   using Vector3 = BasicVector3<S>;
-  junction::BasicSide<S> side;
-  side.kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
-  const auto set = [&](const Vector3& first, const Vector3& second, const Vector3& chord) {
-    const S norm = first.norm();
-    side.tangent = norm > S(0) ? Vector3(first / norm) : first;
-    side.curvature = second;
-    side.chord = chord;
-  };
-  if constexpr (tells_tool<typename B::Path>) {
-    const auto start = tool_point(block.path, S(0), tool);
-    const auto end = tool_point(block.path, block.path.length(), tool);
-    const auto& at = at_end ? end : start;
-    set(at.first, at.second, end.position - start.position);
+  if constexpr (requires { path.visit([](const auto&) {}); }) {
+    return path.visit([&](const auto& inside) { return tool_side<M>(inside, rapid, ends, at_end, tool); });
   } else {
-    const auto& at = at_end ? ends.end : ends.start;
-    set(in_space(at.first, tool), in_space(at.second, tool),
-        in_space(ends.end.position, tool) - in_space(ends.start.position, tool));
-  }
-  if constexpr (std::same_as<typename B::Path::Arc, path::BasicArc<S>>)
-    if (const auto* arc = block.path.arc()) {
+    junction::BasicSide<S> side;
+    side.kind = rapid ? junction::Kind::rapid : junction::Kind::line;
+    const auto set = [&](const Vector3& first, const Vector3& second, const Vector3& chord) {
+      const S norm = first.norm();
+      side.tangent = norm > S(0) ? Vector3(first / norm) : first;
+      side.curvature = second;
+      side.chord = chord;
+    };
+    if constexpr (tells_tool<P>) {
+      const auto start = tool_point(path, S(0), tool);
+      const auto end = tool_point(path, path.length(), tool);
+      const auto& at = at_end ? end : start;
+      set(at.first, at.second, end.position - start.position);
+    } else {
+      const auto& at = at_end ? ends.end : ends.start;
+      set(in_space(at.first, tool), in_space(at.second, tool),
+          in_space(ends.end.position, tool) - in_space(ends.start.position, tool));
+    }
+    if constexpr (std::same_as<P, path::BasicArc<S>>) {
       side.kind = junction::Kind::arc;
-      side.plane = arc->plane();
-      side.turn = arc->turn();
-      const auto [first, second, third] = cncplan::axes(arc->plane());
+      side.plane = path.plane();
+      side.turn = path.turn();
+      const auto [first, second, third] = cncplan::axes(path.plane());
       side.closed = side.chord[first] == S(0) && side.chord[second] == S(0);
     }
-  return side;
+    return side;
+  }
 }
 
 /// Rules for joints: a policy for the tool, and for the axes the tolerances within which corners count as

@@ -38,9 +38,9 @@ template <MachineModel M>
   rows.push_back({bounds.tool, {tool_speed, machine.limits.acceleration, machine.limits.jerk}});
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
-    const BasicLimits<S> limits{least_velocity(axis), least_acceleration(axis), axis.jerk};
-    if (limits == BasicLimits<S>{}) continue;
-    rows.push_back({{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)}, limits});
+    if (!has_limits(axis)) continue;
+    rows.push_back({{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)},
+                    {least_velocity(axis), least_acceleration(axis), axis.jerk}});
   }
   return rows;
 }
@@ -128,6 +128,77 @@ template <std::floating_point S>
   return length / top + ramps * ramp;
 }
 
+/// Whether no derivative but the first is there.
+template <std::floating_point S, int N>
+[[nodiscard]] bool straight(const BasicPathBounds<S, N>& bounds) {
+  const auto& t = bounds.tool;
+  return t.second_along == S(0) && t.second_across == S(0) && t.third_along == S(0) &&
+         t.third_across == S(0) && (bounds.second.array() == S(0)).all() &&
+         (bounds.third.array() == S(0)).all();
+}
+
+/// Limits along a straight path: the least of all, each by the rate of what it limits.
+template <MachineModel M>
+[[nodiscard]] BasicLimits<typename M::Scalar> limits_straight(
+    const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
+    typename M::Scalar speed, typename M::Scalar tool_speed) {
+  using S = typename M::Scalar;
+  BasicLimits<S> limits;
+  limits.velocity = speed;
+  const auto lower = [&limits](S rate, S velocity, S acceleration, S jerk) {
+    if (!(rate > S(0))) return;
+    limits.velocity = std::min(limits.velocity, velocity / rate);
+    limits.acceleration = std::min(limits.acceleration, acceleration / rate);
+    limits.jerk = std::min(limits.jerk, jerk / rate);
+  };
+  lower(bounds.tool.first, tool_speed, machine.limits.acceleration, machine.limits.jerk);
+  for (int i = 0; i < M::axis_count; ++i) {
+    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    if (has_limits(axis)) lower(bounds.first[i], least_velocity(axis), least_acceleration(axis), axis.jerk);
+  }
+  return limits;
+}
+
+/// Limits along any other.
+template <MachineModel M>
+[[nodiscard]] BasicLimits<typename M::Scalar> limits_on_bends(
+    const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
+    typename M::Scalar speed, typename M::Scalar tool_speed, typename M::Scalar length) {
+  using S = typename M::Scalar;
+  using Row = Limited<S>;
+  const auto rows = limited(machine, bounds, tool_speed);
+  const auto fastest = [&](S acceleration_share, S jerk_share) {
+    S v = speed;
+    for (const Row& row : rows) v = speed_of(row, v, acceleration_share, jerk_share);
+    return v;
+  };
+  const auto at = [&](S v, S share) {
+    BasicLimits<S> limits;
+    limits.velocity = v;
+    for (const Row& row : rows) limits.acceleration = std::min(limits.acceleration, acceleration_of(row, v));
+    if (share < S(1)) limits.acceleration *= share;
+    for (const Row& row : rows) limits.jerk = std::min(limits.jerk, jerk_of(row, v, limits.acceleration));
+    return limits;
+  };
+  const S least = fastest(S(0.8), S(0.5));
+  BasicLimits<S> best = at(least, S(1));
+  const bool bends = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.bends(); });
+  if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
+  constexpr int speeds = 4;
+  const S rise = (fastest(S(1), S(1)) - least) / S(speeds);
+  const S alone = time_with_ramps(best, length, S(1));
+  S shortest = time_with_ramps(best, length, S(2));
+  for (int i = 0; i <= speeds; ++i)
+    for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
+      const BasicLimits<S> other = at(least + static_cast<S>(i) * rise, share);
+      const S takes = time_with_ramps(other, length, S(2));
+      if (!(takes < shortest && time_with_ramps(other, length, S(1)) <= alone)) continue;
+      shortest = takes;
+      best = other;
+    }
+  return best;
+}
+
 }  // namespace detail
 
 /// Limits along the path, no faster than `speed`, such that for every speed, acceleration and jerk within
@@ -143,41 +214,8 @@ template <MachineModel M>
     const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
     typename M::Scalar speed, typename M::Scalar tool_speed,
     typename M::Scalar length = std::numeric_limits<typename M::Scalar>::infinity()) {
-  using S = typename M::Scalar;
-  using Row = detail::Limited<S>;
-  const auto rows = detail::limited(machine, bounds, tool_speed);
-  const auto fastest = [&](S acceleration_share, S jerk_share) {
-    S v = speed;
-    for (const Row& row : rows) v = detail::speed_of(row, v, acceleration_share, jerk_share);
-    return v;
-  };
-  const auto at = [&](S v, S share) {
-    BasicLimits<S> limits;
-    limits.velocity = v;
-    for (const Row& row : rows)
-      limits.acceleration = std::min(limits.acceleration, detail::acceleration_of(row, v));
-    if (share < S(1)) limits.acceleration *= share;
-    for (const Row& row : rows)
-      limits.jerk = std::min(limits.jerk, detail::jerk_of(row, v, limits.acceleration));
-    return limits;
-  };
-  const S least = fastest(S(0.8), S(0.5));
-  BasicLimits<S> best = at(least, S(1));
-  const bool bends = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.bends(); });
-  if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
-  constexpr int speeds = 4;
-  const S rise = (fastest(S(1), S(1)) - least) / S(speeds);
-  const S alone = detail::time_with_ramps(best, length, S(1));
-  S shortest = detail::time_with_ramps(best, length, S(2));
-  for (int i = 0; i <= speeds; ++i)
-    for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
-      const BasicLimits<S> other = at(least + static_cast<S>(i) * rise, share);
-      const S takes = detail::time_with_ramps(other, length, S(2));
-      if (!(takes < shortest && detail::time_with_ramps(other, length, S(1)) <= alone)) continue;
-      shortest = takes;
-      best = other;
-    }
-  return best;
+  return detail::straight(bounds) ? detail::limits_straight(bounds, machine, speed, tool_speed)
+                                  : detail::limits_on_bends(bounds, machine, speed, tool_speed, length);
 }
 
 }  // namespace cncplan::plan

@@ -152,6 +152,14 @@ template <std::floating_point S>
                                        : axis.acceleration;
 }
 
+/// Whether velocity, acceleration or jerk of an axis is limited.
+template <std::floating_point S>
+[[nodiscard]] constexpr bool has_limits(const BasicAxis<S>& axis) {
+  constexpr S none = BasicAxis<S>::infinity;
+  return axis.velocity != none || axis.acceleration != none || axis.jerk != none ||
+         axis.velocity_down > S(0) || axis.acceleration_down > S(0);
+}
+
 /// The highest speed of the tool in rapids, and in feed moves, mm/s.
 template <MachineModel M>
 [[nodiscard]] constexpr typename M::Scalar rapid_speed(const M& machine) {

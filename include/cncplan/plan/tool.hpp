@@ -49,8 +49,6 @@ template <class P>
 inline constexpr bool tells_tool = requires(const P& path, typename P::Scalar s) {
   path.tool_point_at(s);
 };
-template <class S, int N, class... Curves>
-inline constexpr bool tells_tool<path::BasicSegment<S, N, Curves...>> = (tells_tool<Curves> || ...);
 
 /// What the length of a path counts: the way of the tool; where that stands still, that of linear axes (both
 /// mm), or that of rotary ones (rad).

@@ -48,12 +48,14 @@ class Turnings {
       for (const step::BasicDrive<Scalar>& drive : machine.axes[i].motors) {
         const Scalar time = step::backlash_time(drive);
         if (time > axes_[i].rule.time) axes_[i].rule = {time, step::hysteresis(drive) / drive.steps_per_unit};
+        any_ = any_ || time > Scalar(0);
       }
   }
 
   /// Begins with the next path; it is to stay until its turnings are taken.
   template <Path P>
   void begin(const P& path) {
+    if (!any_) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       axes_[i].from = Scalar(0);
       axes_[i].next = never;
@@ -62,7 +64,7 @@ class Turnings {
   }
 
   /// Where the next one is, infinite where there is none.
-  [[nodiscard]] Scalar next() const { return axes_[nearest()].next; }
+  [[nodiscard]] Scalar next() const { return any_ ? axes_[nearest()].next : never; }
 
   /// Takes it from the path.
   template <Path P>
@@ -116,6 +118,7 @@ class Turnings {
   }
 
   std::array<Axis, static_cast<std::size_t>(M::axis_count)> axes_{};
+  bool any_ = false;  // of them has backlash
 };
 
 }  // namespace cncplan::plan
