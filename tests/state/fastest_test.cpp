@@ -89,6 +89,33 @@ TEST_CASE("jerk alone that ends at the limit of the velocity is found, however t
   CHECK(planned > 50000);
 }
 
+TEST_CASE("a motion that just comes to the limit of the velocity is the one with a cruise, without it") {
+  test::Random random;
+  int compared = 0;
+  for (int n = 0; n < 50000; ++n) {
+    AxisCase c = test::draw_axis_case(random);
+    const double v = c.limits.velocity_up, a = std::min(c.limits.acceleration_up, c.limits.acceleration_down);
+    const auto near = [&](const AxisState& end, double sign) {
+      return test::settled(end.velocity, sign * end.acceleration, c.limits.jerk) > 0.99 * v;
+    };
+    if (near(c.from, 1) || near(c.to, -1)) continue;  // then none is shorter: a rounding more is a detour
+    c.to.position = 4 * v * (v / a + a / c.limits.jerk);
+    const auto with_cruise = fastest(c);
+    double cruise = 0;
+    for (const auto& phase : with_cruise.phases())
+      if (phase.acceleration == 0 && phase.jerk == 0) cruise = std::max(cruise, phase.duration);
+    if (cruise == 0) continue;
+    ++compared;
+    c.to.position -= cruise * v;
+    const double without = with_cruise.duration() - cruise;
+    const double late = fastest(c).duration() - without;
+    if (late <= 1e-7 * without) continue;
+    INFO(c.literal());
+    CHECK(late == 0);
+  }
+  CHECK(compared > 20000);
+}
+
 TEST_CASE("from rest to rest it is the known profile") {
   // J t^3 = 4 L / 8 for a quarter of the time
   const auto m = fastest({{0, 0, 0}, {1, 0, 0}, {1000, 1000, 1e6, 1e6, 10000}});
