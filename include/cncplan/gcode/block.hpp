@@ -28,11 +28,15 @@ class Block {
   Expected<void, Diagnostic> parse(std::string_view line, std::size_t from,
                                    std::span<const PassThrough> pass_through) {
     clear();
-    for (Scanner scanner(line, from);;) {
-      const auto word = scanner.next();
-      if (!word) return tl::unexpected(word.error());
-      if (!*word) return {};
-      if (auto ok = add(**word, pass_through); !ok) return ok;
+    Scanner scanner(line, from);
+    for (Word word;;) {
+      if (!scanner.next_short(word)) {
+        const auto other = scanner.next();
+        if (!other) return tl::unexpected(other.error());
+        if (!*other) return {};
+        word = **other;
+      }
+      if (auto ok = add(word, pass_through); !ok) return ok;
     }
   }
 
@@ -65,6 +69,10 @@ class Block {
 
   [[nodiscard]] bool has(Group group) const {
     return ((codes_seen_ >> static_cast<unsigned>(group)) & 1U) != 0;
+  }
+  /// Whether no code of any other group is there, and none that passes through.
+  [[nodiscard]] bool only(Group group) const {
+    return (codes_seen_ & ~(1U << static_cast<unsigned>(group))) == 0 && passed_count_ == 0;
   }
   [[nodiscard]] Code code(Group group) const {
     return has(group) ? codes_[static_cast<std::size_t>(group)] : no_code;

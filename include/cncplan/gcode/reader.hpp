@@ -206,9 +206,9 @@ class Reader {
     };
   }
 
-  template <class Out>
-  Out execute(Code motion, Out out) {
-    const auto emit = emitter(out);
+  /// What a line asks for besides its motion.
+  template <class Emit>
+  void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
     for (const char letter : {'S', 'T'})
       if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
@@ -234,6 +234,13 @@ class Reader {
     if (non_modal == code(28)) home(dialect_.home_g28, emit);
     if (non_modal == code(30)) home(dialect_.home_g30, emit);
     if (non_modal >= code(92) && non_modal <= code(92.3)) shift(non_modal);
+  }
+
+  template <class Out>
+  Out execute(Code motion, Out out) {
+    const auto emit = emitter(out);
+    const Code non_modal = block_.code(Group::non_modal);
+    if (!block_.only(Group::motion) || (block_.letters() & bits("ST")) != 0) prepare(emit);
     if (!is_cycle(motion) && motion != no_code) cycles_.end_series();
     if (is_arc(motion)) {
       turn(motion, emit);

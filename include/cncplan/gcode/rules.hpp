@@ -380,12 +380,13 @@ using Check = Expected<void, Diagnostic>;
                      ((motion == code(1) || is_probe(motion)) && axis_words != 0);
   if (feeds || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
   const bool signed_diameter = block.has(Group::compensation);
+  const Letters counted = used & block.letters();
   for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
-    if ((used & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) && motion != code(5) &&
+    if ((counted & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) && motion != code(5) &&
         block.code(Group::input_output) < code(67))  // M67, M68: any Q
       if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
   for (const char letter : {'N', 'T', 'H'})
-    if ((used & bit(letter)) != 0)
+    if ((counted & bit(letter)) != 0)
       if (auto ok = whole(block, letter, 0, max_count); !ok) return tl::unexpected(ok.error());
   if (feeds)
     if (auto ok = check_feed(block, modal, column); !ok) return tl::unexpected(ok.error());

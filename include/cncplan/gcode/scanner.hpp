@@ -2,6 +2,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -35,6 +36,29 @@ class Scanner {
     const auto number = read_number(letter, column);
     if (!number) return tl::unexpected(number.error());
     return Word{letter, *number, 0, column};
+  }
+
+  /// The same where nothing but blanks stands before the word and its number is short, as in most lines.
+  /// Passes nothing and returns false elsewhere and at the end of the line.
+  [[nodiscard]] bool next_short(Word& word) {
+    const char* const before = at_;
+    skip_blanks();
+    const char letter = peek();
+    const int column = this->column();
+    if (letter >= 'A' && letter <= 'Z') {
+      ++at_;
+      skip_blanks();
+      const bool negative = peek() == '-';
+      const char* const first = at_ + (negative || peek() == '+' ? 1 : 0);
+      double magnitude{};
+      if (const char* const behind = read_short(first, magnitude)) {
+        at_ = behind;
+        word = {letter, negative ? 0.0 - magnitude : magnitude, 0, column};
+        return true;
+      }
+    }
+    at_ = before;
+    return false;
   }
 
   /// Passes blanks and comments, and leaves the scanner on the next word.
@@ -105,15 +129,21 @@ class Scanner {
   const char* read_short(const char* at, double& magnitude) const {
     constexpr double powers[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                  1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
-    constexpr int most = 15;
-    std::int64_t digits = 0;
-    int count = 0, decimals = 0;
-    for (; at != end_ && is_digit(*at) && count <= most; ++at, ++count) digits = 10 * digits + (*at - '0');
-    if (at != end_ && *at == '.')
-      for (++at; at != end_ && is_digit(*at) && count <= most; ++at, ++count, ++decimals)
-        digits = 10 * digits + (*at - '0');
+    constexpr std::ptrdiff_t most = 15;
+    std::uint64_t digits = 0;  // of too many it overflows, and is not used
+    const auto read = [&] {
+      const char* const first = at;
+      for (; at != end_ && is_digit(*at); ++at) digits = 10 * digits + static_cast<std::uint64_t>(*at - '0');
+      return at - first;
+    };
+    std::ptrdiff_t count = read(), decimals = 0;
+    if (at != end_ && *at == '.') {
+      ++at;
+      decimals = read();
+      count += decimals;
+    }
     if (count == 0 || count > most) return nullptr;
-    magnitude = static_cast<double>(digits) / powers[decimals];
+    magnitude = static_cast<double>(static_cast<std::int64_t>(digits)) / powers[decimals];
     return at;
   }
 
