@@ -264,6 +264,26 @@ TEST_CASE("no forward motion of any switching pattern is faster, and none exists
   CHECK(near > solved * 0.99);
 }
 
+TEST_CASE("the bound of a refusal is the end speed that the length just allows") {
+  test::Random random;
+  int held = 0, free = 0;
+  for (int n = 0; n < 100000; ++n) {
+    const StateCase c = draw_state(random);
+    const auto refused = profile::from_state(c.length, c.start, c.end, c.limits);
+    if (refused) continue;
+    const double bound = refused.error().bound, v = c.limits.velocity;
+    const double settled = std::max(profile::settled_speed(c.start, c.limits), 0.0);
+    if (bound > v || std::abs(bound - settled) < 1e-6 * v) continue;
+    const auto p = profile::from_state(c.length * (1 + 1e-9), c.start, bound, c.limits);
+    INFO(c.literal());
+    REQUIRE(p);
+    const auto ramp = profile::ramp_from(c.start, bound, c.limits);  // no room for anything else
+    if (!(std::abs(p->duration() / ramp.duration() - 1) < 1e-3)) CHECK(p->duration() == ramp.duration());
+    ++(ramp.hold > 0 ? held : free);
+  }
+  CHECK(std::min(held, free) > 1000);
+}
+
 TEST_CASE("slower end speeds than the bound of a refusal may be had") {
   const Limits limits{30.0, 1000.0, 10000.0};
   const double to_rest = profile::stop({20.0, 0.0}, limits)->length();
