@@ -25,20 +25,26 @@ function chartsOf(motion) {
 
 // The smallest and the largest values of each column of a picture.
 class Columns {
-  constructor(from, to, count = 1000) {
-    Object.assign(this, {from, width: (to - from) / count, count, low: [], high: []});
+  constructor(from, to, series, count = 1000) {
+    Object.assign(this, {from, width: (to - from) / count, count, series, used: new Uint8Array(count)});
+    this.low = new Float64Array(count * series).fill(Infinity);
+    this.high = new Float64Array(count * series).fill(-Infinity);
   }
   put(x, values) {
-    const column = Math.min(Math.max(Math.floor((x - this.from) / this.width), 0), this.count - 1);
-    this.low[column] = this.low[column]?.map((y, k) => Math.min(y, values[k])) ?? values;
-    this.high[column] = this.high[column]?.map((y, k) => Math.max(y, values[k])) ?? values;
+    const column = Math.min(Math.max(Math.floor((x - this.from) / this.width), 0), this.count - 1), at = column * this.series;
+    this.used[column] = 1;
+    for (let k = 0; k < this.series; ++k) {
+      if (values[k] < this.low[at + k]) this.low[at + k] = values[k];
+      if (values[k] > this.high[at + k]) this.high[at + k] = values[k];
+    }
   }
   rows() {
-    const rows = [];
-    for (let column = 0; column < this.low.length; ++column) {
-      if (!this.low[column]) continue;
-      rows.push([this.from + column * this.width, ...this.low[column]],
-                [this.from + (column + 0.5) * this.width, ...this.high[column]]);
+    const rows = [], of = (values, column) => Array.from(
+      values.subarray(column * this.series, (column + 1) * this.series), x => (isFinite(x) ? x : NaN));
+    for (let column = 0; column < this.count; ++column) {
+      if (!this.used[column]) continue;
+      rows.push([this.from + column * this.width, ...of(this.low, column)],
+                [this.from + (column + 0.5) * this.width, ...of(this.high, column)]);
     }
     return rows;
   }
@@ -54,12 +60,13 @@ const chartAxes = {
 // its smallest and its largest value.
 function chartRows(motion, series, from, to, axis = chartAxes.time) {
   if (motion.count === 0) return [[0, ...series.map(() => 0)]];
-  const columns = new Columns(from, to), room = motion.room(), rows = [];
+  const columns = new Columns(from, to, series.length), room = motion.room(), rows = [], values = new Float64Array(series.length);
   const begin = axis.timeAt(motion, from), finish = axis.timeAt(motion, to);
   const first = motion.phaseAt(begin), last = motion.phaseAt(finish);
   const whole = 5 * (last - first + 1) <= 3 * columns.count;
   const put = (i, t) => {
-    const state = motion.inPhase(i, t, room), values = series.map(one => one.value(state, motion));
+    const state = motion.inPhase(i, t, room);
+    for (let k = 0; k < series.length; ++k) values[k] = series[k].value(state, motion);
     if (whole) rows.push([axis.of(state), ...values]); else columns.put(axis.of(state), values);
   };
   for (let i = first; i <= last; ++i) {

@@ -24,7 +24,7 @@ class LiveMotion {
     this.states.splice(0, old);
   }
   rows(series, from, to) {
-    const columns = new Columns(from, to);
+    const columns = new Columns(from, to, series.length);
     for (const state of this.states)
       if (state.time >= from && state.time <= to) columns.put(state.time, series.map(one => one.value(state, this)));
     const rows = columns.rows();
