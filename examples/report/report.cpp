@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -119,9 +120,14 @@ Json array_of(const std::vector<T>& values, F&& each) {
   return array;
 }
 
+// Without folders, which tell nothing to those that the report is sent to.
+std::string file_name(const Report& report) {
+  return to_utf8(std::filesystem::path(report.file).filename().string());
+}
+
 std::string data_of(const Report& report) {
   Json json;
-  json["file"] = to_utf8(report.file);
+  json["file"] = file_name(report);
   put_text(json, report.text);
   json["summary"] = array_of(report.summary, [](const auto& row) {
     return Json::array({row.first, to_utf8(row.second)});
@@ -185,7 +191,7 @@ void write(std::ostream& out, const Report& report) {
     const std::string_view name = rest.substr(open + 2, close - open - 2);
     rest.remove_prefix(close + 2);
     if (name == "title")
-      out << in_html(to_utf8(report.file));
+      out << in_html(file_name(report));
     else if (name == "data")
       out << in_script(data_of(report));
     else if (name == "licences")
