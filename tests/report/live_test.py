@@ -168,7 +168,7 @@ def browser():
         wait("cncplan.live.state === 'held'")
         press("resume")
         wait("cncplan.live.state === 'moves' && cncplan.live.motion.at().s > 5")
-        wait("cncplan.time() > 0.1 && cncplan.view.tool.position.x > 3")
+        wait("cncplan.time() > 0.1 && cncplan.view.marker.tool[0] > 3")
         check(page.value("document.querySelector('.line.current')?.dataset.line") == "2", "the line that runs is not marked")
         press("hold")
         wait("cncplan.live.state === 'held'")

@@ -1,9 +1,10 @@
-"""Reports of cncplan_simulate in a real browser: report_test.py SIMULATE EXAMPLES CASE...
+"""Reports in a real browser: report_test.py SIMULATE TIRE_MOLD EXAMPLES CASE...
 
 Values at the cursor are compared with the rows of --samples, which the page has never seen."""
 
 import csv
 import json
+import math
 import os
 import random
 import re
@@ -13,7 +14,7 @@ import tempfile
 
 from browser import Browser
 
-SIMULATE, EXAMPLES = sys.argv[1:3]
+SIMULATE, TIRE_MOLD, EXAMPLES = sys.argv[1:4]
 NEAR = 1e-6  # of a value or of one, whichever is larger
 
 
@@ -25,7 +26,7 @@ def check(holds, text):
 class Run:
     """A program run in a folder of its own, and its report opened."""
 
-    def __init__(self, program, *options):
+    def __init__(self, program, *options, command=SIMULATE):
         self.folder = tempfile.TemporaryDirectory(prefix="cncplan-report-")
         if isinstance(program, bytes):
             self.program = os.path.join(self.folder.name, "part.ngc")
@@ -35,7 +36,7 @@ class Run:
             self.program = program
         self.page = os.path.join(self.folder.name, "part.html")
         samples = os.path.join(self.folder.name, "part.csv")
-        run = subprocess.run([SIMULATE, self.program, "--report", self.page, "--samples", samples, "--quiet", "--json", *options],
+        run = subprocess.run([command, self.program, "--report", self.page, "--samples", samples, "--quiet", "--json", *options],
                              check=True, stderr=subprocess.DEVNULL, stdout=subprocess.PIPE)
         self.summary = json.loads(run.stdout)
         with open(samples, newline="") as file:
@@ -70,13 +71,15 @@ class Run:
         height = self.value("document.getElementById('program-space').offsetHeight")
         check(height == 20 * count, f"{count} lines are {height} px high")
 
-    def check_samples(self, count=60):
-        chosen = random.Random(1).sample(self.samples, min(count, len(self.samples))) + [self.samples[0], self.samples[-1]]
-        for row in chosen:
+    def some_samples(self, count=60):
+        return random.Random(1).sample(self.samples, min(count, len(self.samples))) + [self.samples[0], self.samples[-1]]
+
+    def check_samples(self):
+        for row in self.some_samples():
             self.value(f"cncplan.setTime({row['t']!r})")
             seen = self.cells()
             for name, expected in row.items():
-                found = seen.get(name.upper() if name in "xyz" else name)
+                found = seen.get(name.upper() if name in "xyz" else f"axis {name}" if name.isupper() else name)
                 check(found is not None, f"no {name} among {list(seen)}")
                 check(abs(found - expected) <= NEAR * max(1.0, abs(expected)),
                       f"t={row['t']!r}: {name} is {expected!r}, and {found!r} on the page")
@@ -102,6 +105,7 @@ def example(name):
         check_colors(run)
         check_keys_and_play(run)
         check_charts(run)
+        check_decoding(run)
         run.check_opened()
 
 
@@ -140,7 +144,7 @@ def check_colors(run):
         pictures.add(run.value("cncplan.view.colors.array.join()"))
     check(len(pictures) >= 5, f"all ways to colour give {len(pictures)} pictures")
     run.value("cncplan.view.draw()")
-    drawn = run.value("""(() => { const gl = cncplan.view.renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
+    drawn = run.value("""(() => { const gl = cncplan.view.canvas.renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
         const p = new Uint8Array(4 * w * h); gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
         let n = 0; for (let i = 0; i < p.length; i += 4) if (p[i] + p[i + 1] + p[i + 2] < 600) ++n; return n; })()""")
     check(drawn > 200, f"the path is {drawn} pixels of the view")
@@ -167,6 +171,13 @@ def check_keys_and_play(run):
     height = run.value("cncplan.view.orbit.height *= 3, cncplan.view.orbit.height")
     run.browser.key("f")
     check(run.value("cncplan.view.orbit.height") < height, "F does not fit")
+
+
+def check_decoding(run):
+    """Browsers without Uint8Array.fromBase64 read the same numbers."""
+    check(run.value("""(() => { const of = Uint8Array.fromBase64; Uint8Array.fromBase64 = undefined;
+        const others = decode(Float64Array, cncplan.report.plans[0].time); Uint8Array.fromBase64 = of;
+        return others.length > 1 && others.join() === cncplan.motions[0].phase.time.join(); })()"""), "columns are read otherwise")
 
 
 def check_charts(run):
@@ -304,10 +315,57 @@ def rotary():
         os.remove(machine)
 
 
+def check_joints(run, letters):
+    """A chart has each axis in velocity, acceleration and jerk; where these are drawn is where the samples say."""
+    charts = run.value("cncplan.charts.charts.map(c => c.graph.getLabels())")
+    for labels in charts[1:4]:
+        check(labels[1:1 + len(letters)] == letters, f"a chart shows {labels}")
+    axis, place = letters[-1], 1 + len(letters)
+    between = [(b[axis] - a[axis]) / (b["t"] - a["t"]) for a, b in zip(run.samples, run.samples[1:]) if b["t"] > a["t"]]
+    rows = run.value("chartRows(cncplan.motions[0], cncplan.charts.charts[1].series, 0, cncplan.motions[0].duration)")
+    highest = max(row[place - 1] for row in rows)
+    check(abs(highest - max(between)) < 0.01 * max(between), f"the fastest {axis} is drawn as {highest}, not {max(between)}")
+
+
+def table():
+    """X, Y and Z on a machine with a rotary table: the tool as it is seen from the work, and each axis."""
+    path, machine = os.path.join(EXAMPLES, "programs", "pocket.ngc"), os.path.join(EXAMPLES, "machines", "kk22.toml")
+    with Run(path, "--machine", machine) as run:
+        check_page(run, text_of(path))
+        check_joints(run, ["Y", "Z", "C"])
+        for row in run.some_samples(20):  # from the table's centre, X -150
+            angle = math.radians(row["C"])
+            x, y = row["Y"] * math.cos(angle) - 150.0, row["Y"] * math.sin(angle)
+            run.value(f"cncplan.setTime({row['t']!r})")
+            seen = run.cells()
+            check(math.hypot(seen["X"] - x, seen["Y"] - y) < NEAR, f"t={row['t']!r}: the tool is shown at {seen}")
+
+
+def mold():
+    """Text on a curved wall: each axis as --samples has it, and the tip where these axes put it."""
+    folder, length = os.path.join(EXAMPLES, "tire_mold"), 20.0
+    art = os.path.join(folder, "text.nc")
+    with Run(os.path.join(folder, "sidewall.dxf"), art, "--tool-length", str(length), "--start-radius", "150", "--out", os.devnull,
+             "--machine", os.path.join(EXAMPLES, "machines", "tire_mold.toml"), command=TIRE_MOLD) as run:
+        run.check_opened()
+        run.check_lines(len(text_of(art).splitlines()))
+        for row in run.samples:  # x, y and z are the artwork's: where the axes put the tip is another place
+            tilt, turn = math.radians(row["A"]), math.radians(row["C"])
+            radius = row["R"] + length * math.sin(tilt)
+            row.update(x=radius * math.cos(turn), y=radius * math.sin(turn), z=row["Z"] - length * math.cos(tilt))
+        run.check_samples()
+        check_joints(run, ["R", "Z", "A", "C"])
+        check_clicks(run)
+        check(run.value("cncplan.report.drawings.map(d => d.name).join()") == "wall,artwork", "the wall or the artwork is missing")
+        box = run.value("(b => [b.min.x, b.max.x, b.min.y, b.max.y])(cncplan.view.box)")
+        seen = [f(row[k] for row in run.samples) for k in "xy" for f in (min, max)]
+        check(max(abs(a - b) for a, b in zip(box, seen)) < 0.1, f"the view shows {box}, and the tip goes {seen}")
+
+
 CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_figure7"),
          "short lines": lambda: example("short_lines"), "nothing": nothing, "one motion": one_motion,
-         "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "two plans": two_plans, "paper": paper, "long program": long_program}
+         "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
 
-for case in sys.argv[3:]:
+for case in sys.argv[4:]:
     CASES[case]()
     print(f"{case}: passed")

@@ -7,7 +7,8 @@ class Orbit {
     this.element = element;
     this.changed = changed;
     this.target = new THREE.Vector3();
-    this.height = 100;  // mm in the picture
+    this.box = new THREE.Box3();
+    this.height = this.diameter = 100;  // mm in the picture, and of the box
     this.clicked = () => {};
     this.look('isometric');
     this.listen();
@@ -16,21 +17,25 @@ class Orbit {
   look(view) {
     const views = {top: [-90, 90], front: [-90, 0], side: [0, 0], isometric: [-60, 35.264]};
     [this.azimuth, this.elevation] = views[view].map(d => d * Math.PI / 180);
-    this.update();
+    this.fit(this.box);
   }
-  // Shows all of a box (THREE.Box3).
+  // Shows all of a box (THREE.Box3), as large as it goes in this direction.
   fit(box) {
-    const size = box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length();
+    this.box = box;
+    const half = box.isEmpty() ? new THREE.Vector3() : box.getSize(new THREE.Vector3()).multiplyScalar(0.5);
     if (!box.isEmpty()) box.getCenter(this.target);
-    this.diameter = size > 0 ? size : 1;
-    this.height = this.diameter * 1.05 * Math.max(1, this.element.clientHeight / this.element.clientWidth);
+    this.diameter = 2 * half.length() || 1;
+    this.update();
+    const e = this.camera.matrixWorld.elements, {clientWidth, clientHeight} = this.element;
+    const [across, up] = [0, 4].map(k => Math.abs(e[k]) * half.x + Math.abs(e[k + 1]) * half.y + Math.abs(e[k + 2]) * half.z);
+    this.height = 2.2 * Math.max(up, across * clientHeight / Math.max(clientWidth, 1)) || this.diameter;
     this.update();
   }
   update() {
     const aspect = this.element.clientWidth / Math.max(this.element.clientHeight, 1);
     const c = this.camera, h = this.height / 2;
     [c.left, c.right, c.top, c.bottom] = [-h * aspect, h * aspect, h, -h];
-    const e = this.elevation, far = 10 * Math.max(this.diameter ?? 1, this.height);
+    const e = this.elevation, far = 10 * Math.max(this.diameter, this.height);
     const flat = Math.cos(e);
     c.up.set(flat > 1e-6 ? 0 : -Math.cos(this.azimuth), flat > 1e-6 ? 0 : -Math.sin(this.azimuth), flat > 1e-6 ? 1 : 0);
     c.position.set(flat * Math.cos(this.azimuth), flat * Math.sin(this.azimuth), Math.sin(e));
@@ -40,6 +45,13 @@ class Orbit {
     c.updateProjectionMatrix();
     c.updateMatrixWorld();
     this.changed();
+  }
+  // A function that finds where a place p[k], p[k + 1], p[k + 2] is in the picture: px from its upper left corner.
+  projection() {
+    const m = new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).elements;
+    const width = this.element.clientWidth, height = this.element.clientHeight;
+    return (p, k) => [(1 + m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) * width / 2,
+                      (1 - m[1] * p[k] - m[5] * p[k + 1] - m[9] * p[k + 2] - m[13]) * height / 2];
   }
   // mm in the picture's plane that pixels are.
   pan(dx, dy) {

@@ -140,7 +140,7 @@ const cncplan = (() => {
   showPlans(motions);
   const live = report.live ? new Live(byId('live'), report, motions[0], (t, tool) => {
     setTime(t);
-    view?.tool.position.fromArray(tool);
+    view?.putTool(tool);
   }) : null;
   showMotion(0);
   return {live, report, lines, motions, view, charts, program, player, setTime, goToLine, setMode,

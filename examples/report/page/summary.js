@@ -143,7 +143,7 @@ function showState(report, motion, state) {
                  ['v, mm/s', state.v], ['a, mm/s²', state.a], ['j, mm/s³', state.j]];
   const of = (axis, name, vector) => cells.push([`${axis.name} ${name}`, vector[axis.channel]]);
   for (const axis of report.axes) {
-    if (axis.channel > 2) of(axis, '', state.position);
+    if (axis.channel > 2) cells.push([`axis ${axis.name}, ${axis.unit}`, state.position[axis.channel]]);
     of(axis, 'velocity', state.velocity);
     of(axis, 'acceleration', state.acceleration);
     of(axis, 'jerk', state.jerk);

@@ -3,18 +3,15 @@
 class View {
   constructor(element, drawings) {
     this.element = element;
-    this.pending = false;
-    this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
-    this.renderer.setPixelRatio(window.devicePixelRatio);
-    this.renderer.setClearColor(0xffffff);
-    element.appendChild(this.renderer.domElement);
+    this.canvas = new Canvas(element);
+    this.marker = new Marker(element);
     this.scene = new THREE.Scene();
+    this.scene.fog = new THREE.Fog(0xffffff);
     this.orbit = new Orbit(element, () => this.turn());
     this.magnified = 1;
     this.orbit.clicked = event => this.pick(event);
     this.picked = () => {};
     for (const drawing of drawings) this.addDrawing(drawing);
-    this.addTool();
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
@@ -24,18 +21,6 @@ class View {
     geometry.setAttribute('position', new THREE.BufferAttribute(decode(Float32Array, drawing.points), 3));
     this.scene.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0xbbbbbb})));
   }
-  addTool() {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3), 3));
-    const material = size => ({size, sizeAttenuation: false, depthTest: false});
-    this.tool = new THREE.Group();
-    this.tool.add(new THREE.Points(geometry, new THREE.PointsMaterial({color: 0xffffff, ...material(14)})));
-    this.tool.add(new THREE.Points(geometry, new THREE.PointsMaterial({color: 0xd55e00, ...material(9)})));
-    this.tool.renderOrder = 2;
-    for (const part of this.tool.children) part.renderOrder = 2;
-    this.scene.add(this.tool);
-  }
-
   // How many lines a phase is drawn as: by how much it turns, and how long it is.
   linesOf(motion, i, diagonal, room) {
     const seconds = motion.durationOf(i), start = motion.phase.time[i];
@@ -91,9 +76,7 @@ class View {
                  lines(this.place, dashed, new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
     this.coarse = lines(this.place, this.fewer(times.length), new THREE.LineBasicMaterial(colored));
     this.coarse.visible = false;
-    this.current = lines(this.place, null, new THREE.LineBasicMaterial({color: 0x000000, depthTest: false}));
-    this.current.renderOrder = 1;
-    this.path.add(...this.fine, this.coarse, this.current);
+    this.path.add(...this.fine, this.coarse);
     if (motion.deviates) {
       const programmed = attribute(this.moved(-1), 3);
       const line = lines(programmed, null, new THREE.LineBasicMaterial({color: 0x999999, depthWrite: false}));
@@ -143,14 +126,13 @@ class View {
 
   // Indices of fewer lines, for while the view turns: each in place of some that follow each other.
   fewer(count) {
-    const most = 12000, step = 2 * Math.ceil(count / 2 / most), indices = [];
+    const most = 8000, step = 2 * Math.ceil(count / 2 / most), indices = [];
     for (let k = 0; k < count; k += step) indices.push(k, Math.min(k + step, count) - 1);
     return indices;
   }
   // The view has been turned, moved or zoomed.
   turn() {
-    const many = this.times?.length > 24000;
-    if (many) {
+    if (this.times?.length > 8000) {
       this.refine(false);
       clearTimeout(this.timer);
       this.timer = setTimeout(() => { this.refine(true); this.render(); }, 250);
@@ -158,8 +140,16 @@ class View {
     this.render();
   }
   refine(fine) {
+    this.canvas.smooth = fine;
     for (const part of this.fine) part.visible = fine;
     this.coarse.visible = !fine;
+  }
+
+  // What is far away is paler, which shows the shape; by two thirds at most.
+  fade() {
+    const {camera, target, diameter} = this.orbit, middle = camera.position.distanceTo(target);
+    this.scene.fog.near = middle - diameter / 2;
+    this.scene.fog.far = middle + diameter;
   }
 
   // Gives back what the legend tells.
@@ -185,27 +175,26 @@ class View {
 
   // Puts the tool where it is, and marks the motion that it is in.
   put(state) {
-    this.tool.position.fromArray(state.position);
     const line = this.motion.lineOf(state), of = k => this.motion.block.line[this.motion.phase.block[this.phases[k]]];
     let first = lastNotAbove(this.phases, state.phase), end = first + 1;
     const count = this.phases.length, most = 5000;
     for (let k = 0; first > 0 && k < most && of(first - 1) === line; ++k) --first;
     for (let k = 0; end < count && k < most && of(end) === line; ++k) ++end;
-    this.current.geometry.setDrawRange(2 * first, count > 0 ? 2 * (end - first) : 0);
-    this.render();
+    this.marker.lines = this.positions.subarray(6 * first, count > 0 ? 6 * end : 0);
+    this.putTool(state.position);
+  }
+  putTool(position) {
+    this.marker.tool = Array.from(position.slice(0, 3));
+    this.request();
   }
 
   // The instant whose place is nearest to the pointer, if it is near.
   pick(event) {
-    const box = this.element.getBoundingClientRect(), camera = this.orbit.camera;
-    const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
-    const x = event.clientX - box.left, y = event.clientY - box.top, p = this.positions;
-    const across = k => [
-      (1 + m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) * box.width / 2,
-      (1 - m[1] * p[k] - m[5] * p[k + 1] - m[9] * p[k + 2] - m[13]) * box.height / 2];
+    const box = this.element.getBoundingClientRect(), place = this.orbit.projection();
+    const x = event.clientX - box.left - this.element.clientLeft, y = event.clientY - box.top - this.element.clientTop;
     let nearest = 10, time;
     for (let k = 0; k < this.times.length; k += 2) {
-      const [x0, y0] = across(3 * k), [x1, y1] = across(3 * k + 3);
+      const [x0, y0] = place(this.positions, 3 * k), [x1, y1] = place(this.positions, 3 * k + 3);
       const dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy;
       const part = square > 0 ? Math.min(Math.max(((x - x0) * dx + (y - y0) * dy) / square, 0), 1) : 0;
       const distance = Math.hypot(x0 + part * dx - x, y0 + part * dy - y);
@@ -217,16 +206,28 @@ class View {
   }
 
   resize() {
-    this.renderer.setSize(this.element.clientWidth, this.element.clientHeight);
+    const width = this.element.clientWidth, height = this.element.clientHeight;
+    this.canvas.resize(width, height);
+    this.marker.resize(width, height);
     this.orbit.update();
   }
+  // The path, with the next picture. Where only the marker moves, `request` is enough.
   render() {
+    this.stale = true;
+    this.request();
+  }
+  request() {
     if (this.pending) return;
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      this.draw();
+      if (this.stale) this.draw();
+      this.marker.draw(this.orbit);
     });
   }
-  draw() { this.renderer.render(this.scene, this.orbit.camera); }
+  draw() {
+    this.stale = false;
+    this.fade();
+    this.canvas.draw(this.scene, this.orbit.camera);
+  }
 }
