@@ -1,6 +1,7 @@
-"""cncplan_simulate --serve, by HTTP and in a real browser: live_test.py SIMULATE CASE..."""
+"""cncplan_simulate --serve, by HTTP and in a real browser: live_test.py SIMULATE EXAMPLES CASE [PICTURE]"""
 
 import json
+import math
 import os
 import signal
 import socket
@@ -13,7 +14,7 @@ import urllib.request
 
 from browser import Browser
 
-SIMULATE = sys.argv[1]
+SIMULATE, EXAMPLES = sys.argv[1:3]
 PROGRAM = b"G21 G90 G17 F1800\nG1 X40\nG3 X50 Y10 R10\nG0 Y40\nG1 X0\nG1 Y0\n"
 FEED, AMAX, PERIOD = 30.0, 1000.0, 0.001
 
@@ -26,11 +27,11 @@ def check(holds, text):
 class Served:
     """A program that is served at a free port of this machine."""
 
-    def __init__(self, *options):
+    def __init__(self, *options, program=PROGRAM):
         self.folder = tempfile.TemporaryDirectory(prefix="cncplan-live-")
         self.path = os.path.join(self.folder.name, "part.ngc")
         with open(self.path, "wb") as file:
-            file.write(PROGRAM)
+            file.write(program)
         self.process = subprocess.Popen([SIMULATE, self.path, "--serve", "0", *options], stdout=subprocess.PIPE, text=True)
         self.url = self.process.stdout.readline().strip()
         check(self.url.startswith("http://127.0.0.1:"), f"it says it is at '{self.url}'")
@@ -185,10 +186,101 @@ def browser():
         wait("cncplan.live.state === 'held' && cncplan.live.run === 2")
         elsewhere = [text for text in page.complaints if not text.startswith("fetched " + served.url)]
         check(not elsewhere, f"the console says {elsewhere}")
-        if len(sys.argv) > 3:
-            page.picture(sys.argv[3])
+        if len(sys.argv) > 4:
+            page.picture(sys.argv[4])
 
 
-CASES = {"http": http, "refusals": refusals, "browser": browser}
-CASES[sys.argv[2]]()
-print(f"{sys.argv[2]}: passed")
+def machine(name):
+    return os.path.join(EXAMPLES, "machines", name + ".toml")
+
+
+def drive(served, axes):
+    """Runs to the end; the rows, each as the tool's place and dictionaries of position and velocity by axis."""
+    check(served.ask("resume") == 204, "resume is refused")
+    result = []
+    for row in served.rows(30, "finished")[0]:
+        check(len(row) == 9 + 4 * len(axes), f"a row of {len(axes)} axes has {len(row)} values")
+        result.append((row[6:9], dict(zip(axes, row[9::4])), dict(zip(axes, row[10::4]))))
+    check(len(result) > 100, f"there are {len(result)} rows")
+    return result
+
+
+def check_rates(rows, axes, corners=2):
+    """An axis goes as fast as its places say: half the sum of two velocities, but where a corner lies between."""
+    for axis in axes:
+        fastest = max(abs(velocity[axis]) for _, _, velocity in rows)
+        gaps = sorted(abs((b[1][axis] - a[1][axis]) / PERIOD - (a[2][axis] + b[2][axis]) / 2)
+                      for a, b in zip(rows, rows[1:]) if a[1] != b[1])
+        check(gaps[-1 - corners] < 0.002 * fastest + 1e-9,
+              f"axis {axis} goes at up to {fastest}, and {gaps[-5:]} beside its places")
+
+
+def four_axes():
+    """A mill with a rotary axis beside X, Y and Z."""
+    with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+        for letter in "XYZA":
+            file.write(f'[[axis]]\nletter = "{letter}"\nkind = "{"rotary" if letter == "A" else "linear"}"\n')
+        file.flush()
+        with Served("--machine", file.name, program=b"G1 X10 A90 F1800\nG2 X20 Y10 I10 A120\nG0 A0 Z5\n") as served:
+            rows = drive(served, "XYZA")
+            check_rates(rows, "XYZA")
+            for tool, place, _ in rows:
+                check(all(abs(tool[k] - place["XYZ"[k]]) < 1e-9 for k in range(3)), f"the tool is at {tool}, the axes at {place}")
+            check(abs(max(place["A"] for _, place, _ in rows) - 120) < 0.2, "A does not reach 120 degrees")
+            check(max(abs(rows[-1][1][k] - end) for k, end in {"X": 20, "Y": 10, "Z": 5, "A": 0}.items()) < 1e-9, f"it ends at {rows[-1]}")
+
+
+def check_page(served, axes):
+    """The page has charts of each axis, and the cursor follows."""
+    with Browser() as page:
+        page.open(served.url)
+        check(page.value("typeof cncplan") == "object", f"the scripts have not run: {page.complaints}")
+        served.ask("resume")
+        end = time.monotonic() + 10
+        while not page.value("cncplan.time() > 0.2"):
+            check(time.monotonic() < end, "the cursor does not follow")
+            time.sleep(0.05)
+        labels = page.value("cncplan.live.charts.charts[1].graph.getLabels()")
+        check(labels == ["x", *axes], f"the chart of velocities has {labels}")
+        gap = page.value("""(() => { const now = cncplan.live.motion.at(), of = cncplan.motions[0].at(cncplan.motions[0].timeAtLength(now.s));
+            return Math.hypot(...[0, 1, 2].map(k => of.position[k] - now.tool[k])); })()""")
+        check(gap < 1e-6, f"the tool is {gap} mm from where the plan has it at that length")
+        elsewhere = [text for text in page.complaints if not text.startswith("fetched " + served.url)]
+        check(not elsewhere, f"the console says {elsewhere}")
+
+
+def table():
+    """A slide and a rotary table, driven by X, Y and Z."""
+    with Served("--machine", machine("kk22"), program=b"G1 X40 F1800\nG3 X50 Y10 R10\nG1 Y30 Z2\n") as served:
+        check_page(served, "YZC")
+        served.ask("stop")
+        served.rows(5, "finished")
+        served.ask("again")
+        served.rows(2, "held")
+        rows = drive(served, "YZC")
+        check_rates(rows, "YZC")
+        for tool, place, _ in rows:  # from the table's centre, which is at X -150
+            angle = math.radians(place["C"])
+            seen = (place["Y"] * math.cos(angle), place["Y"] * math.sin(angle), place["Z"])
+            check(math.dist(seen, tool) < 1e-9, f"the tool is at {tool}, the axes put it at {seen}")
+        check(math.dist(rows[-1][0], (200, 30, 2)) < 1e-9, f"it ends at {rows[-1][0]}")
+
+
+def rows_of_axes():
+    """Rows of R, Z, A, C, as cncplan_tire_mold writes them."""
+    length = 20.0
+    with Served("--machine", machine("tire_mold"), "--tool-length", str(length),
+                program=b"G0 R200 Z100 A-10 C0\nG1 R205 Z102 A-12 C10 F1800\nG1 R205 Z102 A-5 C10\n") as served:
+        rows = drive(served, "RZAC")
+        check_rates(rows, "RZAC")
+        for tool, place, _ in rows:
+            tilt, turn = math.radians(place["A"]), math.radians(place["C"])
+            radius = place["R"] + length * math.sin(tilt)
+            seen = (radius * math.cos(turn), radius * math.sin(turn), place["Z"] - length * math.cos(tilt))
+            check(math.dist(seen, tool) < 1e-9, f"the tip is at {tool}, the axes put it at {seen}")
+        check(abs(rows[-1][1]["A"] + 5) < 1e-9 and abs(rows[-1][1]["C"] - 10) < 1e-9, f"it ends at {rows[-1][1]}")
+
+
+CASES = {"http": http, "refusals": refusals, "browser": browser, "four axes": four_axes, "table": table, "rows": rows_of_axes}
+CASES[sys.argv[3]]()
+print(f"{sys.argv[3]}: passed")

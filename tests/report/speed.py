@@ -12,26 +12,32 @@ from browser import Browser
 OPENED, SECONDS = 5, 5.0
 
 
-def children(process):
-    """Processes that a process has started, and those that these have, and itself."""
-    result = [process]
-    for task in os.listdir(f"/proc/{process}/task"):
-        with open(f"/proc/{process}/task/{task}/children") as file:
-            for child in file.read().split():
-                result += children(int(child))
-    return result
+def read(path):
+    """Empty where the process has just ended."""
+    try:
+        with open(path) as file:
+            return file.read()
+    except OSError:
+        return ""
+
+
+def processes(first):
+    """A process, those that it has started, and those that these have."""
+    yield first
+    for task in os.listdir(f"/proc/{first}/task") if os.path.isdir(f"/proc/{first}/task") else []:
+        for child in read(f"/proc/{first}/task/{task}/children").split():
+            yield from processes(int(child))
 
 
 def processor_seconds(browser):
     """By kind of process: renderer (the page's scripts and layout), gpu-process (its pictures), others."""
     result = {}
-    for process in children(browser.process.pid):
-        with open(f"/proc/{process}/cmdline") as file:
-            words = file.read().replace("\0", " ").split()
+    for process in processes(browser.process.pid):
+        words, status = read(f"/proc/{process}/cmdline").replace("\0", " ").split(), read(f"/proc/{process}/stat")
+        if not status:
+            continue
         kind = next((w[7:] for w in words if w.startswith("--type=")), "browser")
-        with open(f"/proc/{process}/stat") as file:
-            ticks = file.read().rsplit(")", 1)[1].split()[11:13]
-        result[kind] = result.get(kind, 0.0) + sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
+        result[kind] = result.get(kind, 0.0) + sum(map(int, status.rsplit(")", 1)[1].split()[11:13])) / os.sysconf("SC_CLK_TCK")
     return result
 
 
