@@ -126,18 +126,19 @@ class View {
 
   // Indices of fewer lines, for while the view turns: each in place of some that follow each other.
   fewer(count) {
-    const most = 8000, step = 2 * Math.ceil(count / 2 / most), indices = [];
+    const most = 6000, step = 2 * Math.ceil(count / 2 / most), indices = [];
     for (let k = 0; k < count; k += step) indices.push(k, Math.min(k + step, count) - 1);
     return indices;
   }
   // The view has been turned, moved or zoomed.
   turn() {
-    if (this.times?.length > 8000) {
-      this.refine(false);
-      clearTimeout(this.timer);
-      this.timer = setTimeout(() => { this.refine(true); this.render(); }, 250);
-    }
+    if (this.times?.length > 8000) this.refine(false);
     this.render();
+  }
+  // All lines, as soon as it rests.
+  rest() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => { this.refine(true); this.render(); }, 250);
   }
   refine(fine) {
     this.canvas.smooth = fine;
@@ -223,6 +224,7 @@ class View {
       this.pending = false;
       if (this.stale) this.draw();
       this.marker.draw(this.orbit);
+      if (this.coarse?.visible) this.rest();
     });
   }
   draw() {
