@@ -89,7 +89,7 @@ struct Tracked {
   std::array<double, 3> place{}, error{};
 };
 
-// Notes the axes and their steps twice a second over the first ten minutes.
+// Notes the axes and their steps every 1.25 s over the first ten minutes.
 class Tracker {
  public:
   Tracker(const Trajectory<Table, TableBlock>& planned, const support::Machine& machine)
@@ -117,7 +117,7 @@ class Tracker {
 
  private:
   static constexpr std::size_t axes = 3;
-  static constexpr double every = 0.5;  // s
+  static constexpr double every = 1.25;  // s
 
   void note_until(double time) {
     for (; due_ < time && due_ <= until_; due_ = every * static_cast<double>(tracked_.size())) {

@@ -10,6 +10,7 @@
 
 #include "support/failure.hpp"
 #include "support/output_file.hpp"
+#include "support/small_svg.hpp"
 
 namespace support {
 
@@ -46,10 +47,11 @@ void Gnuplot::finish() {
   if (::pclose(pipe_.release()) != 0) throw Failure(Exit::other, folder_ + ": gnuplot failed");
   OutputFiles files;
   for (const Picture& picture : pictures_) {
-    std::ostream& out = *files.open(picture.path);
+    std::string drawn;
     std::array<char, 4096> part{};
     for (std::size_t size = 0; (size = std::fread(part.data(), 1, part.size(), picture.drawn.get())) > 0;)
-      out.write(part.data(), static_cast<std::streamsize>(size));
+      drawn.append(part.data(), size);
+    *files.open(picture.path) << small_svg(drawn);
   }
   files.finish();
   files.commit();
