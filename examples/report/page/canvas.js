@@ -1,7 +1,7 @@
 // The pictures that the view is made of.
 
-// A scene. Edges of lines are smooth, for which each pixel is the mean of some: that takes most of the time where a
-// processor draws, so `smooth` is for pictures that stay.
+// A scene. Where it is `smooth`, each pixel is the mean of some: that takes most of the time where a processor draws, so
+// it is for pictures that stay. WebGL's lines are one pixel wide; where they are `wide`, they are drawn at three places.
 class Canvas {
   constructor(element) {
     const canvas = document.createElement('canvas');
@@ -10,12 +10,13 @@ class Canvas {
     this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.renderer.setPixelRatio(devicePixelRatio);
     this.renderer.setClearColor(0xffffff);
+    this.renderer.autoClear = false;
     this.target = new THREE.WebGLMultisampleRenderTarget(1, 1, {depthBuffer: true, stencilBuffer: false});
     const picture = new THREE.MeshBasicMaterial({map: this.target.texture, depthTest: false, depthWrite: false});
     this.copy = new THREE.Scene();
     this.copy.add(new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), picture));
     this.whole = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
-    this.smooth = true;
+    this.smooth = this.wide = true;
     element.append(canvas);
   }
   resize(width, height) {
@@ -24,11 +25,18 @@ class Canvas {
     this.target.setSize(size.x, size.y);
   }
   draw(scene, camera) {
-    this.renderer.setRenderTarget(this.smooth ? this.target : null);
-    this.renderer.render(scene, camera);
+    const {renderer} = this, {x, y} = renderer.getSize(new THREE.Vector2()), shifts = [[0, 0.5], [-0.43, -0.25], [0.43, -0.25]];
+    for (const [k, shift] of (this.wide ? shifts : [[0, 0]]).entries()) {
+      renderer.setRenderTarget(null);  // binds the target anew, which each picture leaves otherwise
+      renderer.setRenderTarget(this.smooth ? this.target : null);
+      if (k === 0) renderer.clear();
+      camera.setViewOffset(x, y, ...shift, x, y);
+      renderer.render(scene, camera);
+    }
+    camera.clearViewOffset();
     if (!this.smooth) return;
-    this.renderer.setRenderTarget(null);
-    this.renderer.render(this.copy, this.whole);
+    renderer.setRenderTarget(null);
+    renderer.render(this.copy, this.whole);
   }
 }
 
@@ -68,7 +76,7 @@ class Marker {
   }
   // Where X, Y and Z point.
   drawAxes(context, orbit) {
-    const e = orbit.camera.matrixWorldInverse.elements, x = this.width - 50, y = this.height - 62, size = 30;
+    const e = orbit.camera.matrixWorldInverse.elements, x = this.width - 50, y = this.height - 78, size = 30;
     context.strokeStyle = context.fillStyle = '#444';
     context.lineWidth = 1.5;
     context.font = '13px sans-serif';

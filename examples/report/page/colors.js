@@ -8,7 +8,7 @@ const distinct = [[153, 153, 153], [0, 114, 178], [86, 180, 233], [0, 158, 115],
 
 // r, g, b from 0 to 1; x from 0 to 1. The light end is left out: it does not show on white.
 function scaleColor(x) {
-  const at = Math.min(Math.max(x, 0), 1) * (scaleStops.length - 2.8);
+  const at = Math.min(Math.max(x, 0), 1) * (scaleStops.length - 3.4);
   const i = Math.floor(at), part = at - i;
   return scaleStops[i].map((c, k) => (c + part * (scaleStops[i + 1][k] - c)) / 255);
 }

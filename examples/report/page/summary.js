@@ -55,14 +55,14 @@ function showLimited(report, motion, sums) {
 
 function showPeaks(report) {
   const table = document.getElementById('peaks'), over = 1.00005;
-  const row = (name, unit, peaks, limits) => [name, ...peaks.map((peak, order) => {
+  const row = (name, unit, peaks, limits) => [`${name}, ${unit}`, ...peaks.map((peak, order) => {
     const limit = limits[order];
     const text = limit ? `${shortNumber(peak)} of ${shortNumber(limit)} (${(100 * peak / limit).toFixed(2)} %)` : shortNumber(peak);
     return element('span', {textContent: text, className: limit && peak > over * limit ? 'over' : ''});
-  }), unit];
+  })];
   fillTable(table, [row('tool', 'mm', report.toolPeak, report.limits),
                     ...report.axes.map(axis => row(axis.name, axis.unit, axis.peak, axis.limits))],
-            ['', 'velocity', 'acceleration', 'jerk', '']);
+            ['', 'velocity', 'acceleration', 'jerk']);
 }
 
 // Plans of one program beside each other, if there are several.
@@ -116,14 +116,13 @@ function showHistogram(sums) {
 
 function showLegend(mode, top) {
   const legend = document.getElementById('legend');
-  legend.replaceChildren(mode.name);
   if (mode.names) {
-    mode.names.forEach((name, k) => {
-      const entry = element('div'), swatch = element('span', {className: 'swatch'});
+    legend.replaceChildren(`${mode.name}: `, ...mode.names.map((name, k) => {
+      const entry = element('span'), swatch = element('span', {className: 'swatch'});
       swatch.style.background = cssColor(distinctColor(mode.colors?.[k] ?? k));
       entry.append(swatch, name);
-      legend.append(entry);
-    });
+      return entry;
+    }));
     return;
   }
   const canvas = element('canvas', {width: 256, height: 1}), context = canvas.getContext('2d');
@@ -131,9 +130,7 @@ function showLegend(mode, top) {
     context.fillStyle = cssColor(scaleColor(x / 255));
     context.fillRect(x, 0, 1, 1);
   }
-  const ends = element('div', {className: 'ends'});
-  ends.append(element('span', {textContent: '0'}), element('span', {textContent: `${shortNumber(top)} ${mode.unit}`}));
-  legend.append(canvas, ends);
+  legend.replaceChildren(`${mode.name}: 0`, canvas, `${shortNumber(top)} ${mode.unit}`);
 }
 
 // Values at the cursor. Each has its full number in data-value.

@@ -75,11 +75,10 @@ class View {
     this.fine = [lines(this.place, solid, new THREE.LineBasicMaterial(colored)),
                  lines(this.place, dashed, new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
     this.coarse = lines(this.place, this.fewer(times.length), new THREE.LineBasicMaterial(colored));
-    this.coarse.visible = false;
     this.path.add(...this.fine, this.coarse);
     if (motion.deviates) {
       const programmed = attribute(this.moved(-1), 3);
-      const line = lines(programmed, null, new THREE.LineBasicMaterial({color: 0x999999, depthWrite: false}));
+      const line = lines(programmed, solid, new THREE.LineBasicMaterial({color: 0x999999, depthWrite: false}));
       line.renderOrder = -1;
       this.fine.push(line);
       this.path.add(line);
@@ -96,6 +95,7 @@ class View {
     for (const part of this.path.children) part.frustumCulled = false;
     this.scene.add(this.path);
     this.magnify(this.magnified);
+    this.refine(true);
     this.orbit.fit(box);
   }
   forget() {
@@ -132,7 +132,7 @@ class View {
   }
   // The view has been turned, moved or zoomed.
   turn() {
-    if (this.times?.length > 8000) this.refine(false);
+    if (this.times?.length > 2 * 1500) this.refine(false);
     this.render();
   }
   // All lines, as soon as it rests.
@@ -142,15 +142,16 @@ class View {
   }
   refine(fine) {
     this.canvas.smooth = fine;
+    this.canvas.wide = fine && this.times.length < 2 * 20000;
     for (const part of this.fine) part.visible = fine;
     this.coarse.visible = !fine;
   }
 
-  // What is far away is paler, which shows the shape; by two thirds at most.
+  // What is far away is paler, which shows the shape; by half at most.
   fade() {
     const {camera, target, diameter} = this.orbit, middle = camera.position.distanceTo(target);
     this.scene.fog.near = middle - diameter / 2;
-    this.scene.fog.far = middle + diameter;
+    this.scene.fog.far = middle + 1.5 * diameter;
   }
 
   // Gives back what the legend tells.
