@@ -101,6 +101,7 @@ def example(name):
     path = os.path.join(EXAMPLES, "programs", name + ".ngc")
     with Run(path) as run:
         check_page(run, text_of(path))
+        check_rates(run)
         check_clicks(run)
         check_colors(run)
         check_keys_and_play(run)
@@ -135,19 +136,56 @@ def check_clicks(run):
         return [box.left + (1 + p.x) * box.width / 2, box.top + (1 - p.y) * box.height / 2]; })()""")
     check(run.value("cncplan.time()") > 0 and abs(there[0] - x) < 11 and abs(there[1] - y) < 11,
           f"a click on {place} took the cursor elsewhere")
+    check_tool(run)
+
+
+# How many pixels of the view are dark, of how many, and a number that changes with any of them.
+PIXELS = """(() => { cncplan.view.draw(); const gl = cncplan.view.canvas.renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
+    const p = new Uint8Array(4 * w * h); gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
+    let dark = 0, sum = 0; for (let i = 0; i < p.length; i += 4) {
+      dark += p[i] + p[i + 1] + p[i + 2] < 600; sum = (31 * sum + p[i] + 3 * p[i + 1] + 7 * p[i + 2]) % 1000003; }
+    return [dark, w * h, sum]; })()"""
+
+
+def check_tool(run):
+    """The tool is marked where it is, and the motion that it is in is black."""
+    colors = run.value("""new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {
+        const canvas = document.querySelector('#view .marker'), context = canvas.getContext('2d');
+        const [x, y] = cncplan.view.orbit.projection()(cncplan.state().position, 0), scale = canvas.width / canvas.clientWidth;
+        const all = context.getImageData(0, 0, canvas.width, canvas.height).data;
+        let black = 0; for (let i = 0; i < all.length; i += 4) black += all[i + 3] > 200 && all[i] + all[i + 1] + all[i + 2] < 30;
+        done([...context.getImageData(x * scale, y * scale, 1, 1).data.slice(0, 3), black]); })))""")
+    check(colors[:3] == [0xd5, 0x5e, 0x00], f"where the tool is, there is the colour {colors[:3]}")
+    check(colors[3] > 0, f"{colors[3]} pixels mark the motion")
+
+
+def check_rates(run):
+    """The axes' velocities and accelerations at the cursor are the differences of their samples, but where the jerk jumps."""
+    period = run.samples[1]["t"]
+    x = [row["x"] for row in run.samples]
+    faster = [k for k in range(1, len(x) - 2) if min(abs(run.samples[k]["a"]), abs(x[k + 1] - 2 * x[k] + x[k - 1]) / period**2) > 50]
+    for order, name in ((1, "velocity"), (2, "acceleration")):
+        gaps, most = [], 0.0
+        for k in random.Random(2).choices(faster, k=40):
+            expected = (x[k + 1] - x[k - 1]) / (2 * period) if order == 1 else (x[k + 1] - 2 * x[k] + x[k - 1]) / period**2
+            run.value(f"cncplan.setTime({run.samples[k]['t']!r})")
+            gaps.append(abs(run.cells()[f"X {name}"] - expected))
+            most = max(most, abs(expected))
+        check(sorted(gaps)[30] < 0.01 * most, f"the {name} of X is up to {most}; the page is {sorted(gaps)[30]} beside it")
 
 
 def check_colors(run):
+    """Each way to colour gives another picture, on white."""
+    rests = "new Promise(done => { const look = () => (cncplan.view.canvas.smooth ? done(true) : setTimeout(look, 50)); look(); })"
+    check(run.value(rests), "the view does not come to rest")
+    modes = run.value("document.getElementById('color').length")
     pictures = set()
-    for mode in range(run.value("document.getElementById('color').length")):
-        run.value(f"cncplan.setMode({mode})")
-        pictures.add(run.value("cncplan.view.colors.array.join()"))
+    for k in range(modes):
+        run.value(f"cncplan.setMode({k})")
+        dark, pixels, picture = run.value(PIXELS)
+        check(200 < dark < 0.2 * pixels, f"with colour {k} the path is {dark} of {pixels} pixels")
+        pictures.add(picture)
     check(len(pictures) >= 5, f"all ways to colour give {len(pictures)} pictures")
-    run.value("cncplan.view.draw()")
-    drawn = run.value("""(() => { const gl = cncplan.view.canvas.renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
-        const p = new Uint8Array(4 * w * h); gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
-        let n = 0; for (let i = 0; i < p.length; i += 4) if (p[i] + p[i + 1] + p[i + 2] < 600) ++n; return n; })()""")
-    check(drawn > 200, f"the path is {drawn} pixels of the view")
 
 
 def check_keys_and_play(run):
@@ -190,10 +228,14 @@ def check_charts(run):
     run.browser.key("+")
     ranges = run.value("cncplan.charts.charts.map(c => c.graph.xAxisRange().join())")
     check(len(set(ranges)) == 1 and ranges[0] != f"0,{run.samples[-1]['t']}", f"the charts show {ranges}")
-    # the drawn speed is that of the samples
+    check_drawn_speed(run)
+
+
+def check_drawn_speed(run):
     rows = run.value("chartRows(cncplan.motions[0], cncplan.charts.charts[0].series, 0, cncplan.motions[0].duration)")
-    most = max(row["v"] for row in run.samples)
-    check(most <= max(row[1] for row in rows) + NEAR, "the chart leaves out the highest speed")
+    for name, of in (("highest", max), ("lowest", min)):
+        drawn, expected = of(row[1] for row in rows), of(row["v"] for row in run.samples)
+        check(abs(drawn - expected) < 0.01 or of(drawn, expected) == drawn, f"the {name} speed is drawn as {drawn}, not {expected}")
 
 
 def two_plans():
@@ -298,6 +340,7 @@ def many_lines():
     lines = b"".join(b"G1 X%.3f Y%.3f F1200\n" % (i % 700 * 0.1, i // 700 * 0.1) for i in range(100000))
     with Run(lines, "--vmax", "50", "--tolerance", "0") as run:
         check_page(run, lines)
+        check_drawn_speed(run)
         check(run.seconds < 15, f"the page took {run.seconds:.1f} s to open")
 
 
