@@ -7,7 +7,7 @@ import zlib
 
 from browser import Browser
 
-STEP = 17  # between values of a colour that are kept: sixteen of them
+LEVELS = 32  # of red, green and blue
 
 
 def unfiltered(png):
@@ -41,9 +41,9 @@ def unfiltered(png):
 
 
 def with_palette(png):
-    """The same picture in the 256 most frequent of 4096 colours."""
+    """The same picture in the 256 most frequent of its colours."""
     width, height, size, rows = unfiltered(png)
-    nearest = bytes((value + STEP // 2) // STEP for value in range(256))
+    nearest = bytes(round(value * (LEVELS - 1) / 255) for value in range(256))
     pixels = [list(zip(*(row[k::size].translate(nearest) for k in range(3)))) for row in rows]
     counts = {}
     for row in pixels:
@@ -55,7 +55,7 @@ def with_palette(png):
         index[color] = index[min(palette, key=lambda other: sum((a - b) ** 2 for a, b in zip(color, other)))]
     data = b"".join(b"\0" + bytes(index[color] for color in row) for row in pixels)
     parts = ((b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)),
-             (b"PLTE", bytes(STEP * value for color in palette for value in color)),
+             (b"PLTE", bytes(round(value * 255 / (LEVELS - 1)) for color in palette for value in color)),
              (b"IDAT", zlib.compress(data, 9)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(part)) + name + part + struct.pack(">I", zlib.crc32(name + part)) for name, part in parts)
