@@ -30,12 +30,14 @@ namespace simulate {
 template <class M>
 class Builder {
  public:
-  /// `smoothed`: paths are smoothed, and G64 P says how closely.
-  Builder(const support::Machine& file, const M& machine, bool smoothed, Program<M>& program,
+  /// `smoothed`: paths are smoothed, and G64 P says how closely. `checked`: nothing is kept of a block that
+  /// is without a problem, so that a program of any length takes no memory.
+  Builder(const support::Machine& file, const M& machine, bool smoothed, bool checked, Program<M>& program,
           Problems& problems)
       : file_(file),
         machine_(machine),
         smoothed_(smoothed),
+        checked_(checked),
         program_(program),
         problems_(problems),
         read_(plain(machine), file.dialect) {
@@ -52,6 +54,25 @@ class Builder {
   }
 
   void operator()(const cncplan::gcode::Item& item) {
+    build(item);
+    rests_ = rests_ && program_.blocks.empty();
+    if (!checked_) return;
+    program_.motions.erase(program_.motions.begin() + 1, program_.motions.end());
+    program_.blocks.clear();
+    program_.motion_of.clear();
+  }
+
+  /// A rest, where the program has no block.
+  void finish() {
+    if (rests_) (*this)(cncplan::gcode::Item(cncplan::gcode::Dwell{0.0, 1}));
+  }
+
+ private:
+  static constexpr int coordinates = M::axis_count;
+  using Plain = cncplan::Machine<coordinates>;
+  using Read = cncplan::ProgramBlock<Plain>;
+
+  void build(const cncplan::gcode::Item& item) {
     namespace gcode = cncplan::gcode;
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) return move(*motion);
     if (const auto* warning = std::get_if<gcode::Warning>(&item)) {
@@ -64,16 +85,6 @@ class Builder {
       take_tool(static_cast<int>(word->number));
     if (const auto block = read_.take(item); block && *block) rest(**block);
   }
-
-  /// A rest, where the program has no block.
-  void finish() {
-    if (program_.blocks.empty()) (*this)(cncplan::gcode::Item(cncplan::gcode::Dwell{0.0, 1}));
-  }
-
- private:
-  static constexpr int coordinates = M::axis_count;
-  using Plain = cncplan::Machine<coordinates>;
-  using Read = cncplan::ProgramBlock<Plain>;
 
   // What reads programs: axes without limits; a table's programs name X Y Z.
   static Plain plain(const M& machine) {
@@ -227,6 +238,8 @@ class Builder {
   const support::Machine& file_;
   const M& machine_;
   bool smoothed_;
+  bool checked_;
+  bool rests_ = true;  // no block was made
   Program<M>& program_;
   Problems& problems_;
   cncplan::BlockBuilder<Plain> read_;
@@ -271,7 +284,7 @@ template <class M>
   Program<M> program;
   program.file = options.program;
   gcode::Reader reader(file.dialect);
-  Builder<M> build(file, machine, options.tolerance > 0.0, program, problems);
+  Builder<M> build(file, machine, options.tolerance > 0.0, options.check, program, problems);
   gcode::StreamLines text(stream);
   gcode::ProgramLines lines(text, reader,
                             gcode::files_of(std::filesystem::path(options.program).parent_path()));

@@ -1,6 +1,7 @@
 // Debian's linuxcnc-uspace has LinuxCNC's interpreter as a program, rs274: where it is installed it says what
 // our motions should be.
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -27,6 +28,11 @@ class Steps {
     if ((machine - here_).norm() > 1e-3) steps_ += text.data();
     here_ = machine;
   }
+  /// Pieces of a spline, whose places rs274 does not print; the next motion goes to a place of its own.
+  void spline() {
+    if (!steps_.ends_with("spline\n")) steps_ += "spline\n";
+    here_.setConstant(1e9);
+  }
   void dwell(double seconds) { steps_ += "dwell " + std::to_string(seconds) + '\n'; }
   [[nodiscard]] const std::string& text() const { return steps_; }
 
@@ -46,6 +52,7 @@ std::string ours(const std::string& program) {
     if (motion == nullptr) return;
     const auto at = [motion](std::size_t i) { return motion->end[i] + motion->offset[i]; };
     const char* const names[] = {"rapid", "feed", "arc", "arc", "spline"};
+    if (motion->kind == gcode::MotionKind::spline) return steps.spline();
     steps.place(names[static_cast<int>(motion->kind)], {at(0), at(1), at(2)});
   });
   return steps.text() + (done ? std::string() : gcode::to_text("", done.error()));
@@ -54,8 +61,14 @@ std::string ours(const std::string& program) {
 std::string theirs(const std::string& printed) {
   Steps steps;
   std::istringstream lines(printed);
-  double unit = 1.0;
-  Vector3 system = Vector3::Zero(), shift = Vector3::Zero(), tool = Vector3::Zero();
+  double unit = 1.0, rotation = 0.0;
+  Vector3 system = Vector3::Zero(), shift = Vector3::Zero(), tool = Vector3::Zero(), here = Vector3::Zero();
+  const auto machine = [&](const Vector3& work) {
+    const double x = work[0] + shift[0], y = work[1] + shift[1];
+    const double c = std::cos(rotation), s = std::sin(rotation);
+    return Vector3(c * x - s * y + system[0] + tool[0], s * x + c * y + system[1] + tool[1],
+                   work[2] + shift[2] + system[2] + tool[2]);
+  };
   for (std::string line; std::getline(lines, line);) {
     const auto is = [&](const char* name) { return line.find(name) != std::string::npos; };
     const std::size_t open = line.find('(');
@@ -66,12 +79,22 @@ std::string theirs(const std::string& printed) {
     if (is("USE_LENGTH_UNITS")) unit = is("INCHES") ? 25.4 : 1.0;
     if (is("SET_G5X_OFFSET")) system = Vector3(v[1], v[2], v[3]) * unit;
     if (is("SET_G92_OFFSET")) shift = Vector3(v[0], v[1], v[2]) * unit;
-    if (is("USE_TOOL_LENGTH_OFFSET")) tool = Vector3(v[0], v[1], v[2]) * unit;
-    if (is("DWELL")) steps.dwell(v[0]);
-    if (is("ARC_FEED")) steps.place("arc", Vector3(v[0], v[1], v[5]) * unit + system + shift + tool);  // G17
-    if (is("STRAIGHT_"))
-      steps.place(is("TRAVERSE") ? "rapid" : "feed",
-                  Vector3(v[0], v[1], v[2]) * unit + system + shift + tool);
+    if (is("SET_XY_ROTATION")) rotation = v[0] * 3.14159265358979323846 / 180.0;
+    if (is("USE_TOOL_LENGTH_OFFSET")) {
+      std::sscanf(line.c_str() + open, "(%lf %lf %lf", &v[0], &v[1], &v[2]);
+      tool = Vector3(v[0], v[1], v[2]) * unit;
+    }
+    if (is("DWELL") && v[0] > 0.0) steps.dwell(v[0]);
+    if (is("NURBS_FEED")) steps.spline();
+    if (is("PROGRAM_END")) break;
+    const Vector3 place = Vector3(v[0], v[1], is("ARC_FEED") ? v[5] : v[2]) * unit;  // of an arc in G17
+    if (is("RIGID_TAP")) {
+      steps.place("feed", machine(place));
+      steps.place("feed", machine(here));
+    } else if (is("ARC_FEED") || is("STRAIGHT_")) {
+      here = place;
+      steps.place(is("ARC_FEED") ? "arc" : is("TRAVERSE") ? "rapid" : "feed", machine(place));
+    }
   }
   return steps.text();
 }
@@ -135,6 +158,55 @@ TEST_CASE("parameters, expressions and O-words as LinuxCNC's interpreter has the
     compare(program);
 }
 
+TEST_CASE("threads and taps as LinuxCNC's interpreter has them") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "G33 Z-3 K.5\nG33 X1 Z-5 K.5\nG0 Z10\nG33.1 Z5 K1.25\nG0 X3\n",
+           "G98 G84 X1 Z-3 R2\nX2\nG99 X3\nX4 P.5\nG0 Z9\n",
+           "M4\nG98 G74 X1 Y1 Z-3 R2\nX2\nG0 Z9\n",
+           "G0 X20\nG18 G76 P1.5 Z-5 I-.5 J.1 K.9 R1.0 Q29.5 H1 E.5 L2\n",
+           "G0 X20\nG18 G76 P1.5 Z-5 I.5 J.1 K.9 R2 Q29.5 E.5 L3\nG0 X9\n",
+           "G0 X20 Z-8\nG18 G76 P1 Z5 I-.5 J.2 K.5 E.5 L1\n",
+           "G20 G7 G0 X1\nG18 G76 P.05 Z.1 I-.075 J.008 K.045 Q29.5 L2 E.045\nG8 X1\n",
+       })
+    compare(program);
+}
+
+TEST_CASE("rotated systems, shifts and polar coordinates as LinuxCNC's interpreter has them") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "G10 L2 P1 R30\nG1 X10\nG2 X20 Y0 I5 J0\nG91 X1 Y1\nG90\nG10 L2 P1 R0\nG1 X0\n",
+           "G10 L2 P2 X3 Y4 R45\nG1 X10\nG55 X1 Y1 Z1\nG10 L20 P2 X0\nX1 Y2\nG53 G1 X5\nG54 Y0\n",
+           "G10 L2 P1 X1 R-20\nG92 X5 Y6\nG1 X0 Y0\nG92.2\nX1\nG92.3\nX2\nG28 X1\n",
+           "G1 @5 ^30\n@7\n^60\nG91 @1\n^5\n@1 ^-10 Z1\nG90 X5\n",
+           "G1 X5\nG91 G99 G81 R.1 Z-.5 ^60 L3\nG90 G0 X0\n",
+           "G10 L10 P1 Z3\nG43 H1\nG0 X1 Z1\nG10 L11 P1 Z2\nG43 H1\nG0 X2 Z2\nG49 X3 Z3\n",
+           "G1 X3 Y4\nG28.1\nG1 X9\nG28 Z1\nG30.1\nG1 X0 Y0\nG30\n",
+       })
+    compare(program);
+}
+
+TEST_CASE("splines stand where LinuxCNC's interpreter has them") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "G5 I1 J2 P-1 Q2 X10 Y10\nG5 P1 Q2 X20 Y5\nG1 X1\n",
+           "G5.1 I1 J1 X20 Y20\nG1 X1\nG5.1 I3 X0 Y9\nG0 Z1\n",
+           "G5.2 P1 L3\nX1 Y1 P1\nX2 Y2 P1\nX3 Y3 P2\nX5 Y9 P1\nG5.3\nG1 X1\n",
+       })
+    compare(program);
+}
+
+TEST_CASE("modal state is saved and restored as LinuxCNC's interpreter does") {
+  if (!interpreter_is_there()) return;
+  for (const char* program : {
+           "o1 sub\nM73\nG91 G20 F5\nG1 X1\no1 endsub\nG1 X1\no1 call\nX2\n",
+           "o1 sub\nM70\nG91 G20 G18 G55\nX1\nM72\nX1\nG91\no1 endsub\no1 call\nX2\n",
+           "o1 sub\nM73\nG91\no2 if [#1 eq 1]\nM71\no2 endif\nX1\no1 endsub\no1 call [0]\nX2\n"
+           "o1 call [1]\nX2\n",
+       })
+    compare(program);
+}
+
 TEST_CASE("cutter compensation as LinuxCNC's interpreter has it") {
   if (!interpreter_is_there()) return;
   for (const char* program : {
@@ -147,6 +219,7 @@ TEST_CASE("cutter compensation as LinuxCNC's interpreter has it") {
            "G2 X60 Y60 R20\nG40 G0 X0\n",
            "G41.1 D4\nG3 X10 Y10 I0 J10\nG3 X10 Y10 I-10 J0\nG1 Y20\nG0 X20\nG4 P1\nG0 X20 Y50\nG40 X0\n",
            "G41.1 D4 G1 X10 Y0\nX15\nX5\nG40 Y9\n",
+           "G41.1 D-.5\nG1 Y-10\nG2 X10 Y-10 I5 J0\nG1 X-5 Y-4.9\nG2 X-8.5 Y-10 I-1.6 J-2.6\nG40\nX-9 Y-30\n",
            "G20 G42.1 D.25 G1 X1 Y1\nG2 X2 Y2 I1\nG1 X4\nG3 X4 Y4 J1\nG1 X1 Y2.5\nG40 X0 Y0\n",
        })
     compare(program);

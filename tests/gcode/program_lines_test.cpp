@@ -152,3 +152,28 @@ TEST_CASE("all problems of a program with parameters are told, at their columns"
 TEST_CASE("a block is deleted with its O-word") {
   CHECK(run("/o1 if [0]\nG0 X1\n/o1 endif\nX2\n") == "2:1 4:2 ");
 }
+
+TEST_CASE("M70 to M73 save and restore the modal state") {
+  CHECK(run("M70\nG91 G20\nM72\nG0 X1\nX2\n") == "4:1 5:2 ");
+  CHECK(run("o1 sub\nM73\nG91\nG0 X1\no1 endsub\nG0 X1\no1 call\nX5\n") == "6:1 4:2 8:5 ");
+  CHECK(run("o1 sub\nM73\nG91\nM71\nG0 X1\no1 endsub\nG0 X1\no1 call\nX5\n") == "7:1 5:2 9:7 ");
+  CHECK(run("G0 X1\nM98 P7\nX5\nM2\nO7\nM73\nG91\nX1\nM99\n") == "1:1 8:2 3:5 ");
+  CHECK(run("M72\n") == ":1:1: error: M72 belongs to nothing that is open");
+  CHECK(run("M70\nM71\nM72\n").find("M72 belongs to nothing") != std::string::npos);
+  // Modes, feed, speed, coolant and offsets, by the words that come out.
+  gcode::TextLines source("F60 S100 M3 M8\nG64 P.1\nM70\nF120 S5 M5 M9 G61 G55 G43.1 Z3\nM72\nG1 X1\n");
+  gcode::Reader reader;
+  gcode::ProgramLines lines(source, reader);
+  std::string words;
+  gcode::Motion last;
+  REQUIRE(gcode::read_program(lines, reader, [&](const gcode::Item& item) {
+    if (const auto* word = std::get_if<gcode::Word>(&item))
+      words += word->letter + std::to_string(std::lround(word->number)) + ' ';
+    if (const auto* motion = std::get_if<gcode::Motion>(&item)) last = *motion;
+  }));
+  CHECK(words == "S100 M3 M8 S5 M5 M9 S100 M3 M9 M8 ");
+  CHECK(*last.feed == 1.0);
+  CHECK(*last.tolerance == 0.1);
+  CHECK(last.offset == gcode::Position{});
+  CHECK(reader.place().system() == 0);
+}

@@ -51,6 +51,10 @@ enum class ErrorCode : std::uint8_t {
   read_only,
   unclosed,
   unmatched,
+  not_followed,
+  handed_on,
+  no_such_axis,
+  taken_as_rapid,
   count_,  // number of codes
 };
 
@@ -94,6 +98,10 @@ enum class ErrorCode : std::uint8_t {
       "is set by the machine alone",
       "has no end",
       "belongs to nothing that is open",
+      "moves at the speed that S gives: the spindle itself is not followed",
+      "is not known here: it is handed on",
+      "names an axis that the machine lacks: it is left out",
+      "is a rapid: no motion code holds here",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -20,7 +21,15 @@ namespace cncplan::gcode {
 /// Most words of one line that pass through.
 inline constexpr int max_passed = 16;
 
-/// The words of one line.
+/// M codes of a machine's own (LinuxCNC: M100 to M199) are whole numbers below this; M70 to M73 and M98, M99
+/// are the language's.
+inline constexpr int max_m_code = 999;
+[[nodiscard]] constexpr bool is_own_code(double m) {
+  return m >= 0.0 && m <= max_m_code && m == static_cast<int>(m) && !(m >= 70.0 && m <= 73.0);
+}
+
+/// The words of one line. M codes that nothing is known of pass through, and G26 and G29, with which printers
+/// level their beds.
 class Block {
  public:
   /// Sorts the words of `line`, from a byte on. Errors: a character that begins no word, a letter without
@@ -32,11 +41,15 @@ class Block {
     for (Word word;;) {
       if (!scanner.next_short(word)) {
         const auto other = scanner.next();
-        if (!other) return tl::unexpected(other.error());
+        if (!other) {
+          if (!names_bare_axis(other.error())) return tl::unexpected(other.error());
+          continue;
+        }
         if (!*other) return {};
         word = **other;
       }
       if (auto ok = add(word, pass_through); !ok) return ok;
+      if (word.letter == 'M' && (word.number == 117.0 || word.number == 118.0)) return {};  // a message
     }
   }
 
@@ -56,6 +69,9 @@ class Block {
       }
     }
   }
+
+  /// Axes that G28 names without a number, as printers' programs have it: their words are 0.
+  [[nodiscard]] Letters bare() const { return bare_; }
 
   /// Letters of which `salvage` lost a word.
   [[nodiscard]] Letters lost() const { return lost_; }
@@ -83,6 +99,8 @@ class Block {
   [[nodiscard]] const Word& passed(int i) const { return passed_[static_cast<std::size_t>(i)]; }
   /// Whether a passed-through code is there that other words may belong to.
   [[nodiscard]] bool passes_code() const { return passes_code_; }
+  /// The first M code that passes through because nothing is known of it, if there is one.
+  [[nodiscard]] const std::optional<Word>& unknown_code() const { return unknown_; }
   /// A G code that passes through, if there is one.
   [[nodiscard]] const Word* passed_g() const {
     const Word* const end = passed_.data() + passed_count_;
@@ -116,11 +134,28 @@ class Block {
   }
 
  private:
+  /// Whether what is wrong is an axis of G28 or G30 without a number. It is noted then.
+  bool names_bare_axis(const Diagnostic& problem) {
+    const Code home = code(Group::non_modal);
+    if (problem.error.code != ErrorCode::missing_number ||
+        (home != gcode::code(28) && home != gcode::code(30)))
+      return false;
+    const char axis = problem.error.field.front();
+    if (std::string_view("XYZABCUVW").find(axis) == std::string_view::npos || has(axis)) return false;
+    numbers_[index(axis)] = 0.0;
+    columns_[index(axis)] = static_cast<std::uint16_t>(problem.column);
+    letters_ |= bit(axis);
+    bare_ |= bit(axis);
+    return true;
+  }
+
   void clear() {
+    bare_ = 0;
     letters_ = 0;
     codes_seen_ = 0;
     passed_count_ = 0;
     passes_code_ = false;
+    unknown_.reset();
     lost_ = 0;
   }
 
@@ -149,6 +184,12 @@ class Block {
     };
     const bool calls = word.letter == 'M' && (word.number == 98 || word.number == 99);  // see language/
     if (calls) return tl::unexpected(fail(ErrorCode::no_subprogram));
+    const bool levels = word.letter == 'G' && (word.number == 26.0 || word.number == 29.0);
+    if (group == Group::none && ((word.letter == 'M' && is_own_code(word.number)) || levels)) {
+      if (!unknown_) unknown_ = word;
+      passes_code_ = true;
+      return pass(word);
+    }
     if (group == Group::none) return tl::unexpected(fail(ErrorCode::not_supported));
     const bool ends_cycle = group == Group::motion && code == gcode::code(80);
     if (ends_cycle && has(group)) return {};  // G0 G80, as CAM programs begin: the other code holds
@@ -180,9 +221,11 @@ class Block {
   std::uint32_t codes_seen_{};
   int passed_count_{};
   bool passes_code_{};
+  Letters bare_{};
+  std::optional<Word> unknown_{};
   Letters lost_{};
-  std::array<double, 26> numbers_{};
-  std::array<std::uint16_t, 26> columns_{};
+  std::array<double, word_letters.size()> numbers_{};
+  std::array<std::uint16_t, word_letters.size()> columns_{};
   std::array<Code, group_count> codes_{};
   std::array<std::uint16_t, group_count> code_columns_{};
   std::array<Word, max_passed> passed_{};

@@ -1,6 +1,7 @@
 // Canned cycles: a hole, or a row of holes, as the steps that it is made of.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -8,11 +9,15 @@
 
 namespace cncplan::gcode {
 
-/// G73, G81 to G83, G85, G86, G89.
+/// G73, G74, G81 to G86, G89.
 [[nodiscard]] constexpr bool is_cycle(Code motion) {
-  return motion == code(73) || (motion >= code(81) && motion <= code(83)) || motion == code(85) ||
-         motion == code(86) || motion == code(89);
+  return motion == code(73) || motion == code(74) || (motion >= code(81) && motion <= code(86)) ||
+         motion == code(89);
 }
+
+/// G84 taps with a spindle that turns clockwise, G74 with one that turns the other way (P: a dwell at the
+/// bottom).
+[[nodiscard]] constexpr bool is_tap(Code motion) { return motion == code(74) || motion == code(84); }
 
 /// G73 and G83 go down peck by peck (Q).
 [[nodiscard]] constexpr bool is_peck(Code motion) { return motion == code(73) || motion == code(83); }
@@ -37,7 +42,7 @@ inline constexpr double max_pecks = 1e6;
 /// One step of a cycle; places in the plane's first, second and third coordinate. A lift is a rapid of the
 /// third one alone.
 struct CycleStep {
-  enum class Kind : std::uint8_t { lift, rapid, feed, dwell, spindle_stop, spindle_start };
+  enum class Kind : std::uint8_t { lift, rapid, feed, dwell, spindle_stop, spindle_start, spindle_back };
 
   Kind kind{};
   double first{};
@@ -52,7 +57,18 @@ class CannedCycle {
   struct Holes {
     double first{}, second{};            ///< of the first hole, less one step
     double first_step{}, second_step{};  ///< from hole to hole
+    double radius_step{}, angle_step{};  ///< the same in polar coordinates, mm and rad; 0 without them
     int count = 1;
+
+    void go_on() {
+      first += first_step;
+      second += second_step;
+      if (radius_step == 0.0 && angle_step == 0.0) return;
+      const double radius = std::hypot(first, second) + radius_step;
+      const double angle = std::atan2(second, first) + angle_step;
+      first = radius * std::cos(angle);
+      second = radius * std::sin(angle);
+    }
   };
   struct Heights {
     double level{};   ///< where it was before the first cycle of a series: below r, the tool is lifted first
@@ -90,8 +106,7 @@ class CannedCycle {
       case Phase::approach:
         phase_ = Phase::enter;
         --holes_.count;
-        holes_.first += holes_.first_step;
-        holes_.second += holes_.second_step;
+        holes_.go_on();
         return to(Kind::rapid, heights_.here > heights_.r ? heights_.here : heights_.clear);
       case Phase::enter:
         phase_ = Phase::down;
@@ -103,7 +118,7 @@ class CannedCycle {
           phase_ = code_ == code(83) ? Phase::clear_chips : Phase::back;
           return to(Kind::feed, depth_);
         }
-        phase_ = Phase::bottom;
+        phase_ = is_tap(code_) ? Phase::tap_stop : Phase::bottom;
         return to(Kind::feed, heights_.bottom);
       case Phase::clear_chips:
         phase_ = Phase::back;
@@ -123,12 +138,28 @@ class CannedCycle {
         phase_ = Phase::clear;
         if (code_ == code(85)) return to(Kind::feed, heights_.r);
         return to(code_ == code(89) ? Kind::feed : Kind::rapid, heights_.clear);
+      case Phase::tap_stop:
+        phase_ = Phase::tap_back;
+        return CycleStep{.kind = Kind::spindle_stop};
+      case Phase::tap_back:
+        phase_ = Phase::tap_dwell;
+        return CycleStep{.kind = Kind::spindle_back};
+      case Phase::tap_dwell:
+        phase_ = Phase::tap_out;
+        if (dwell_ == 0.0) return std::nullopt;
+        return CycleStep{.kind = Kind::dwell, .seconds = dwell_};
+      case Phase::tap_out:
+        phase_ = Phase::tap_end;
+        return to(Kind::feed, heights_.clear);
+      case Phase::tap_end:
+        phase_ = Phase::start_spindle;
+        return CycleStep{.kind = Kind::spindle_stop};
       case Phase::clear:
         phase_ = Phase::start_spindle;
         return to(Kind::rapid, heights_.clear);
       case Phase::start_spindle:
         phase_ = holes_.count > 0 ? Phase::approach : Phase::done;
-        if (code_ != code(86)) return std::nullopt;
+        if (code_ != code(86) && !is_tap(code_)) return std::nullopt;
         return CycleStep{.kind = Kind::spindle_start};
       case Phase::done:
         break;
@@ -147,6 +178,11 @@ class CannedCycle {
     bottom,
     stop_spindle,
     out,
+    tap_stop,
+    tap_back,
+    tap_dwell,
+    tap_out,
+    tap_end,
     clear,
     start_spindle,
     done,

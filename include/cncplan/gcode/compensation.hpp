@@ -76,6 +76,8 @@ class Compensation {
   };
 
   static constexpr double tangent_within = 1e-6;  ///< rad: less of a corner is none
+  static constexpr double nearly_tangent = 0.05;  ///< rad: ways that do not meet for roundings of the text
+  static constexpr double back_within = 0.05;     ///< rad from half a turn: the path turns back (LinuxCNC)
 
   static bool is_arc(const Motion& motion) {
     return motion.kind == MotionKind::arc_center || motion.kind == MotionKind::arc_radius;
@@ -199,7 +201,7 @@ class Compensation {
     const double radius = next.motion.tool_radius;
     const double corner = std::atan2(cross(last_->end_tangent, next.start_tangent),
                                      dot(last_->end_tangent, next.start_tangent));
-    const bool back = std::abs(corner) > std::numbers::pi - tangent_within;
+    const bool back = std::abs(corner) > std::numbers::pi - back_within;
     const bool outer = back ? radius * (bend(*last_) + bend(next)) >= 0.0 : (corner < 0.0) == (radius > 0.0);
     if (std::abs(corner) < tangent_within) {
       next.start = last_->end;
@@ -209,7 +211,7 @@ class Compensation {
       give_last(from, emit);
       emit(Item(corner_motion(next, from, around)));
     } else {
-      const auto meeting = meet(*last_, next);
+      const auto meeting = meet(*last_, next, std::abs(corner) < nearly_tangent);
       if (!meeting) return tl::unexpected(meeting.error());
       next.start = *meeting;
       give_last(*meeting, emit);
@@ -246,8 +248,9 @@ class Compensation {
   }
 
   /// Where two ways meet at an inner corner: of the places that their lines and circles have in common the
-  /// one that shortens them least, if both ways are that long.
-  static Expected<Point, Diagnostic> meet(const Way& last, const Way& next) {
+  /// one that shortens them least, if both ways are that long. Where the ways go on in nearly one direction
+  /// and have none in common, it is between their ends.
+  static Expected<Point, Diagnostic> meet(const Way& last, const Way& next, bool nearly_one) {
     std::array<std::optional<Point>, 2> places;
     if (last.turn == 0.0 && next.turn == 0.0) {
       const double along =
@@ -273,6 +276,7 @@ class Compensation {
       lost_after = after;
     }
     const double radius = std::abs(next.motion.tool_radius);
+    if (!best && nearly_one) return (last.end + next.start) / 2.0;
     if (!best) return refuse(next.motion, "room for the tool in an inner corner", 0.0, radius);
     if (const double before = length(last); lost_before > before)
       return refuse(last.motion, "length before an inner corner", before, lost_before);

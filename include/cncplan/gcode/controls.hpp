@@ -16,6 +16,7 @@ struct Control {
   bool retract_to_r{};           ///< G99 at the start, else G98
   double peck_clearance{};       ///< mm, of G73 and G83
   bool incremental_center{};     ///< G91.1 at the start, else G90.1
+  bool lenient{};                ///< reads what LinuxCNC refuses (`Dialect::lenient`)
   std::array<int, 6> m_words{};  ///< M words of its own, which pass through; 0 for none
 };
 
@@ -24,11 +25,11 @@ struct Control {
 /// own for it. M words: grbl's parking; Fanuc's spindle orientation, rigid tapping and gears; Marlin's
 /// motors, fan and waiting.
 inline constexpr std::array controls{
-    Control{"linuxcnc", 1.0, true, 0.254, true, {}},
-    Control{"grbl", 1.0, false, 0.254, true, {56}},
-    Control{"fanuc", 1e-3, false, 0.254, true, {19, 29, 41, 42, 43, 44}},
-    Control{"marlin", 1e-3, false, 0.254, true, {17, 18, 84, 106, 107, 400}},
-    Control{"mach3", 1e-3, false, 0.254, true, {}},
+    Control{"linuxcnc", 1.0, true, 0.254, true, false, {}},
+    Control{"grbl", 1.0, false, 0.254, true, true, {56}},
+    Control{"fanuc", 1e-3, false, 0.254, true, true, {19, 29, 41, 42, 43, 44}},
+    Control{"marlin", 1e-3, false, 0.254, true, true, {17, 18, 84, 106, 107, 400}},
+    Control{"mach3", 1e-3, false, 0.254, true, true, {}},
 };
 
 /// The control of a name; none for one that is not known.
@@ -44,6 +45,7 @@ inline constexpr std::array controls{
   dialect.retract_to_r = control.retract_to_r;
   dialect.peck_clearance = control.peck_clearance;
   dialect.incremental_center = control.incremental_center;
+  dialect.lenient = control.lenient;
   for (const int number : control.m_words)
     if (number != 0) dialect.pass_through.push_back({'M', static_cast<double>(number)});
   return dialect;

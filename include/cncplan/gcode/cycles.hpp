@@ -11,6 +11,7 @@
 #include "cncplan/gcode/canned_cycle.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/polar.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
@@ -58,8 +59,13 @@ class Cycles {
       if (value && modal.incremental) step = *value;
       if (value && !modal.incremental) start = *value;
     };
-    place(first, holes.first, holes.first_step);
-    place(second, holes.second, holes.second_step);
+    if (modal.incremental && names_polar(block)) {
+      if (block.has('@')) holes.radius_step = block.number('@') * modal.millimetres_per_unit;
+      if (block.has('^')) holes.angle_step = block.number('^') * radians_per_degree;
+    } else {
+      place(first, holes.first, holes.first_step);
+      place(second, holes.second, holes.second_step);
+    }
     if (block.has('L')) holes.count = static_cast<int>(block.number('L'));
     const double clear = modal.retract_to_r ? r : std::max(r, *level_);
     cycle_ = CannedCycle(motion, holes, {*level_, here[at(third)], r, bottom, clear}, words_.peck,

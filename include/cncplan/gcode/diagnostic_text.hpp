@@ -36,7 +36,8 @@ inline std::string word_text(const Error& error) {
   const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
                         sentence.starts_with("has ") || sentence.starts_with("does ") ||
                         sentence.starts_with("says ") || sentence.starts_with("goes ") ||
-                        sentence.starts_with("finds ") || sentence.starts_with("belongs ");
+                        sentence.starts_with("finds ") || sentence.starts_with("belongs ") ||
+                        sentence.starts_with("moves ") || sentence.starts_with("names ");
   std::string text = detail::word_text(error);
   text += has_verb ? " " : ": ";
   text += sentence;

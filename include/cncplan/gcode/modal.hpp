@@ -79,22 +79,31 @@ inline constexpr CodeEntry g_codes[] = {
     {5.2, Group::motion},
     {5.3, Group::motion},
     {6.2, Group::motion},
+    {31, Group::motion},
+    {33, Group::motion},
+    {33.1, Group::motion},
     {38.2, Group::motion},
     {38.3, Group::motion},
     {38.4, Group::motion},
     {38.5, Group::motion},
     {73, Group::motion},
+    {74, Group::motion},
+    {76, Group::motion},
     {80, Group::motion},
     {81, Group::motion},
     {82, Group::motion},
     {83, Group::motion},
+    {84, Group::motion},
     {85, Group::motion},
     {86, Group::motion},
     {89, Group::motion},
     {4, Group::non_modal, "P", "P"},
     {10, Group::non_modal, "LPR", "LP"},
     {28, Group::non_modal},
+    {28.1, Group::non_modal},
     {30, Group::non_modal},
+    {30.1, Group::non_modal},
+    {52, Group::non_modal},
     {53, Group::non_modal},
     {92, Group::non_modal},
     {92.1, Group::non_modal},
@@ -119,6 +128,7 @@ inline constexpr CodeEntry g_codes[] = {
     {42.1, Group::compensation, "DL", "D"},
     {43, Group::tool_length, "H"},
     {43.1, Group::tool_length},
+    {43.2, Group::tool_length, "H", "H"},
     {49, Group::tool_length},
     {54, Group::coordinates},
     {55, Group::coordinates},
@@ -154,6 +164,7 @@ inline constexpr CodeEntry m_codes[] = {
     {3, Group::spindle},
     {4, Group::spindle},
     {5, Group::spindle},
+    {19, Group::spindle, "RQP"},
     {7, Group::coolant},
     {8, Group::coolant},
     {9, Group::coolant},
@@ -217,7 +228,8 @@ struct ModalCode {
 
 /// What holds from one line to the next, positions and offsets apart.
 struct Modal {
-  Code motion = no_code;  ///< of the group; none at the start and after G80
+  Code motion = no_code;       ///< of the group; none at the start and after G80
+  bool assumed_rapid = false;  ///< G0 holds, though no code has said so (`Dialect::lenient`)
   Plane plane = Plane::xy;
   bool incremental = false;           ///< G91
   bool incremental_center = true;     ///< G91.1
@@ -232,6 +244,7 @@ struct Modal {
   std::optional<double> tolerance{};  ///< mm, of G64 P
   double merge_tolerance = 0.0;       ///< mm, of G64 Q
   Code compensation = 400;            ///< G40 to G42.1
+  bool mist = false, flood = false;   ///< M7, M8; M9 ends both
 
   friend bool operator==(const Modal&, const Modal&) = default;
 };

@@ -40,7 +40,8 @@ struct SplineControl {
   friend bool operator==(const SplineControl&, const SplineControl&) = default;
 };
 
-/// One move. Positions are in work coordinates; the machine's are work + offset.
+/// One move. Positions are in work coordinates, turned by the rotation of their system (G10 L2 R) where it
+/// has one; the machine's are work + offset.
 struct Motion {
   MotionKind kind{};
   Plane plane{};  ///< the active one
@@ -91,22 +92,23 @@ struct Warning {
   friend bool operator==(const Warning&, const Warning&) = default;
 };
 
-/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 M48 to M53 M61 to M68 G96 G97 S T, the
-/// program's number (O), or one that the dialect passes through. The words that an M or G word takes follow
-/// it (the E and Q of M67).
+/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 M19 M48 to M53 M61 to M68 G96 G97 S T
+/// $, the program's number (O), or one that the dialect passes through. The words that an M or G word takes
+/// follow it (the E and Q of M67).
 using Item = std::variant<Motion, Dwell, Stop, Word, Warning>;
 
 /// When a word takes effect: as soon as it is read, with the start of the next motion, or with the machine at
 /// rest at the end of the last one (LinuxCNC: what breaks the blending of motions).
 enum class Timing : std::uint8_t { immediate, next_motion, at_rest };
 
-/// Of the words that come out: M62, M63 and M67 wait for the next motion; M61, M64, M65, M66, M68 and T have
-/// the machine come to rest.
+/// Of the words that come out: M62, M63 and M67 wait for the next motion; M61, M64, M65, M66, M68, M100 to
+/// M199 and T have the machine come to rest.
 [[nodiscard]] constexpr Timing timing(const Word& word) {
   if (word.letter == 'T') return Timing::at_rest;
   if (word.letter != 'M') return Timing::immediate;
   if (word.number == 62 || word.number == 63 || word.number == 67) return Timing::next_motion;
-  const bool rests = word.number == 61 || (word.number >= 64 && word.number <= 68);
+  const bool rests = word.number == 61 || (word.number >= 64 && word.number <= 68) ||
+                     (word.number >= 100 && word.number <= 199);
   return rests ? Timing::at_rest : Timing::immediate;
 }
 

@@ -17,20 +17,20 @@
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/modal.hpp"
 #include "cncplan/gcode/motion.hpp"
+#include "cncplan/gcode/polar.hpp"
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/spindle.hpp"
 #include "cncplan/gcode/splines.hpp"
+#include "cncplan/gcode/threading.hpp"
+#include "cncplan/gcode/tool_table.hpp"
+#include "cncplan/gcode/warnings.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 19;
-
-/// What the warning of a G64 with P names: the reader hands the tolerance out with each motion, and whether
-/// it has an effect is for the planner to say.
-inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64";
+inline constexpr std::size_t max_items_per_line = max_passed + 28;
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -48,6 +48,8 @@ class Reader {
         alphabet_(dialect_),
         place_(dialect_, start) {
     modal_.retract_to_r = dialect_.retract_to_r;
+    modal_.assumed_rapid = dialect_.lenient;
+    if (dialect_.lenient) modal_.motion = code(0);
     modal_.incremental_center = dialect_.incremental_center;
     dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
     for (std::size_t i = 0; i < axis_count(); ++i)
@@ -62,8 +64,7 @@ class Reader {
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
     if (busy())
-      return tl::unexpected(
-          Diagnostic{{ErrorCode::unfinished, "canned cycle or spline", 0.0, 0.0}, line_ + 1, 1});
+      return tl::unexpected(Diagnostic{{ErrorCode::unfinished, "cycle or spline", 0.0, 0.0}, line_ + 1, 1});
     ++line_;
     if (!readable_) return tl::unexpected(Diagnostic{readable_.error(), line_, 1});
     if (finished_) return out;
@@ -73,7 +74,7 @@ class Reader {
   }
 
   /// Whether items of the last line are to come.
-  [[nodiscard]] bool busy() const { return cycles_.busy() || splines_.busy(); }
+  [[nodiscard]] bool busy() const { return cycles_.busy() || splines_.busy() || thread_.busy(); }
 
   /// The next of them, at most `max_items_per_line`.
   template <std::output_iterator<Item> Out>
@@ -81,6 +82,8 @@ class Reader {
     const auto emit = emitter(out);
     if (splines_.busy())
       bend(splines_.next(), emit);
+    else if (thread_.busy())
+      thread(thread_.next(), emit);
     else if (const auto step = cycles_.next())
       drill(*step, emit);
     return out;
@@ -94,7 +97,7 @@ class Reader {
     block_.salvage(text, 0, dialect_.pass_through);
     splines_.forget();
     const Letters axes = alphabet_.axes;
-    modal_ = after(block_, modal_, dialect_.g18);
+    modal_ = after(block_, modal_, dialect_);
     if (modal_.motion == code(5.3)) modal_.motion = no_code;
     if ((block_.lost() & bit('F')) != 0) modal_.needs_feed = false;
     const bool bare = modal_.motion == no_code && (block_.letters() & axes) != 0;
@@ -132,17 +135,23 @@ class Reader {
   Expected<Out, Diagnostic> read(std::string_view text, Out out) {
     if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
     while (text.ends_with('\r')) text.remove_suffix(1);
+    std::size_t from = text.find_first_not_of(" \t");
+    if (from == std::string_view::npos || text[from] == ';') return out;  // a comment of any length
     if (text.size() > max_line_length)
       return tl::unexpected(
           Diagnostic{{ErrorCode::line_too_long, "line", static_cast<double>(text.size()), max_line_length},
                      0,
                      static_cast<int>(max_line_length) + 1});
-    std::size_t from = text.find_first_not_of(" \t");
-    if (from == std::string_view::npos) return out;
     if (text[from] == '%') return read_percent(text, from + 1, std::move(out));
     if (text[from] == '/') {
       if (dialect_.block_delete) return out;
       ++from;
+    }
+    if (dialect_.lenient && is_sender_command(text.substr(std::min(from, text.size())))) {
+      if (!warnings_.first_sender_command()) return out;
+      *out = Item(
+          Warning{{{ErrorCode::handed_on, name(text[from]), 0.0, 0.0}, line_, static_cast<int>(from) + 1}});
+      return ++out;
     }
     if (const auto number = program_number(text, from)) {
       words_seen_ = true;
@@ -151,7 +160,7 @@ class Reader {
     }
     if (auto ok = block_.parse(text, from, dialect_.pass_through); !ok) return tl::unexpected(ok.error());
     if (block_.empty()) return out;
-    const Modal modal = after(block_, modal_, dialect_.g18);
+    const Modal modal = after(block_, modal_, dialect_);
     const auto motion = resolve(block_, modal, alphabet_, modal_.motion);
     if (!motion) return tl::unexpected(motion.error());
     if (auto ok = detail::check_compensation(block_, modal_, modal, alphabet_, *motion); !ok)
@@ -210,29 +219,30 @@ class Reader {
   template <class Emit>
   void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
-    for (const char letter : {'S', 'T'})
-      if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
-    if (block_.has('S')) spindle_.speed = block_.number('S');
+    for (const char letter : {'$', 'S', 'T'})
+      if (block_.has(letter) && !(letter == 'S' && dwells_by_s(block_)))
+        emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    warnings_.tell(block_, modal_, motion, alphabet_, [&](Diagnostic about) {
+      about.line = line_;
+      emit(Warning{about});
+    });
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);
     change_tool(emit);
     for (const Group group : {Group::spindle, Group::coolant, Group::override_control}) hand_out(group, emit);
-    if (block_.has(Group::spindle)) spindle_.direction = block_.code(Group::spindle) / 10;
-    if (block_.has(Group::spindle_mode)) spindle_.select_mode(block_, modal_.millimetres_per_unit);
-    for (const Group group : {Group::polar, Group::scaling, Group::rotation}) name_once(group, emit);
+    spindle_.take(block_, modal_.millimetres_per_unit);
     const Code non_modal = block_.code(Group::non_modal);
-    if (non_modal == code(4)) emit(Dwell{block_.number('P') * dialect_.dwell_unit, line_});
+    if (non_modal == code(4)) emit(Dwell{dwell_seconds(block_, dialect_), line_});
     if (block_.has(Group::compensation)) compensate();
     if (block_.has(Group::tool_length)) set_tool_length();
     if (block_.has(Group::coordinates)) select_work_system();
-    if (block_.code(Group::path_control) == code(64)) {
-      ignore_once('P', tolerance_of_g64, tolerance_told_, emit);
-      ignore_once('Q', "Q of G64", merging_told_, emit);
-    }
     if (non_modal == code(10)) set_table();
     if (non_modal == code(28)) home(dialect_.home_g28, emit);
     if (non_modal == code(30)) home(dialect_.home_g30, emit);
+    if (non_modal == code(28.1)) dialect_.home_g28 = place_.machine();
+    if (non_modal == code(30.1)) dialect_.home_g30 = place_.machine();
+    if (non_modal == code(52)) place_.set_shift(named_coordinates());
     if (non_modal >= code(92) && non_modal <= code(92.3)) shift(non_modal);
   }
 
@@ -249,6 +259,13 @@ class Reader {
     } else if (is_spline(motion) || is_nurbs(motion) || motion == code(5.3)) {
       const Position to = target(splines_.open() ? splines_.start() : position());
       if (!splines_.run(block_, modal_, motion, position(), to)) modal_.motion = no_code;
+    } else if (motion == code(76)) {
+      const Position to = target();
+      thread_ = ThreadingCycle(ThreadWords::of(block_, modal_), position()[0], position()[2], to[0], to[2]);
+    } else if (motion == code(33.1)) {
+      tap(target(), emit);
+    } else if (motion == code(33)) {
+      straight(motion, target(), emit, pitch());
     } else if (motion != no_code) {
       straight(motion, non_modal == code(53) ? machine_target() : target(), emit);
     }
@@ -265,7 +282,7 @@ class Reader {
   void hand_out(Group group, Emit& emit) const {
     if (!block_.has(group)) return;
     emit(Word{letter(group), block_.code(group) / 10.0, line_, block_.column(group)});
-    for (const char letter : {'P', 'E', 'L', 'Q', 'D'})
+    for (const char letter : {'R', 'P', 'E', 'L', 'Q', 'D'})
       if ((facts(group, block_.code(group)).may & bit(letter)) != 0 && block_.has(letter))
         emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
   }
@@ -283,23 +300,6 @@ class Reader {
     }
   }
 
-  /// G15, G50 and G69 end what was never begun here: heads of programs have them.
-  template <class Emit>
-  void name_once(Group group, Emit& emit) {
-    const unsigned told = 1U << static_cast<unsigned>(group);
-    if (!block_.has(group) || (named_ & told) != 0) return;
-    named_ |= told;
-    emit(Warning{{{ErrorCode::ignored, "G", block_.code(group) / 10.0, 0.0}, line_, block_.column(group)}});
-  }
-
-  /// A word of the line that has no effect.
-  template <class Emit>
-  void ignore_once(char letter, std::string_view what, bool& told, Emit& emit) {
-    if (told || !block_.has(letter)) return;
-    told = true;
-    emit(Warning{{{ErrorCode::ignored, what, 0.0, 0.0}, line_, block_.column(letter)}});
-  }
-
   [[nodiscard]] Word at_line(Word word) const {
     word.line = line_;
     return word;
@@ -309,6 +309,10 @@ class Reader {
 
   /// mm or rad of an axis word, if there.
   [[nodiscard]] std::optional<double> coordinate(std::size_t axis) const {
+    if (axis < 2 && names_polar(block_)) {
+      const double to = polar_target(block_, modal_, position())[axis];
+      return modal_.incremental ? to - position()[axis] : to;
+    }
     const auto [letter, kind] = dialect_.axes[axis];
     if (!block_.has(letter)) return std::nullopt;
     const double unit = kind == AxisKind::linear ? modal_.millimetres_per_unit : radians_per_degree;
@@ -335,12 +339,7 @@ class Reader {
   }
 
   /// Where they lead as machine coordinates (G53), in work coordinates.
-  [[nodiscard]] Position machine_target() const {
-    Position end = position();
-    for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i)) end[i] = place_.meet(i, *value - offset()[i]);
-    return end;
-  }
+  [[nodiscard]] Position machine_target() const { return place_.at_machine(named_coordinates()); }
 
   [[nodiscard]] Motion motion_to(const Position& end) const {
     Motion motion;
@@ -363,20 +362,28 @@ class Reader {
     if (modal_.feed && modal_.feed_mode == FeedMode::per_minute && turns_only(dialect_, motion))
       return modal_.rotary_feed;
     if (modal_.feed_mode != FeedMode::per_revolution || !modal_.feed) return modal_.feed;
-    return spindle_.feed(*modal_.feed, std::max(std::abs(motion.start[0]), std::abs(motion.end[0])));
+    return feed_of_turn(motion, *modal_.feed);
+  }
+  [[nodiscard]] std::optional<double> feed_of_turn(const Motion& motion, double way) const {
+    return spindle_.feed(way, std::max(std::abs(motion.start[0]), std::abs(motion.end[0])));
   }
 
   /// What the words alone do not tell: a feed per revolution needs a spindle that turns, a cycle its depth
   /// below R.
   [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion, Code before) {
-    const bool feeds = motion != no_code && motion != code(0);
-    const double speed = block_.has('S') ? block_.number('S') : spindle_.speed.value_or(0.0);
-    if (feeds && modal.feed_mode == FeedMode::per_revolution && !(speed > 0.0))
-      return detail::missing("S", std::max(1, block_.first_column(block_.letters())));
-    if (block_.code(Group::non_modal) == code(10) && block_.number('L') == 1.0 &&
-        dialect_.tools.size() == dialect_.tools.capacity() &&
-        find_tool(static_cast<int>(block_.number('P'))) == nullptr)
+    if (auto ok = spindle_.check(block_, modal, motion); !ok) return ok;
+    if (block_.code(Group::non_modal) == code(10) && sets_tool() &&
+        !has_room_for(dialect_, static_cast<int>(block_.number('P'))))
       return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
+    if (place_.rotated() && modal.plane != Plane::xy &&
+        (is_arc(motion) || is_spline(motion) || is_nurbs(motion) || modal.compensation != code(40)))
+      return detail::conflict(
+          Diagnostic{
+              {{}, "G", modal.plane == Plane::yz ? 19.0 : 18.0, 0.0}, 0, detail::motion_column(block_)},
+          "rotation of G10 R");
+    if (names_polar(block_) && motion != no_code && position()[0] == 0.0 && position()[1] == 0.0 &&
+        (modal.incremental ? !is_cycle(motion) : !block_.has('^')))
+      return detail::missing("^", block_.first_column(polar_words));
     if (auto ok = splines_.check(block_, modal, motion, before); !ok) return ok;
     return is_cycle(motion) ? cycles_.check(block_, modal, dialect_, motion, position())
                             : Expected<void, Diagnostic>();
@@ -386,12 +393,9 @@ class Reader {
   void drill(const CycleStep& step, Emit& emit) {
     using Kind = CycleStep::Kind;
     if (step.kind == Kind::dwell) return emit(Dwell{step.seconds, line_});
-    if (step.kind == Kind::spindle_stop) return emit(Word{'M', 5, line_, block_.column(Group::motion)});
-    if (step.kind == Kind::spindle_start) {
-      if (spindle_.direction != 5)
-        emit(Word{'M', static_cast<double>(spindle_.direction), line_, block_.column(Group::motion)});
-      return;
-    }
+    if (step.kind == Kind::spindle_stop) return spindle(5, emit);
+    if (step.kind == Kind::spindle_back) return spindle(7 - spindle_.direction, emit);
+    if (step.kind == Kind::spindle_start) return spindle(spindle_.direction, emit);
     const auto [first, second, third] = axes(modal_.plane);
     Position end = position();
     const auto set = [&](int axis, double coordinate) {
@@ -406,24 +410,49 @@ class Reader {
     straight(step.kind == Kind::feed ? code(1) : code(0), end, emit);
   }
 
+  /// A cycle's M3, M4 or M5; a spindle that stands is left alone.
   template <class Emit>
-  void straight(Code code_of_motion, const Position& end, Emit& emit) {
+  void spindle(int code, Emit& emit) {
+    if (spindle_.direction != 5)
+      emit(Word{'M', static_cast<double>(code), line_, block_.column(Group::motion)});
+  }
+
+  /// K of G33 and G33.1, mm for each turn.
+  [[nodiscard]] double pitch() const { return block_.number('K') * modal_.millimetres_per_unit; }
+
+  /// G33.1: to the end, and back with the spindle turned round, I times as fast where I is above 1.
+  template <class Emit>
+  void tap(const Position& end, Emit& emit) {
+    const Position start = position();
+    straight(code(33.1), end, emit, pitch());
+    spindle(7 - spindle_.direction, emit);
+    straight(code(33.1), start, emit, pitch() * std::max(1.0, block_.has('I') ? block_.number('I') : 1.0));
+    spindle(spindle_.direction, emit);
+  }
+
+  /// A step of G76; none where there is none to be made.
+  template <class Emit>
+  void thread(const std::optional<ThreadStep>& step, Emit& emit) {
+    if (!step) return;
+    Position end = position();
+    end[0] = place_.meet(0, step->x);
+    end[2] = place_.meet(2, step->z);
+    straight(step->kind == CycleStep::Kind::rapid ? code(0) : code(33), end, emit, step->pitch);
+  }
+
+  /// A rapid, a feed, or one by a pitch in mm for each turn of the spindle.
+  template <class Emit>
+  void straight(Code code_of_motion, const Position& end, Emit& emit, double pitch = 0.0) {
     if (end == position()) return;
     Motion motion = motion_to(end);
     motion.kind = code_of_motion == code(0) ? MotionKind::rapid : MotionKind::line;
     motion.probe = is_probe(code_of_motion);
-    if (motion.probe && !probe_told_) {
-      probe_told_ = true;
-      emit(Warning{{{ErrorCode::no_contact, "G", code_of_motion / 10.0, 0.0},
-                    line_,
-                    block_.first_column(alphabet_.axes)}});
-    }
     if (motion.probe) probed_ = end;
-    if (motion.kind == MotionKind::line) motion.feed = feed(motion);
+    if (motion.kind == MotionKind::line)
+      motion.feed = pitch > 0.0 ? feed_of_turn(motion, pitch) : feed(motion);
     motion.column = block_.first_column(alphabet_.axes);
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
-    place_.arrive(end);
-    if (doubtful_ == 0) emit(motion);
+    give(motion, emit);
   }
 
   template <class Emit>
@@ -447,7 +476,14 @@ class Reader {
       }
       motion.column = block_.first_column(bits("IJK"));
     }
+    give(motion, emit);
+  }
+
+  /// The program stands at the motion's end, and the motion comes out.
+  template <class Emit>
+  void give(Motion& motion, Emit& emit) {
     place_.arrive(motion.end);
+    place_.rotate(motion);
     if (doubtful_ == 0) emit(motion);
   }
 
@@ -472,45 +508,39 @@ class Reader {
     motion.feed = feed(motion);
     motion.controls = {one, two};
     motion.column = std::max(1, block_.first_column(block_.letters()));
-    place_.arrive(motion.end);
-    if (doubtful_ == 0) emit(motion);
+    give(motion, emit);
   }
 
   /// G28, G30: by way of the point that the axis words name, then these axes (all, if none is named) go home.
   template <class Emit>
   void home(const Position& machine, Emit& emit) {
-    straight(code(0), target(), emit);
-    const bool all = (block_.letters() & alphabet_.axes) == 0;
-    Position end = position();
+    Position point = target();
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (all || block_.has(dialect_.axes[i].letter)) end[i] = place_.meet(i, machine[i] - offset()[i]);
-    straight(code(0), end, emit);
+      if ((block_.bare() & bit(dialect_.axes[i].letter)) != 0) point[i] = position()[i];
+    straight(code(0), point, emit);
+    const bool all = (block_.letters() & (alphabet_.axes | alphabet_.left_out | polar_words)) == 0;
+    NamedCoordinates home;
+    for (std::size_t i = 0; i < home.size(); ++i)
+      if (i < axis_count() && (all || block_.has(dialect_.axes[i].letter))) home[i] = machine[i];
+    straight(code(0), place_.at_machine(home), emit);
   }
 
-  /// G10 L1: the length of tool P; L2, L20: the origin of work coordinate system P (0: the one in force), in
-  /// machine coordinates, or such that the axes stand at the coordinates named.
+  [[nodiscard]] bool sets_tool() const { return block_.number('L') != 2.0 && block_.number('L') != 20.0; }
+
+  /// G10 L1, L10, L11: the length and the radius of tool P; L2, L20: the origin of work coordinate system P
+  /// (0: the one in force), in machine coordinates, or such that the axes stand at the coordinates named.
   void set_table() {
     const int number = static_cast<int>(block_.number('P'));
-    if (block_.number('L') == 1.0) {
-      for (std::size_t i = 0; i < axis_count(); ++i)
-        if (const auto value = coordinate(i); value && dialect_.axes[i].letter == 'Z')
-          set_length(number, *value);
-      return;
-    }
-    place_.set_origin(number, named_coordinates(), block_.number('L') == 20.0);
-  }
-
-  void set_length(int number, double length) {
-    if (Tool* const tool = find_tool(number))
-      tool->length = length;
-    else
-      dialect_.tools.push_back({number, length, 0.0});  // room for it is reserved, and checked
-  }
-
-  [[nodiscard]] Tool* find_tool(int number) {
-    const auto found = std::find_if(dialect_.tools.begin(), dialect_.tools.end(),
-                                    [number](const Tool& tool) { return tool.number == number; });
-    return found == dialect_.tools.end() ? nullptr : &*found;
+    const double kind = block_.number('L');
+    std::optional<double> r;
+    if (block_.has('R')) r = block_.number('R');
+    if (!sets_tool()) return place_.set_origin(number, named_coordinates(), kind == 20.0, r);
+    std::optional<double> length;
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (const auto value = coordinate(i); value && dialect_.axes[i].letter == 'Z')
+        length = kind == 1.0 ? *value : place_.tool_for(i, *value, kind == 11.0);
+    if (r) *r *= modal_.millimetres_per_unit;
+    set_tool(dialect_, number, length, r);
   }
 
   void set_tool_length() {
@@ -519,7 +549,8 @@ class Reader {
     const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
     NamedCoordinates lengths;
     for (std::size_t i = 0; i < axis_count(); ++i)
-      lengths[i] = how == code(43) && dialect_.axes[i].letter == 'Z' ? tool_length(dialect_, number) : 0.0;
+      lengths[i] = how != code(49) && dialect_.axes[i].letter == 'Z' ? tool_length(dialect_, number) : 0.0;
+    if (how == code(43.2)) return place_.add_tool(lengths);
     place_.set_tool(lengths);
   }
 
@@ -556,9 +587,9 @@ class Reader {
   WorkCoordinates place_;
   Cycles cycles_;
   Splines splines_;
+  ThreadingCycle thread_;
   Spindle spindle_;
-  std::uint32_t named_{};  ///< groups whose codes have been named as without effect
-  bool probe_told_{};
+  Warnings warnings_;
   std::optional<Position> probed_;
   int selected_tool_{};
   int loaded_tool_{};
@@ -568,8 +599,6 @@ class Reader {
   bool percent_seen_{};
   bool words_seen_{};
   bool finished_{};
-  bool tolerance_told_{};
-  bool merging_told_{};
 };
 
 }  // namespace cncplan::gcode

@@ -1,7 +1,7 @@
 // Which words belong together on a line, and what the line asks for.
 #pragma once
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -13,6 +13,8 @@
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/polar.hpp"
+#include "cncplan/gcode/threading.hpp"
 #include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {
@@ -26,8 +28,10 @@ inline constexpr int max_count = 1'000'000'000;
 /// What the letters mean on a machine.
 struct Alphabet {
   Letters axes{};
-  bool has_radius{};  ///< R is the radius of an arc; else it is an axis
-  bool has_arcs{};    ///< the first three axes are X, Y and Z
+  bool has_radius{};   ///< R is the radius of an arc; else it is an axis
+  bool has_arcs{};     ///< the first three axes are X, Y and Z
+  bool lenient{};      ///< G4 may have S
+  Letters left_out{};  ///< of axes that the machine lacks, where their words are not errors
 
   explicit Alphabet(const Dialect& dialect) {
     std::size_t in_order = 0;
@@ -38,11 +42,21 @@ struct Alphabet {
     }
     has_radius = (axes & bit('R')) == 0;
     has_arcs = in_order == 3;
+    lenient = dialect.lenient;
+    if (lenient) left_out = bits("ABCEUVW") & ~axes;
   }
 
   /// Letters that some code uses.
-  [[nodiscard]] Letters known() const { return bits("FHIJKLNPQST") | axes | (has_radius ? bit('R') : 0); }
+  [[nodiscard]] Letters known() const { return bits("FHIJKLNPQST@^$") | axes | (has_radius ? bit('R') : 0); }
 };
+
+/// Letters of axes that the machine lacks and whose words are left out. E is a word of some codes, too.
+[[nodiscard]] inline Letters left_out(const Block& block, const Alphabet& alphabet, Code motion) {
+  const bool takes_e = motion == code(76) ||
+                       (block.has(Group::input_output) &&
+                        (facts(Group::input_output, block.code(Group::input_output)).may & bit('E')) != 0);
+  return block.letters() & alphabet.left_out & ~(takes_e ? bit('E') : 0);
+}
 
 [[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }
 
@@ -52,8 +66,18 @@ struct Alphabet {
 /// G5.2, G6.2: a control of a NURBS each line.
 [[nodiscard]] constexpr bool is_nurbs(Code motion) { return motion == code(5.2) || motion == code(6.2); }
 
-/// G38.2 to G38.5.
-[[nodiscard]] constexpr bool is_probe(Code motion) { return motion >= code(38.2) && motion <= code(38.5); }
+/// G38.2 to G38.5, and G31 of Fanuc's and Mach3's controls.
+[[nodiscard]] constexpr bool is_probe(Code motion) {
+  return motion == code(31) || (motion >= code(38.2) && motion <= code(38.5));
+}
+
+/// G4 S: seconds, where a dialect has them; S is no speed then.
+[[nodiscard]] inline bool dwells_by_s(const Block& block) {
+  return block.code(Group::non_modal) == code(4) && !block.has('P') && block.has('S');
+}
+[[nodiscard]] inline double dwell_seconds(const Block& block, const Dialect& dialect) {
+  return dwells_by_s(block) ? block.number('S') : block.number('P') * dialect.dwell_unit;
+}
 
 /// Letter of the centre word along an axis of space: I, J or K.
 [[nodiscard]] constexpr char center_letter(int axis) { return "IJK"[axis]; }
@@ -75,7 +99,7 @@ inline void control_path(const Block& block, Modal& modal) {
 }
 
 /// The modal state that holds on a line and after it.
-[[nodiscard]] inline Modal after(const Block& block, const Modal& before, Plane g18) {
+[[nodiscard]] inline Modal after(const Block& block, const Modal& before, const Dialect& dialect) {
   Modal modal = before;
   if (block.has(Group::units)) modal.millimetres_per_unit = block.code(Group::units) == code(20) ? 25.4 : 1.0;
   if (block.has(Group::distance)) modal.incremental = block.code(Group::distance) == code(91);
@@ -84,12 +108,19 @@ inline void control_path(const Block& block, Modal& modal) {
   if (block.has(Group::arc_distance))
     modal.incremental_center = block.code(Group::arc_distance) == code(91.1);
   if (block.has(Group::path_control)) control_path(block, modal);
-  if (block.has(Group::motion))
-    modal.motion = block.code(Group::motion) == code(80) ? no_code : block.code(Group::motion);
+  if (block.has(Group::motion)) {
+    const bool ends = block.code(Group::motion) == code(80);
+    modal.assumed_rapid = ends && dialect.lenient;
+    modal.motion = !ends ? block.code(Group::motion) : modal.assumed_rapid ? code(0) : no_code;
+  }
   if (block.has(Group::compensation)) modal.compensation = block.code(Group::compensation);
+  if (const Code coolant = block.code(Group::coolant); coolant != no_code) {
+    modal.mist = coolant == code(7) || (coolant == code(8) && before.mist);
+    modal.flood = coolant == code(8) || (coolant == code(7) && before.flood);
+  }
   if (block.has(Group::plane)) {
     const Code plane = block.code(Group::plane);
-    modal.plane = plane == code(17) ? Plane::xy : plane == code(18) ? g18 : Plane::yz;
+    modal.plane = plane == code(17) ? Plane::xy : plane == code(18) ? dialect.g18 : Plane::yz;
   }
   if (block.has(Group::feed_mode)) {
     const Code how = block.code(Group::feed_mode);
@@ -126,6 +157,12 @@ using Check = Expected<void, Diagnostic>;
   return tl::unexpected(diagnostic);
 }
 
+/// Where the motion of a line is told.
+[[nodiscard]] inline int motion_column(const Block& block) {
+  return std::max(
+      1, block.has(Group::motion) ? block.column(Group::motion) : block.first_column(block.letters()));
+}
+
 [[nodiscard]] inline Check not_negative(const Block& block, char letter) {
   if (block.has(letter) && block.number(letter) < 0.0)
     return tl::unexpected(block.error(ErrorCode::negative, letter));
@@ -149,8 +186,11 @@ using Check = Expected<void, Diagnostic>;
   if (!alphabet.has_arcs)
     return tl::unexpected(Diagnostic{{ErrorCode::not_supported, "G", modal.motion / 10.0, 0.0}, 0, column});
   const auto [first, second, third] = axes(modal.plane);
+  const char beside = center_letter(third);  // 0 beside the plane is where the centre is anyway
+  if (block.has(beside) && !(modal.incremental_center && block.number(beside) == 0.0))
+    return tl::unexpected(block.error(ErrorCode::unused_word, beside));
   const bool radius = alphabet.has_radius && block.has('R');
-  const Letters centers = block.letters() & bits("IJK");
+  const Letters centers = block.letters() & (bit(center_letter(first)) | bit(center_letter(second)));
   if (radius && centers != 0) return conflict(block.error(ErrorCode::conflicting_words, 'R'), "I J K");
   if (!radius && centers == 0) return missing("R or I J K", column);
   if (radius && !block.has("XYZ"[first]) && !block.has("XYZ"[second]))
@@ -208,36 +248,88 @@ using Check = Expected<void, Diagnostic>;
 
 /// The words that codes other than motions take: a word that one must have is there, and no word is taken
 /// twice. `used` gets them.
-[[nodiscard]] inline Check take_words(const Block& block, Letters taken_by_motion, Letters& used) {
+[[nodiscard]] inline Check take_words(const Block& block, const Alphabet& alphabet, Letters taken_by_motion,
+                                      Letters& used) {
   Letters taken = taken_by_motion;
   for (const Group group :
        {Group::non_modal, Group::compensation, Group::tool_length, Group::path_control, Group::spindle_mode,
-        Group::tool_change, Group::override_control, Group::input_output}) {
+        Group::tool_change, Group::spindle, Group::override_control, Group::input_output}) {
     if (!block.has(group)) continue;
     const auto& [own, may, must] = facts(group, block.code(group));
-    if (const Letters lacking = must & ~block.letters(); lacking != 0)
-      return missing(name(static_cast<char>('A' + std::countr_zero(lacking))), block.column(group));
+    const Letters lacking = must & ~block.letters();
+    const bool by_s = group == Group::non_modal && alphabet.lenient && dwells_by_s(block);
+    if (lacking != 0 && !by_s) return missing(name(first_of(lacking)), block.column(group));
     if (const Letters twice = taken & may & block.letters(); twice != 0)
-      return conflict(
-          block.error(ErrorCode::conflicting_words, static_cast<char>('A' + std::countr_zero(twice))),
-          "two codes use it");
+      return conflict(block.error(ErrorCode::conflicting_words, first_of(twice)), "two codes use it");
     taken |= may;
     used |= may;
   }
   return {};
 }
 
-/// G10: L1 of a tool's length, L2 and L20 of a work coordinate system, without rotation.
-[[nodiscard]] inline Check check_setting(const Block& block, Letters axes) {
+/// G10: L1, L10 and L11 of a tool's length along Z and of its radius; L2 and L20 of a work coordinate system,
+/// which L2 rotates by R where its axes begin with X Y Z.
+[[nodiscard]] inline Check check_setting(const Block& block, const Alphabet& alphabet) {
   const double kind = block.number('L');
-  if (kind != 1.0 && kind != 2.0 && kind != 20.0)
-    return tl::unexpected(block.error(ErrorCode::not_supported, 'L'));
-  if (block.has('R') && block.number('R') != 0.0)
+  const bool tool = kind == 1.0 || kind == 10.0 || kind == 11.0;
+  if (!tool && kind != 2.0 && kind != 20.0) return tl::unexpected(block.error(ErrorCode::not_supported, 'L'));
+  if (block.has('R') && !tool && (kind == 20.0 || !alphabet.has_arcs))
     return tl::unexpected(block.error(ErrorCode::not_supported, 'R'));
-  if (const Letters others = block.letters() & axes & ~bit('Z'); kind == 1.0 && others != 0)
-    return tl::unexpected(
-        block.error(ErrorCode::not_supported, static_cast<char>('A' + std::countr_zero(others))));
-  return kind == 1.0 ? whole(block, 'P', 0, max_count) : whole(block, 'P', 0, work_systems);
+  if (tool)
+    if (auto ok = not_negative(block, 'R'); !ok) return ok;
+  if (const Letters others = block.letters() & alphabet.axes & ~bit('Z'); tool && others != 0)
+    return tl::unexpected(block.error(ErrorCode::not_supported, first_of(others)));
+  return tool ? whole(block, 'P', 0, max_count) : whole(block, 'P', 0, work_systems);
+}
+
+/// Polar words stand for X and Y of a motion in the XY plane.
+[[nodiscard]] inline Check check_polar(const Block& block, const Modal& modal, const Alphabet& alphabet,
+                                       Code motion) {
+  if (!names_polar(block)) return {};
+  const char word = block.has('@') ? '@' : '^';
+  if (motion == no_code || is_spline(motion) || is_nurbs(motion) || motion == code(5.3))
+    return tl::unexpected(block.error(ErrorCode::unused_word, word));
+  if (!alphabet.has_arcs) return tl::unexpected(block.error(ErrorCode::not_supported, word));
+  if (block.has('X') || block.has('Y'))
+    return conflict(block.error(ErrorCode::conflicting_words, word), block.has('X') ? "X" : "Y");
+  if (modal.plane != Plane::xy)
+    return conflict(block.error(ErrorCode::conflicting_words, word), "G", modal.plane == Plane::yz ? 19 : 18);
+  if (block.code(Group::non_modal) == code(53))
+    return conflict(block.error(ErrorCode::conflicting_words, word), "G", 53);
+  return {};
+}
+
+/// Words of a motion whose feed is a way for each turn of the spindle: K of G33 and G33.1; of G76 the pitch,
+/// the end and the depths, in the ZX plane.
+[[nodiscard]] inline Check check_synchronised(const Block& block, const Modal& modal,
+                                              const Alphabet& alphabet, Code motion, int column) {
+  const Diagnostic about{{ErrorCode::not_supported, "G", motion / 10.0, 0.0}, 0, column};
+  if (modal.feed_mode == FeedMode::inverse_time) return conflict(about, "G", 93);
+  const auto positive = [&block, column](char letter) -> Check {
+    if (!block.has(letter)) return missing(name(letter), column);
+    if (block.number(letter) <= 0.0) return tl::unexpected(block.error(ErrorCode::not_positive, letter));
+    return {};
+  };
+  if (motion != code(76)) return positive('K');
+  if (!alphabet.has_arcs || !alphabet.has_radius) return tl::unexpected(about);
+  if (modal.plane == Plane::xy || modal.plane == Plane::yz)
+    return conflict(about, "G", modal.plane == Plane::yz ? 19 : 17);
+  for (const char letter : {'P', 'J', 'K'})
+    if (auto ok = positive(letter); !ok) return ok;
+  for (const char letter : {'Z', 'I'})
+    if (!block.has(letter)) return missing(name(letter), column);
+  if (block.number('I') == 0.0) return tl::unexpected(block.error(ErrorCode::not_positive, 'I'));
+  if (block.number('K') <= block.number('J'))
+    return tl::unexpected(block.error(ErrorCode::below_limit, 'K', block.number('J')));
+  for (const char letter : {'E', 'Q', 'R'})
+    if (auto ok = not_negative(block, letter); !ok) return ok;
+  if (block.has('Q') && block.number('Q') >= 90.0)
+    return tl::unexpected(block.error(ErrorCode::above_limit, 'Q', 90.0));
+  if (!(ThreadWords::of(block, modal).passes() <= max_thread_passes))
+    return tl::unexpected(Diagnostic{
+        {ErrorCode::above_limit, "number of passes", max_thread_passes + 1, max_thread_passes}, 0, column});
+  if (auto ok = whole(block, 'H', 0, static_cast<int>(max_thread_passes)); !ok) return ok;
+  return whole(block, 'L', 0, 3);
 }
 
 /// Cutter compensation begins in XY or ZX, when it is off, with a tool that has no orientation; while it is
@@ -279,8 +371,8 @@ using Check = Expected<void, Diagnostic>;
 /// What becomes of words that nothing has used: they go with a passed-through code, or they are errors. Axis
 /// words and feeds are never for others: what moves the machine is read here or refused.
 [[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
-  for (char letter = 'A'; letter <= 'Z'; ++letter) {
-    if ((unused & bit(letter)) == 0) continue;
+  for (Letters left = unused; left != 0; left &= left - 1) {
+    const char letter = first_of(left);
     if (block.passes_code() && (bit(letter) & (alphabet.axes | bit('F'))) == 0) {
       if (auto ok = block.pass(letter); !ok) return ok;
     } else if (block.column(letter) ==
@@ -300,12 +392,12 @@ using Check = Expected<void, Diagnostic>;
 [[nodiscard]] inline Expected<Code, Diagnostic> resolve(Block& block, const Modal& modal,
                                                         const Alphabet& alphabet, Code before) {
   using namespace detail;
-  const Letters axis_words = block.letters() & alphabet.axes;
+  const Letters axis_words = block.letters() & (alphabet.axes | polar_words);
   const Letters center_words = block.letters() & bits("IJK");
   const Code requested = block.code(Group::motion);
   const Code non_modal = block.code(Group::non_modal);
   const bool homes = non_modal == code(28) || non_modal == code(30);
-  const bool shifts = non_modal == code(92) || non_modal == code(10);
+  const bool shifts = non_modal == code(92) || non_modal == code(52) || non_modal == code(10);
   const bool sets_length = block.code(Group::tool_length) == code(43.1);
   const bool takes_axes = homes || shifts || sets_length;
 
@@ -321,7 +413,8 @@ using Check = Expected<void, Diagnostic>;
     if (requested != no_code && requested != code(80) && !(homes && requested == code(0)))
       return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
                       block.code(taker) / 10.0);
-    if (!homes && axis_words == 0 && non_modal != code(10)) {  // an unknown letter was meant to be the axis
+    if (!homes && axis_words == 0 && non_modal != code(10) &&
+        (block.letters() & alphabet.left_out) == 0) {  // an unknown letter was meant to be the axis
       const Letters unknown = block.letters() & ~alphabet.known();
       if (unknown != 0 && !block.passes_code())
         if (auto ok = settle(block, unknown, alphabet); !ok) return tl::unexpected(ok.error());
@@ -348,10 +441,15 @@ using Check = Expected<void, Diagnostic>;
 
   Letters used = bits("NST");
   if (takes_axes || motion != no_code) used |= alphabet.axes;
+  if (motion != no_code) used |= polar_words;
+  if (block.has('S') || block.has(Group::spindle) || is_synchronised(motion) || is_tap(motion))
+    used |= bit('$');
+  if (auto ok = check_polar(block, modal, alphabet, motion); !ok) return tl::unexpected(ok.error());
   Letters taken = 0;
   if (is_arc(motion)) {
     if (auto ok = check_arc(block, modal, alphabet, column); !ok) return tl::unexpected(ok.error());
     const auto [first, second, third] = axes(modal.plane);
+    used |= bit(center_letter(third));
     taken = bit(center_letter(first)) | bit(center_letter(second)) | bits("PR");
   } else if (is_spline(motion) || is_nurbs(motion)) {
     if (auto ok = check_spline(block, modal, alphabet, motion, column); !ok)
@@ -368,24 +466,32 @@ using Check = Expected<void, Diagnostic>;
     if (auto ok = check_cycle(block, modal, alphabet, motion != before, column); !ok)
       return tl::unexpected(ok.error());
     used &= ~alphabet.axes | bits("XYZ");
-    taken = bits("LR") | (dwells(motion) ? bit('P') : 0) | (is_peck(motion) ? bit('Q') : 0);
+    taken = bits("LR") | (dwells(motion) || is_tap(motion) ? bit('P') : 0) | (is_peck(motion) ? bit('Q') : 0);
+  } else if (is_synchronised(motion)) {
+    if (auto ok = check_synchronised(block, modal, alphabet, motion, column); !ok)
+      return tl::unexpected(ok.error());
+    taken = motion == code(33) ? bit('K') : motion == code(33.1) ? bits("KI") : bits("PIJKRQHEL");
   }
   used |= taken;
-  if (auto ok = take_words(block, taken, used); !ok) return tl::unexpected(ok.error());
+  if (auto ok = take_words(block, alphabet, taken, used); !ok) return tl::unexpected(ok.error());
   if (non_modal == code(10))
-    if (auto ok = check_setting(block, alphabet.axes); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_setting(block, alphabet); !ok) return tl::unexpected(ok.error());
 
-  if (is_probe(motion) && axis_words == 0) return missing("axis", column);
+  if ((is_probe(motion) || motion == code(33) || motion == code(33.1)) && axis_words == 0)
+    return missing("axis", column);
   const bool feeds = is_arc(motion) || is_cycle(motion) || is_spline(motion) || is_nurbs(motion) ||
                      ((motion == code(1) || is_probe(motion)) && axis_words != 0);
-  if (feeds || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
+  const Letters lacking = left_out(block, alphabet, motion);
+  if (feeds || lacking != 0 || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
+  used |= lacking;
   const bool signed_diameter = block.has(Group::compensation);
   const Letters counted = used & block.letters();
   for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
     if ((counted & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) && motion != code(5) &&
         block.code(Group::input_output) < code(67))  // M67, M68: any Q
       if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
-  for (const char letter : {'N', 'T', 'H'})
+  if (auto ok = not_negative(block, 'N'); !ok) return tl::unexpected(ok.error());
+  for (const char letter : {'T', 'H'})
     if ((counted & bit(letter)) != 0)
       if (auto ok = whole(block, letter, 0, max_count); !ok) return tl::unexpected(ok.error());
   if (feeds)

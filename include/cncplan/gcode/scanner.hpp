@@ -30,7 +30,8 @@ class Scanner {
     if (at_ == end_) return std::nullopt;
     const int column = this->column();
     const char letter = upper(*at_);
-    if (letter < 'A' || letter > 'Z') return tl::unexpected(unknown());
+    if ((letter < 'A' || letter > 'Z') && word_letters.find(letter) == std::string_view::npos)
+      return tl::unexpected(unknown());
     ++at_;
     skip_blanks();
     const auto number = read_number(letter, column);
@@ -180,5 +181,15 @@ class Scanner {
   const char* at_;
   const char* end_;
 };
+
+/// Whether a line is for grbl's sender, not for the program: $H, $$, $100=250, and ? alone (comments apart).
+[[nodiscard]] inline bool is_sender_command(std::string_view line) {
+  if (line.starts_with('?')) return line.find_first_not_of(" \t", 1) == line.find_first_of(";(", 1);
+  if (!line.starts_with('$')) return false;
+  const char next = line.size() > 1 ? line[1] : '\0';
+  const bool number =
+      (next >= '0' && next <= '9') || next == '-' || next == '+' || next == '.' || next == ' ';
+  return !number || line.find('=') != std::string_view::npos;
+}
 
 }  // namespace cncplan::gcode

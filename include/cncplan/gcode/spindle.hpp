@@ -9,22 +9,37 @@
 
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/rules.hpp"
 
 namespace cncplan::gcode {
 
 struct Spindle {
-  int direction = 5;                    ///< M3, M4 or M5
-  std::optional<double> speed{};        ///< S
-  std::optional<double> surface_speed;  ///< G96, mm per minute
-  double fastest{};                     ///< revolutions per minute, under G96
+  int direction = 5;                      ///< M3, M4 or M5
+  std::optional<double> speed{};          ///< S
+  std::optional<double> surface_speed{};  ///< G96, mm per minute
+  double fastest{};                       ///< revolutions per minute, under G96
 
-  /// G96 D S: the surface speed S, m/min (feet per minute in inches), at D revolutions per minute at most;
-  /// G97: S is revolutions per minute.
-  void select_mode(const Block& block, double millimetres_per_unit) {
-    surface_speed.reset();
-    if (block.code(Group::spindle_mode) == code(97)) return;
-    surface_speed = block.number('S') * (millimetres_per_unit != 1.0 ? 304.8 : 1000.0);
-    fastest = block.has('D') ? block.number('D') : std::numeric_limits<double>::infinity();
+  /// What a line says of it: S, M3 to M5, M19, G96 and G97. A line with $ is about another one, but for $0
+  /// and $-1 (all).
+  void take(const Block& block, double millimetres_per_unit) {
+    if (block.has('$') && block.number('$') > 0.0) return;
+    if (block.has('S') && !dwells_by_s(block)) speed = block.number('S');
+    if (block.has(Group::spindle)) direction = direction_of(block);
+    if (block.has(Group::spindle_mode)) select_mode(block, millimetres_per_unit);
+  }
+
+  /// Whether it turns as a line's motion needs it: at a speed for a feed per revolution, and the right way
+  /// round for a tap.
+  [[nodiscard]] Expected<void, Diagnostic> check(const Block& block, const Modal& modal, Code motion) const {
+    const bool feeds = motion != no_code && motion != code(0);
+    const int column = detail::motion_column(block);
+    const bool per_turn = (feeds && modal.feed_mode == FeedMode::per_revolution) || is_synchronised(motion);
+    if (per_turn && !((block.has('S') ? block.number('S') : speed.value_or(0.0)) > 0.0))
+      return detail::missing("S", column);
+    const int turns = block.has(Group::spindle) ? direction_of(block) : direction;
+    if (is_tap(motion) && turns == (motion == code(84) ? 4 : 3))
+      return detail::conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, column}, "M", turns);
+    return {};
   }
 
   /// mm/s of a feed per revolution. Under G96 it is the lowest of the motion, at the end that is farther from
@@ -34,6 +49,21 @@ struct Spindle {
     if (surface_speed) per_minute = std::min(fastest, *surface_speed / (2.0 * std::numbers::pi * radius));
     const double feed = per_revolution * per_minute / 60.0;
     return std::isfinite(feed) ? std::optional<double>(feed) : std::nullopt;
+  }
+
+ private:
+  static int direction_of(const Block& block) {
+    const int code = block.code(Group::spindle) / 10;
+    return code == 19 ? 5 : code;  // M19 stops it
+  }
+
+  /// G96 D S: the surface speed S, m/min (feet per minute in inches), at D revolutions per minute at most;
+  /// G97: S is revolutions per minute.
+  void select_mode(const Block& block, double millimetres_per_unit) {
+    surface_speed.reset();
+    if (block.code(Group::spindle_mode) == code(97)) return;
+    surface_speed = block.number('S') * (millimetres_per_unit != 1.0 ? 304.8 : 1000.0);
+    fastest = block.has('D') ? block.number('D') : std::numeric_limits<double>::infinity();
   }
 };
 

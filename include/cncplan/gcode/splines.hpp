@@ -25,8 +25,7 @@ class Splines {
   /// What the words of a line alone do not tell. `before`: the motion code of the line above.
   [[nodiscard]] Expected<void, Diagnostic> check(const Block& block, const Modal& modal, Code motion,
                                                  Code before) const {
-    const int column = std::max(
-        1, block.has(Group::motion) ? block.column(Group::motion) : block.first_column(block.letters()));
+    const int column = detail::motion_column(block);
     if (motion == code(5) && before != motion && !block.has('I')) return detail::missing("I", column);
     if (nurbs_.open() && motion != no_code && motion != before && motion != code(5.3))
       return detail::conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, column}, "G", before / 10.0);

@@ -1,12 +1,14 @@
 // The word of G-code: a letter and its number.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 namespace cncplan::gcode {
 
-/// A letter (upper case) and its number, and where it stood.
+/// A letter (upper case, or one of @ ^ $) and its number, and where it stood.
 struct Word {
   char letter{};
   double number{};
@@ -23,8 +25,14 @@ inline constexpr std::size_t max_line_length = 1024;
 /// sum of coordinates and offsets reaches infinity.
 inline constexpr double max_number = 1e15;
 
-/// 0 for A .. 25 for Z.
-[[nodiscard]] constexpr std::size_t index(char letter) { return static_cast<std::size_t>(letter - 'A'); }
+/// What words begin with: the letters, and LinuxCNC's signs for polar coordinates and for a spindle's number.
+inline constexpr std::string_view word_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ@^$";
+
+/// 0 for A .. 25 for Z, and on for the signs.
+[[nodiscard]] constexpr std::size_t index(char letter) {
+  if (letter >= 'A' && letter <= 'Z') return static_cast<std::size_t>(letter - 'A');
+  return letter == '@' ? 26 : letter == '^' ? 27 : 28;
+}
 
 /// A set of letters as bits.
 using Letters = std::uint32_t;
@@ -35,6 +43,11 @@ using Letters = std::uint32_t;
   Letters set = 0;
   for (const char letter : letters) set |= bit(letter);
   return set;
+}
+
+/// A letter of a set that is not empty.
+[[nodiscard]] constexpr char first_of(Letters set) {
+  return word_letters[static_cast<std::size_t>(std::countr_zero(set))];
 }
 
 /// The letter (or other printable character) as text that lives for ever, as `Error::field` wants it; "byte"

@@ -21,7 +21,9 @@ inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 using NamedCoordinates = std::array<std::optional<double>, max_axes>;
 
 /// Machine coordinates are work coordinates and the sum of three offsets: of the work coordinate system, of
-/// G92, and of the tool. The machine stays where it is when an offset changes.
+/// G92, and of the tool. A system may be rotated about Z, by what G10 L2 R says: work coordinates and the
+/// offset of G92 are turned by it then (LinuxCNC: Coordinate Systems). The machine stays where it is when an
+/// offset changes.
 class WorkCoordinates {
  public:
   WorkCoordinates(const Dialect& dialect, const Position& machine)
@@ -36,8 +38,31 @@ class WorkCoordinates {
   /// Where the axes stand, in work coordinates.
   [[nodiscard]] const Position& current() const { return current_; }
   [[nodiscard]] const Position& machine() const { return machine_; }
-  /// What takes work to machine coordinates.
+  /// What takes work coordinates, turned by the rotation, to machine coordinates.
   [[nodiscard]] const Position& offset() const { return offset_; }
+  /// Degrees of a system, and whether the one in force has any.
+  [[nodiscard]] double rotation(std::size_t system) const { return turns_[system].degrees; }
+  [[nodiscard]] bool rotated() const { return turn().degrees != 0.0; }
+  /// A motion of work coordinates as the machine's axes lie.
+  void rotate(Motion& motion) const {
+    if (!rotated()) return;
+    turn().forth(motion.start[0], motion.start[1]);
+    turn().forth(motion.end[0], motion.end[1]);
+    turn().forth(motion.center[0], motion.center[1]);
+    for (SplineControl& control : motion.controls) turn().forth(control.first, control.second);
+  }
+  /// Where the axes would stand at machine coordinates, those of the others as they are.
+  [[nodiscard]] Position at_machine(const NamedCoordinates& named) const {
+    Position place = current_;
+    if (rotated() && (named[0] || named[1])) {
+      for (std::size_t i = 0; i < 2; ++i) place[i] = named[i].value_or(machine_[i]) - offset_[i];
+      turn().back(place[0], place[1]);
+      for (std::size_t i = 0; i < 2; ++i) place[i] = meet(i, place[i]);
+    }
+    for (std::size_t i = rotated() ? 2 : 0; i < count_; ++i)
+      if (named[i]) place[i] = meet(i, *named[i] - offset_[i]);
+    return place;
+  }
   /// What G92 has shifted, and what is in force of it.
   [[nodiscard]] const Position& shift() const { return shift_; }
   [[nodiscard]] const Position& tool() const { return tool_; }
@@ -61,7 +86,8 @@ class WorkCoordinates {
 
   void arrive(const Position& end) {
     current_ = end;
-    for (std::size_t i = 0; i < count_; ++i) machine_[i] = end[i] + offset_[i];
+    const Position turned = this->turned(end);
+    for (std::size_t i = 0; i < count_; ++i) machine_[i] = turned[i] + offset_[i];
   }
 
   /// G54 to G59.3, from 0.
@@ -71,12 +97,33 @@ class WorkCoordinates {
   }
 
   /// G10 L2 and, if `here`, L20: the origin of a system in machine coordinates, or such that the axes stand
-  /// at the coordinates named. `number` 1 is G54, 0 the system in force.
-  void set_origin(int number, const NamedCoordinates& named, bool here) {
-    Position& origin = systems_[number == 0 ? system_ : static_cast<std::size_t>(number - 1)];
-    for (std::size_t i = 0; i < count_; ++i)
+  /// at the coordinates named. `number` 1 is G54, 0 the system in force. The first two axes are X and Y where
+  /// a system is rotated, by R in degrees.
+  void set_origin(int number, const NamedCoordinates& named, bool here, std::optional<double> rotation) {
+    const std::size_t system = index_of(number);
+    Position& origin = systems_[system];
+    Turn& turn = turns_[system];
+    if (here && turn.degrees != 0.0) {
+      const auto at = [&](std::size_t i) { return machine_[i] - origin[i] - tool_[i]; };
+      double x = at(0), y = at(1);
+      turn.back(x, y);
+      if (named[0]) x = *named[0] + shift_[0];
+      if (named[1]) y = *named[1] + shift_[1];
+      turn.forth(x, y);
+      origin[0] = machine_[0] - tool_[0] - x;
+      origin[1] = machine_[1] - tool_[1] - y;
+    }
+    for (std::size_t i = here && turn.degrees != 0.0 ? 2 : 0; i < count_; ++i)
       if (named[i]) origin[i] = here ? machine_[i] - shift_[i] - tool_[i] - *named[i] : *named[i];
+    if (rotation) turn = Turn(*rotation);
     update();
+  }
+
+  /// G10 L10 and, if `fixture`, L11: the length of a tool along an axis with which the axes stand at a
+  /// coordinate, of the system in force or of G59.3 without G92.
+  [[nodiscard]] double tool_for(std::size_t axis, double coordinate, bool fixture) const {
+    const double shift = fixture ? 0.0 : shift_[axis];
+    return machine_[axis] - systems_[fixture ? work_systems - 1 : system_][axis] - shift - coordinate;
   }
 
   /// G43 and its kin: the axes named get new lengths of the tool.
@@ -86,6 +133,19 @@ class WorkCoordinates {
     update();
   }
 
+  /// G43.2 adds to them.
+  void add_tool(const NamedCoordinates& named) {
+    for (std::size_t i = 0; i < count_; ++i) tool_[i] += named[i].value_or(0.0);
+    update();
+  }
+
+  /// G52: the shift of the axes named is this.
+  void set_shift(const NamedCoordinates& named) {
+    for (std::size_t i = 0; i < count_; ++i)
+      if (named[i]) shift_[i] = *named[i];
+    kept_shift_ = shift_;
+    update();
+  }
   /// G92: the present place gets the coordinates named.
   void shift_to(const NamedCoordinates& named) {
     Position to = current_;
@@ -113,15 +173,61 @@ class WorkCoordinates {
   }
 
  private:
+  /// A rotation about Z, of coordinates of X and Y.
+  struct Turn {
+    double degrees{}, cosine = 1.0, sine{};
+
+    Turn() = default;
+    explicit Turn(double angle)
+        : degrees(angle),
+          cosine(std::cos(angle * radians_per_degree)),
+          sine(std::sin(angle * radians_per_degree)) {}
+    void forth(double& x, double& y) const {
+      const double along = x;
+      x = cosine * along - sine * y;
+      y = sine * along + cosine * y;
+    }
+    void back(double& x, double& y) const {
+      const double along = x;
+      x = cosine * along + sine * y;
+      y = cosine * y - sine * along;
+    }
+  };
+
+  [[nodiscard]] const Turn& turn() const { return turns_[system_]; }
+  [[nodiscard]] std::size_t index_of(int number) const {
+    return number == 0 ? system_ : static_cast<std::size_t>(number - 1);
+  }
+  [[nodiscard]] Position turned(Position place) const {
+    if (rotated()) turn().forth(place[0], place[1]);
+    return place;
+  }
+
   void update() {
+    const Position shift = turned(shift_);
+    bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
-      const double offset = nameable(i, systems_[system_][i] + shift_[i] + tool_[i]);
+      const double offset = nameable(i, systems_[system_][i] + shift[i] + tool_[i]);
       if (offset == offset_[i]) continue;
-      const double scale = std::abs(machine_[i]) + std::abs(offset_[i]) + std::abs(offset);
-      rounding_[i] = std::max(rounding_[i], 8.0 * std::numeric_limits<double>::epsilon() * scale);
+      moved = true;
+      blur(i, offset);
       current_[i] = machine_[i] - offset;
       offset_[i] = offset;
     }
+    const double angle = turn().degrees;
+    if (angle == angle_ && (angle == 0.0 || !moved)) return;
+    angle_ = angle;
+    for (std::size_t i = 0; i < 2; ++i) {
+      blur(i, offset_[i]);
+      current_[i] = machine_[i] - offset_[i];
+    }
+    turn().back(current_[0], current_[1]);
+  }
+
+  /// What the change to an offset leaves of roundings.
+  void blur(std::size_t i, double offset) {
+    const double scale = std::abs(machine_[i]) + std::abs(offset_[i]) + std::abs(offset);
+    rounding_[i] = std::max(rounding_[i], 8.0 * std::numeric_limits<double>::epsilon() * scale);
   }
 
   std::size_t count_;
@@ -129,11 +235,13 @@ class WorkCoordinates {
   Position current_{};
   Position machine_{};  ///< what stays when the offset changes
   Position offset_{};
+  double angle_{};       ///< degrees of the rotation that `current_` has
   Position rounding_{};  ///< what changes of offset may have left; 0 without any
   Position shift_{};
   Position kept_shift_{};
   Position tool_{};
   std::array<Position, work_systems> systems_{};
+  std::array<Turn, work_systems> turns_{};
   std::size_t system_{};
 };
 

@@ -74,7 +74,9 @@ class FlatLine {
     int column{};
   };
 
-  static bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
+  static bool is_letter(char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '@' || c == '^' || c == '$';
+  }
 
   void copy(std::string_view line, std::size_t from, std::size_t to) {
     text_.append(line.substr(from, to - from));

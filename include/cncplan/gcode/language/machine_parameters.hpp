@@ -75,6 +75,8 @@ inline constexpr std::array machine_names{
     MachineName{"_lathe_diameter_mode", [](const Reader& r) { return r.modal().diameter ? 1.0 : 0.0; }},
     MachineName{"_lathe_radius_mode", [](const Reader& r) { return r.modal().diameter ? 0.0 : 1.0; }},
     MachineName{"_spindle_on", [](const Reader& r) { return r.spindle().direction == 5 ? 0.0 : 1.0; }},
+    MachineName{"_mist", [](const Reader& r) { return r.modal().mist ? 1.0 : 0.0; }},
+    MachineName{"_flood", [](const Reader& r) { return r.modal().flood ? 1.0 : 0.0; }},
     MachineName{"_spindle_cw", [](const Reader& r) { return r.spindle().direction == 3 ? 1.0 : 0.0; }},
     MachineName{
         "_feed",
@@ -119,7 +121,7 @@ inline constexpr std::array machine_names{
   for (std::size_t system = 0; system < work_systems; ++system) {
     const int first = 5221 + 20 * static_cast<int>(system);
     if (const auto axis = among(first)) return kept(place.origin(system), *axis);
-    if (number == first + 9) return 0.0;  // no rotation
+    if (number == first + 9) return place.rotation(system);
   }
   const int tool = reader.loaded_tool();
   if (number == 5400) return static_cast<double>(tool);

@@ -17,6 +17,7 @@
 #include "cncplan/gcode/language/control_word.hpp"
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/gcode/language/flat_line.hpp"
+#include "cncplan/gcode/language/modal_state.hpp"
 #include "cncplan/gcode/language/numbered_call.hpp"
 #include "cncplan/gcode/lines.hpp"
 
@@ -48,7 +49,13 @@ class ProgramLines {
   /// The next line; where `problem` says so, the line at fault as it stands in the text.
   [[nodiscard]] std::optional<std::string_view> next() {
     problem_.reset();
+    flat_ = nullptr;
     for (;;) {
+      if (!restoring_.empty()) {
+        restored_ = std::move(restoring_.front());
+        restoring_.pop_front();
+        return restored_;
+      }
       const auto line = read_line();
       flat_ = nullptr;
       if (!line) return end_of_text();
@@ -95,6 +102,8 @@ class ProgramLines {
     bool numbered{};  ///< called by M98
     Place begin{};
     double left{};
+    std::optional<ModalState> saved{};  ///< M70, M73
+    bool restores{};                    ///< M73: on the way back
   };
 
   // Whether nothing in a line concerns the language.
@@ -180,11 +189,44 @@ class ProgramLines {
     }
     const std::string_view flat = flatten(line);
     if (problem_) return flat;
+    if (const auto saves = detail::only_word(flat, 'M');
+        saves && saves->number >= 70.0 && saves->number <= 73.0) {
+      save_or_restore(saves->number, saves->column);
+      return problem_ ? std::optional<std::string_view>("") : std::nullopt;
+    }
     if (const auto call = numbered_call(flat)) {
       call_numbered(*call);
       return problem_ ? std::optional<std::string_view>("") : std::nullopt;
     }
     return returns(flat) ? leave_numbered() : flat;
+  }
+
+  /// M70 saves the modal state, M71 forgets what is saved, M72 restores it, M73 is M70 and M72 on the way
+  /// back.
+  void save_or_restore(double m, int column) {
+    Frame& frame = frames_.back();
+    if (m == 70.0 || m == 73.0) {
+      frame.saved = ModalState::of(reader_);
+      frame.restores = m == 73.0;
+    } else if (m == 71.0) {
+      frame.saved.reset();
+    } else if (m == 72.0 && frame.saved) {
+      restore(*frame.saved);
+    } else {
+      fail(ErrorCode::unmatched, "M", column, m);
+    }
+  }
+
+  void restore(const ModalState& saved) {
+    for (std::string& line : restoring_lines(saved, reader_)) restoring_.push_back(std::move(line));
+  }
+
+  /// Ends the innermost subprogram.
+  void pop_frame() {
+    const Frame frame = std::move(frames_.back());
+    frames_.pop_back();
+    if (frame.saved && frame.restores) restore(*frame.saved);
+    go_to(frame.back);
   }
 
   std::string_view flatten(std::string_view line) {
@@ -431,9 +473,7 @@ class ProgramLines {
     if (find_end(line, expression.at()) != line.size()) result = expression.value();
     if (expression.problem()) return fail(*expression.problem());
     parameters_.leave(result);
-    const Place back = frames_.back().back;
-    frames_.pop_back();
-    go_to(back);
+    pop_frame();
   }
 
   void call_numbered(const NumberedCall& call) {
@@ -459,9 +499,7 @@ class ProgramLines {
     if (--frame.left >= 1.0) {
       go_back_to(frame.begin, 1);
     } else {
-      const Place back = frame.back;
-      frames_.pop_back();
-      go_to(back);
+      pop_frame();
     }
     return problem_ ? std::optional<std::string_view>("") : std::nullopt;
   }
@@ -496,6 +534,8 @@ class ProgramLines {
   std::map<long long, Place> numbered_;
   bool indexed_{};
   std::vector<Frame> frames_;
+  std::deque<std::string> restoring_;  ///< lines of M72 that are to come, and the one that came last
+  std::string restored_;
   Place before_;  ///< of the line that came last
   Place place_;   ///< of the one behind it
   int jumps_{};

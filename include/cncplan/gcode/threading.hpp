@@ -1,0 +1,152 @@
+// Threads: the words of G76, and its passes as the steps that they are made of.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+#include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/canned_cycle.hpp"
+#include "cncplan/gcode/modal.hpp"
+
+namespace cncplan::gcode {
+
+/// G33, G33.1 and G76: the feed is a way for each turn of the spindle.
+[[nodiscard]] constexpr bool is_synchronised(Code motion) {
+  return motion == code(33) || motion == code(33.1) || motion == code(76);
+}
+
+/// Most passes of one thread.
+inline constexpr double max_thread_passes = 1e5;
+
+/// The words of G76, mm and rad, in the ZX plane. All depths count from the drive line, which is where the
+/// cycle begins; they are not negative.
+struct ThreadWords {
+  double pitch{};                ///< P, mm for each turn
+  double peak{};                 ///< |I|, to the crest of the thread
+  bool inside{};                 ///< I > 0: an internal thread, cut towards larger X
+  double first{};                ///< J, depth of the first pass below the crest
+  double depth{};                ///< K, of the thread below the crest; > first
+  double degression{};           ///< R >= 1: depths grow with the 1 / R power of the pass
+  double angle{};                ///< Q, of the compound slide
+  double taper{};                ///< E, length of the tapers along Z; 0 for none
+  bool taper_in{}, taper_out{};  ///< L1 and L3, L2 and L3
+  int springs{};                 ///< H, passes more at full depth
+
+  /// Passes above the full depth, and one.
+  [[nodiscard]] double passes() const { return std::pow(depth / first, degression) + 1.0; }
+
+  [[nodiscard]] static ThreadWords of(const Block& block, const Modal& modal) {
+    const double unit = modal.millimetres_per_unit, across = modal.diameter ? unit / 2.0 : unit;
+    const auto number = [&block](char letter) { return block.has(letter) ? block.number(letter) : 0.0; };
+    const int tapers = static_cast<int>(number('L'));
+    return {.pitch = number('P') * unit,
+            .peak = std::abs(number('I')) * across,
+            .inside = number('I') > 0.0,
+            .first = number('J') * across,
+            .depth = number('K') * across,
+            .degression = std::max(1.0, number('R')),
+            .angle = number('Q') * std::numbers::pi / 180.0,
+            .taper = number('E') * unit,
+            .taper_in = (tapers & 1) != 0,
+            .taper_out = (tapers & 2) != 0,
+            .springs = static_cast<int>(number('H'))};
+  }
+};
+
+/// One step, to a place in the ZX plane. A feed has its pitch.
+struct ThreadStep {
+  CycleStep::Kind kind = CycleStep::Kind::rapid;
+  double x{}, z{};
+  double pitch{};
+};
+
+/// The passes of G76 (LinuxCNC's threading cycle): back beside the start, in, along, out; each deeper than
+/// the last, and shifted along Z by the angle of the compound slide.
+class ThreadingCycle {
+ public:
+  ThreadingCycle() = default;
+  ThreadingCycle(const ThreadWords& words, double start_x, double start_z, double end_x, double end_z)
+      : words_(words), start_x_(start_x), start_z_(start_z), end_x_(end_x), end_z_(end_z) {
+    const bool upwards = end_z > start_z;
+    slope_ = std::tan(upwards ? -words.angle : words.angle);
+    taper_ = upwards ? -words.taper : words.taper;
+    depth_ = std::min(words.first, words.depth);
+    left_ = words.springs + 1;
+    phase_ = Phase::back;
+  }
+
+  [[nodiscard]] bool busy() const { return phase_ != Phase::done; }
+
+  /// The next step; nothing where there is none to be made in this phase.
+  std::optional<ThreadStep> next() {
+    const double shift = depth_ * slope_, from = start_z_ - shift,
+                 to = end_z_ + words_.depth * slope_ - shift;
+    const double crest = at(words_.peak + depth_ - words_.depth), bottom = at(words_.peak + depth_);
+    const double tapered =
+        taper_ == 0.0 ? words_.pitch : words_.pitch * std::hypot(taper_, words_.depth) / std::abs(taper_);
+    switch (phase_) {
+      case Phase::back:
+        phase_ = words_.taper_in && taper_ != 0.0 ? Phase::taper_in : Phase::in;
+        return rapid(at(depth_ - words_.depth), from);
+      case Phase::taper_in:
+        phase_ = Phase::sink;
+        return feed(crest, from, tapered);
+      case Phase::sink:
+        phase_ = Phase::along;
+        return feed(bottom, from - taper_, tapered);
+      case Phase::in:
+        phase_ = Phase::along;
+        return rapid(bottom, from);
+      case Phase::along:
+        phase_ = words_.taper_out && taper_ != 0.0 ? Phase::taper_out : Phase::out;
+        return feed(bottom, phase_ == Phase::out ? to : to + taper_, words_.pitch);
+      case Phase::taper_out:
+        phase_ = Phase::out;
+        return feed(crest, to, tapered);
+      case Phase::out: {
+        phase_ = Phase::back;
+        const ThreadStep out = rapid(at(depth_ - words_.depth), to);
+        deepen();
+        return out;
+      }
+      case Phase::home:
+        phase_ = Phase::done;
+        return rapid(end_x_, end_z_);
+      case Phase::done:
+        break;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  enum class Phase : std::uint8_t { back, taper_in, sink, in, along, taper_out, out, home, done };
+
+  /// X at a depth below the drive line.
+  [[nodiscard]] double at(double depth) const { return words_.inside ? start_x_ + depth : start_x_ - depth; }
+
+  static ThreadStep rapid(double x, double z) { return {.kind = CycleStep::Kind::rapid, .x = x, .z = z}; }
+  static ThreadStep feed(double x, double z, double pitch) {
+    return {.kind = CycleStep::Kind::feed, .x = x, .z = z, .pitch = pitch};
+  }
+
+  void deepen() {
+    if (depth_ < words_.depth) {
+      depth_ = std::min(words_.depth, words_.first * std::pow(++pass_, 1.0 / words_.degression));
+    } else if (--left_ == 0) {
+      phase_ = Phase::home;
+    }
+  }
+
+  ThreadWords words_;
+  double start_x_{}, start_z_{}, end_x_{}, end_z_{};
+  double slope_{}, taper_{};
+  double depth_{};  ///< of this pass below the crest
+  int pass_ = 1;
+  int left_{};  ///< passes at full depth
+  Phase phase_ = Phase::done;
+};
+
+}  // namespace cncplan::gcode

@@ -1,0 +1,79 @@
+// What other controls' programs have and LinuxCNC refuses: read by lenient dialects, with a warning each.
+#include <string>
+
+#include "cncplan/gcode/controls.hpp"
+#include "gcode/support.hpp"
+#include "support/catch.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+test::Reading read(std::string_view text) {
+  gcode::Dialect dialect;
+  dialect.lenient = true;
+  return test::read(text, dialect);
+}
+
+std::string warnings(std::string_view text) {
+  const auto reading = read(text);
+  std::string all = reading.error;
+  for (const auto& warning : reading.all<gcode::Warning>())
+    all += gcode::to_text("", warning.about, "warning") + '\n';
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("words of axes that the machine lacks are left out") {
+  CHECK(warnings("G0 X1 A90\nG1 X2 A3 F1\nA5\nG92 E0\n") ==
+        "1:7: warning: A names an axis that the machine lacks: it is left out\n"
+        "4:5: warning: E names an axis that the machine lacks: it is left out\n");
+  CHECK(read("G0 X1 A90\nG93 G1 A3 F1\nX2 F1").motions().size() == 2);
+  CHECK(read("G0 X5 Y5\nG28 A0").motions().size() == 1);  // does not send the others home
+  CHECK(warnings("M67 E0 Q1").empty());                   // E of its own
+  CHECK(test::read("G0 X1 A90").error == "1:7: A is not supported");
+}
+
+TEST_CASE("a rapid where no motion code holds") {
+  CHECK(warnings("F1 G81 X1 Z-1 R1\nG80\nZ5\nZ6") ==
+        "3:1: warning: motion is a rapid: no motion code holds here\n");
+  CHECK(read("X5\nG1 F1 X6\nX7").motions()[0].kind == gcode::MotionKind::rapid);
+  CHECK(read("X5\nG1 F1 X6\nX7").motions()[2].kind == gcode::MotionKind::line);
+  CHECK(warnings("G0 X1\nX2").empty());
+  CHECK_FALSE(test::read("X5").error.empty());
+}
+
+TEST_CASE("printers' words") {
+  CHECK(read("G4 S2").all<gcode::Dwell>()[0].seconds == 2.0);
+  CHECK(read("G4 S2\nM3").all<gcode::Word>().size() == 1);  // S is no speed
+  CHECK(read("G0 X5 Y5 Z5\nG28 X Y\nM117 Printing 50%\nG29").error.empty());
+  CHECK(read("G0 X5 Y5 Z5\nG28 XY").motions().back().end == gcode::Position{0, 0, 5});
+  CHECK_FALSE(test::read("G4 S2").error.empty());
+  CHECK_FALSE(test::read("G0 X Y5").error.empty());
+}
+
+TEST_CASE("codes that nothing is known of are handed on") {
+  const auto reading = test::read("M106 S255\nM106 S0\nM40\nG0 X1");
+  CHECK(reading.error.empty());
+  CHECK(reading.all<gcode::Warning>().size() == 2);  // of M106 and of M40
+  CHECK(reading.all<gcode::Word>().size() == 5);
+  CHECK(gcode::timing({'M', 106, 1, 1}) == gcode::Timing::at_rest);
+}
+
+TEST_CASE("commands to a sender are passed over") {
+  CHECK(warnings("$H\n$$\n? ; where\n$100=250\nG0 X1") ==
+        "1:1: warning: $ is not known here: it is handed on\n");
+  CHECK_FALSE(test::read("$H").error.empty());
+}
+
+TEST_CASE("a centre of 0 beside the plane says nothing") {
+  CHECK(test::read("F1 G2 X10 I5 J0 K0").error.empty());
+  CHECK_FALSE(test::read("F1 G90.1 G2 X10 I5 J0 K0").error.empty());
+  CHECK_FALSE(test::read("F1 G2 X10 K0").error.empty());
+}
+
+TEST_CASE("controls other than LinuxCNC are lenient") {
+  CHECK(gcode::with({}, *gcode::find_control("grbl")).lenient);
+  CHECK_FALSE(gcode::with({}, *gcode::find_control("linuxcnc")).lenient);
+}
