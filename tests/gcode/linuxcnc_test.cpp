@@ -21,7 +21,8 @@ namespace {
 /// Motions (machine coordinates to a thousandth) and dwells, a line each.
 class Steps {
  public:
-  void place(const char* kind, const Vector3& machine) {
+  void place(const char* kind, Vector3 machine) {
+    for (double& coordinate : machine) coordinate = std::round(coordinate * 1e4) / 1e4;  // rs274's digits
     std::array<char, 128> text;
     std::snprintf(text.data(), text.size(), "%s %.3f %.3f %.3f\n", kind, machine[0] + 0.0, machine[1] + 0.0,
                   machine[2] + 0.0);
@@ -167,7 +168,7 @@ TEST_CASE("threads and taps as LinuxCNC's interpreter has them") {
            "G0 X20\nG18 G76 P1.5 Z-5 I-.5 J.1 K.9 R1.0 Q29.5 H1 E.5 L2\n",
            "G0 X20\nG18 G76 P1.5 Z-5 I.5 J.1 K.9 R2 Q29.5 E.5 L3\nG0 X9\n",
            "G0 X20 Z-8\nG18 G76 P1 Z5 I-.5 J.2 K.5 E.5 L1\n",
-           "G20 G7 G0 X1\nG18 G76 P.05 Z.1 I-.075 J.008 K.045 Q29.5 L2 E.045\nG8 X1\n",
+           "G7 G0 X30\nG18 G76 P1 Z3 I-1.5 J.2 K1 Q29 L2 E1\nG8 G0 X1\n",
        })
     compare(program);
 }
@@ -175,7 +176,7 @@ TEST_CASE("threads and taps as LinuxCNC's interpreter has them") {
 TEST_CASE("rotated systems, shifts and polar coordinates as LinuxCNC's interpreter has them") {
   if (!interpreter_is_there()) return;
   for (const char* program : {
-           "G10 L2 P1 R30\nG1 X10\nG2 X20 Y0 I5 J0\nG91 X1 Y1\nG90\nG10 L2 P1 R0\nG1 X0\n",
+           "G10 L2 P1 R30\nG1 X10\nG2 X20 Y0 I5 J0\nG1 G91 X1 Y1\nG90\nG10 L2 P1 R0\nG1 X0\n",
            "G10 L2 P2 X3 Y4 R45\nG1 X10\nG55 X1 Y1 Z1\nG10 L20 P2 X0\nX1 Y2\nG53 G1 X5\nG54 Y0\n",
            "G10 L2 P1 X1 R-20\nG92 X5 Y6\nG1 X0 Y0\nG92.2\nX1\nG92.3\nX2\nG28 X1\n",
            "G1 @5 ^30\n@7\n^60\nG91 @1\n^5\n@1 ^-10 Z1\nG90 X5\n",
@@ -190,7 +191,7 @@ TEST_CASE("splines stand where LinuxCNC's interpreter has them") {
   if (!interpreter_is_there()) return;
   for (const char* program : {
            "G5 I1 J2 P-1 Q2 X10 Y10\nG5 P1 Q2 X20 Y5\nG1 X1\n",
-           "G5.1 I1 J1 X20 Y20\nG1 X1\nG5.1 I3 X0 Y9\nG0 Z1\n",
+           "G5.1 I1 J1 X20 Y20\nG1 X1\nG5.1 I3 J1 X0 Y9\nG0 Z1\n",
            "G5.2 P1 L3\nX1 Y1 P1\nX2 Y2 P1\nX3 Y3 P2\nX5 Y9 P1\nG5.3\nG1 X1\n",
        })
     compare(program);
@@ -199,8 +200,8 @@ TEST_CASE("splines stand where LinuxCNC's interpreter has them") {
 TEST_CASE("modal state is saved and restored as LinuxCNC's interpreter does") {
   if (!interpreter_is_there()) return;
   for (const char* program : {
-           "o1 sub\nM73\nG91 G20 F5\nG1 X1\no1 endsub\nG1 X1\no1 call\nX2\n",
-           "o1 sub\nM70\nG91 G20 G18 G55\nX1\nM72\nX1\nG91\no1 endsub\no1 call\nX2\n",
+           "o1 sub\nM73\nG91 G20 F5\nG1 X1\no1 endsub\nG1 X25.4\no1 call\nX2\n",
+           "o1 sub\nM70\nG91 G18 G55\nG1 X1\nM72\nX1\nG91\no1 endsub\no1 call\nX2\n",
            "o1 sub\nM73\nG91\no2 if [#1 eq 1]\nM71\no2 endif\nX1\no1 endsub\no1 call [0]\nX2\n"
            "o1 call [1]\nX2\n",
        })
@@ -219,7 +220,9 @@ TEST_CASE("cutter compensation as LinuxCNC's interpreter has it") {
            "G2 X60 Y60 R20\nG40 G0 X0\n",
            "G41.1 D4\nG3 X10 Y10 I0 J10\nG3 X10 Y10 I-10 J0\nG1 Y20\nG0 X20\nG4 P1\nG0 X20 Y50\nG40 X0\n",
            "G41.1 D4 G1 X10 Y0\nX15\nX5\nG40 Y9\n",
-           "G41.1 D-.5\nG1 Y-10\nG2 X10 Y-10 I5 J0\nG1 X-5 Y-4.9\nG2 X-8.5 Y-10 I-1.6 J-2.6\nG40\nX-9 Y-30\n",
+           "G0 X-50 Y-100\nG41.1 D-.5 G1 Y-102\nG2 I4.980439 J-0.441843 X-40.097651 Y-103.322073\n"
+           "G2 I-0.682919 J-1.106175 X-39.500873 Y-104.657107\nG1 X-54.500873 Y-94.657107\n"
+           "G2 I-1.575966 J-2.552711 X-57.872219 Y-99.613276\nG40\nG1 X-62.872219 Y-114.613276\n",
            "G20 G42.1 D.25 G1 X1 Y1\nG2 X2 Y2 I1\nG1 X4\nG3 X4 Y4 J1\nG1 X1 Y2.5\nG40 X0 Y0\n",
        })
     compare(program);

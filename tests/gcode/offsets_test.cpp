@@ -34,9 +34,9 @@ TEST_CASE("a work system may be rotated about Z") {
   check_end("G10 L2 P1 R30\nG0 X10\nG91 X10 Z3", 20.0 * c, 20.0 * s, 3.0);
   check_end("G10 L2 P1 R30\nG0 X10\nG10 L2 P1 R0\nG0 X0", 0.0, 10.0 * s, 0.0);  // the machine stands still
   check_end("G10 L2 P2 R30\nG0 X10\nG55 X0 Y5", -5.0 * s, 5.0 * c, 0.0);
-  check_end("G10 L2 P1 R30\nG92 X1 Y1\nG0 X2 Y1", c, s, 0.0);         // the shift is turned as well
-  check_end("G10 L2 P1 R30\nG0 X10\nG53 G0 X0", 0.0, 10.0 * s, 0.0);  // machine coordinates are not
-  check_end("G10 L2 P1 R30\nG0 X10\nG28 X10", 0.0, 10.0 * s, 0.0);
+  check_end("G10 L2 P1 R30\nG92 X1 Y1\nG0 X2 Y1", c, s, 0.0);              // the shift is turned as well
+  check_end("G10 L2 P1 R30\nG0 X10\nG53 G0 X0", 0.0, 10.0 * s, 0.0);       // machine coordinates are not
+  check_end("G10 L2 P1 R30\nG0 X10 Y5\nG28 X10", -5.0 * s, 5.0 * c, 0.0);  // X goes home, Y stays
   // L20: the axes, at 10 along the turned X, stand at X1 Y0 from now on.
   check_end("G10 L2 P1 R30\nG0 X10\nG10 L20 P1 X1 Y0\nG0 X0", 9.0 * c, 9.0 * s, 0.0);
 }

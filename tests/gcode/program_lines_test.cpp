@@ -158,7 +158,7 @@ TEST_CASE("M70 to M73 save and restore the modal state") {
   CHECK(run("o1 sub\nM73\nG91\nG0 X1\no1 endsub\nG0 X1\no1 call\nX5\n") == "6:1 4:2 8:5 ");
   CHECK(run("o1 sub\nM73\nG91\nM71\nG0 X1\no1 endsub\nG0 X1\no1 call\nX5\n") == "7:1 5:2 9:7 ");
   CHECK(run("G0 X1\nM98 P7\nX5\nM2\nO7\nM73\nG91\nX1\nM99\n") == "1:1 8:2 3:5 ");
-  CHECK(run("M72\n") == ":1:1: error: M72 belongs to nothing that is open");
+  CHECK(run("M72\n") == "1:1: error: M72 belongs to nothing that is open");
   CHECK(run("M70\nM71\nM72\n").find("M72 belongs to nothing") != std::string::npos);
   // Modes, feed, speed, coolant and offsets, by the words that come out.
   gcode::TextLines source("F60 S100 M3 M8\nG64 P.1\nM70\nF120 S5 M5 M9 G61 G55 G43.1 Z3\nM72\nG1 X1\n");

@@ -148,9 +148,9 @@ TEST_CASE("one line's items come in the order of RS274/NGC") {
 TEST_CASE("the fullest line fits the buffer that is promised to take it") {
   Dialect dialect;
   dialect.pass_through = {{'C', {}}};
-  dialect.home_g28 = {1, 1, 1};
-  std::string line = "G28 X5 S1 T1 M6 M3 M8 M30 M48 M66 P1 E1 L1 Q1 G96 D1 G15 G50 G69";
-  for (int i = 0; i < gcode::max_passed; ++i) line += " C1";
+  dialect.lenient = true;
+  std::string line = "G33.1 X5 K1 I2 S1 T1 $0 M6 M3 M8 M30 M48 M66 P1 E1 L1 Q1 G96 D1 G15 G50 G69 A1 M40";
+  for (int i = 1; i < gcode::max_passed; ++i) line += " C1";
   const auto reading = read(line, dialect);
   CHECK(reading.error.empty());
   CHECK(reading.items.size() == gcode::max_items_per_line);

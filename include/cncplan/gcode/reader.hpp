@@ -30,7 +30,7 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 28;
+inline constexpr std::size_t max_items_per_line = max_passed + 25;
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -520,9 +520,12 @@ class Reader {
     straight(code(0), point, emit);
     const bool all = (block_.letters() & (alphabet_.axes | alphabet_.left_out | polar_words)) == 0;
     NamedCoordinates home;
-    for (std::size_t i = 0; i < home.size(); ++i)
-      if (i < axis_count() && (all || block_.has(dialect_.axes[i].letter))) home[i] = machine[i];
-    straight(code(0), place_.at_machine(home), emit);
+    std::copy(machine.begin(), machine.end(), home.begin());
+    const Position there = place_.at_machine(home);  // each axis by itself goes there in work coordinates
+    Position end = position();
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (all || block_.has(dialect_.axes[i].letter)) end[i] = there[i];
+    straight(code(0), end, emit);
   }
 
   [[nodiscard]] bool sets_tool() const { return block_.number('L') != 2.0 && block_.number('L') != 20.0; }
