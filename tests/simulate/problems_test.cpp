@@ -10,23 +10,23 @@ using namespace cncplan;
 TEST_CASE("twenty problems of a program are told, each on its line") {
   const test::Folder folder;
   std::string program = "G21 G90 F600\n";
-  for (int i = 0; i < 30; ++i) program += "G1 X" + std::to_string(i) + " E1\n";
+  for (int i = 0; i < 30; ++i) program += "G1 X" + std::to_string(i) + " D1\n";
   const auto run = folder.run_text(program, "--json --motions m.csv");
   CHECK(run.exit == 2);
   CHECK(run.out.empty());
   CHECK_FALSE(folder.has("m.csv"));
   CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 20);
-  CHECK(run.err.starts_with("program.ngc:2:7: error: E is not supported\nprogram.ngc:3:7: error: "));
+  CHECK(run.err.starts_with("program.ngc:2:7: error: D is not supported\nprogram.ngc:3:7: error: "));
 }
 
 TEST_CASE(
     "a check (--check) tells up to a hundred problems, by kind and with their lines, and plans nothing") {
   const test::Folder folder;
-  std::string program = "G21 G90 F600\nG1 X1 E1\nG2 X5 R1\nX6\nG2 X9 Y0 I2 J0\nG1 X2 E2\nM30\nE9\n";
+  std::string program = "G21 G90 F600\nG1 X1 D1\nG2 X5 R1\nX6\nG2 X9 Y0 I2 J0\nG1 X2 D2\nM30\nD9\n";
   auto run = folder.run_text(program, "--check");
   CHECK(run.exit == 2);
   CHECK(run.out ==
-        "   2  E is not supported: line 2, 6\n"
+        "   2  D is not supported: line 2, 6\n"
         "   1  radius: the end point is farther away than the arc's diameter: line 3\n"
         "   1  R or I J K: a required word is missing: line 4\n"
         "   1  center: radii at start and end point differ: line 5\n");

@@ -57,7 +57,7 @@ TEST_CASE("bad programs: file, line, column and what is wrong") {
            {"G2 X0 Y0 R5\n", "part.ngc:1:10: error: "},
            {"G2 X10.03 I5\n", "part.ngc:1:11: error: "},
            {"F0\nG1 X1\n", "part.ngc:2:1: error: "},
-           {"G33 X1\n", "part.ngc:1:1: error: G33 is not supported"},
+           {"G34 X1\n", "part.ngc:1:1: error: G34 is not supported"},
        }) {
     INFO(program);
     folder.write("part.ngc", program);
