@@ -267,23 +267,36 @@ class Band {
     }
   }
 
-  // Cells a third of a corner's kernel wide near it, and growing with the distance.
-  void make_knots() {
+  // The length on which a speed is reached from rest, about.
+  [[nodiscard]] S ramp_length(S speed) const {
     const auto& limits = options_.along;
+    return std::isfinite(limits.jerk) ? speed * std::sqrt(speed / limits.jerk)
+                                      : speed * speed / limits.acceleration;
+  }
+
+  // Cells a third of a corner's kernel wide near it, and growing with the distance; and short where the feed
+  // changes, for from a low speed to a high one b grows by decades on a short length.
+  void make_knots() {
     S feed = S(0);
     for (const auto& block : blocks_) feed = std::max(feed, block.feed);
-    const S ramp =
-        std::isfinite(limits.jerk) ? feed * std::sqrt(feed / limits.jerk) : feed * feed / limits.acceleration;
-    const S widest = std::min(S(0.1) * ramp, length() / S(8));
+    const S widest = std::min(S(0.1) * ramp_length(feed), length() / S(8));
     constexpr S growth = S(0.12);
     struct Fine {
       S at, size, reach;
     };
     std::vector<Fine> fine;
     fine.push_back({S(0), widest / S(30), S(0)});
-    for (const Corner& corner : corners_)
-      if (corner.width / S(3) < widest)
-        fine.push_back({corner.at, std::max(corner.width / S(3), widest / S(1000)), S(1.7) * corner.width});
+    const auto add = [&](S at, S size, S reach) {
+      if (size < widest) fine.push_back({at, std::max(size, widest / S(1000)), reach});
+    };
+    auto corner = corners_.begin();
+    for (std::size_t i = 1; i < blocks_.size(); ++i) {
+      const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
+      if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
+      if (corner == corners_.end() || corner->at > starts_[i]) continue;
+      add(corner->at, corner->width / S(3), S(1.7) * corner->width);
+      ++corner;
+    }
     fine.push_back({length(), widest / S(30), S(0)});
     for (std::size_t i = 1; i < fine.size(); ++i)
       fine[i].size = std::min(
