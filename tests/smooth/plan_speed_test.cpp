@@ -36,12 +36,20 @@ std::vector<SpeedCell<3>> straight(double length, double first, double widest, d
 
 struct Memory {
   std::vector<BasicPace<double>> paces;
-  std::vector<double> levels, law, window;
+  std::vector<double> levels, law, numbers;
   std::vector<BasicPlateau<double>> plateaus;
+  std::vector<BasicSpeedShare<double>> speeds;
+  std::vector<BasicForceShare<double>> forces;
 
-  explicit Memory(std::size_t cells)
-      : paces(cells), levels(cells), law(cells + 2), window(11 * 1000), plateaus(cells + 4) {}
-  BasicPlanSpeedMemory<double> spans() { return {paces, levels, plateaus, law, window}; }
+  explicit Memory(std::size_t cells, std::size_t window = 1000, std::size_t limits = 2)
+      : paces(cells),
+        levels(cells),
+        law(cells + 2),
+        numbers(BasicWindowMemory<double>::rooms * window),
+        plateaus(cells + 4),
+        speeds(3 * window),
+        forces(3 * limits * window) {}
+  BasicPlanSpeedMemory<double> spans() { return {paces, levels, plateaus, law, {numbers, speeds, forces}}; }
 };
 
 // The least time from rest to rest over a length, by the classical seven phases.

@@ -26,7 +26,7 @@ struct BasicPlanSpeedMemory {
   std::span<S> levels;
   std::span<BasicPlateau<S>> plateaus;
   std::span<S> law;
-  std::span<S> window;
+  BasicWindowMemory<S> window;
 };
 
 /// What became of a plan.
@@ -150,8 +150,7 @@ template <std::floating_point S, int N>
     const S feed = problem.cells[k - 1].feed * problem.paces[k - 1].speed;
     levels[k - 1] = law[k] > feed * feed * (S(1) - S(1e-4)) ? S(0) : S(1);
   }
-  const BasicWindowMemory<S> window(memory.window);
-  const std::size_t most = std::min(options.window_cells, window.capacity() - 4);
+  const std::size_t most = std::min(options.window_cells, memory.window.capacity(limit_count(limits)) - 4);
   for (std::size_t k = 2; k < inner;) {
     if (!(levels[k - 1] > S(0))) {
       ++k;
@@ -161,7 +160,7 @@ template <std::floating_point S, int N>
     while (end < inner && levels[end - 1] > S(0)) ++end;
     for (std::size_t first = k; first < end;) {
       const std::size_t last = std::min(first + most, end);
-      const auto result = optimise(problem, law, first, last, options.window, window);
+      const auto result = optimise(problem, law, first, last, options.window, memory.window);
       plan.rounds += result.rounds;
       plan.windows += 1;
       plan.unconverged += result.converged ? 0 : 1;

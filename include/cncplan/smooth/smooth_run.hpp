@@ -64,7 +64,10 @@ class SpeedPlanner {
  public:
   SpeedPlanner(const BasicMotionLimits<S, N>& limits, std::size_t window)
       : limits_(limits), options_{{}, window} {
-    window_.resize(BasicWindowMemory<S>::numbers * (window + 8));
+    const std::size_t room = window + 8;
+    numbers_.resize(BasicWindowMemory<S>::rooms * room);
+    speeds_.resize(3 * room);
+    forces_.resize(3 * limit_count(limits) * room);
   }
 
   /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it.
@@ -109,9 +112,11 @@ class SpeedPlanner {
     plateaus_.resize(n + 4);
   }
 
-  BasicSpeedPlan<S> plan(S gap) {
+  BasicSpeedPlan<S> plan(S gap, bool proven) {
     options_.window.gap = gap;
-    return plan_speed<S, N>(cells_, limits_, options_, {paces_, levels_, plateaus_, law_, window_});
+    options_.window.proven = proven;
+    return plan_speed<S, N>(cells_, limits_, options_,
+                            {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}});
   }
 
   /// b of the last plan in each cell of the curve.
@@ -179,7 +184,9 @@ class SpeedPlanner {
   std::vector<BasicSpeedCell<S, N>> cells_;
   std::vector<std::pair<std::size_t, S>> origins_;
   std::vector<BasicPace<S>> paces_;
-  std::vector<S> levels_, law_, window_;
+  std::vector<S> levels_, law_, numbers_;
+  std::vector<BasicSpeedShare<S>> speeds_;
+  std::vector<BasicForceShare<S>> forces_;
   std::vector<BasicPlateau<S>> plateaus_;
 };
 
@@ -204,17 +211,17 @@ template <Path P>
   detail::SpeedPlanner<S, N> planner(limits, options.speed_window);
   for (int pass = 0; pass < options.passes; ++pass) {
     planner.take(band, std::span<const S>(feeds));
-    static_cast<void>(planner.plan(options.coarse_gap));
+    static_cast<void>(planner.plan(options.coarse_gap, false));
     band.smoothen(planner.speeds_sq(band.cell_count()));
   }
   for (int round = 0; round < options.joint_rounds; ++round) {
     planner.take(band, std::span<const S>(feeds));
-    static_cast<void>(planner.plan(options.coarse_gap));
+    static_cast<void>(planner.plan(options.coarse_gap, false));
     band.improve(planner.uncut_speeds_sq(band.cell_count()), limits, options.joint);
   }
   run.deviation = band.settle();
   planner.take(band, std::span<const S>(feeds));
-  run.speed = planner.plan(options.gap);
+  run.speed = planner.plan(options.gap, true);
   const S slow = run.speed.slow_down;
   run.use = {run.speed.use.velocity / slow, run.speed.use.acceleration / (slow * slow),
              run.speed.use.jerk / (slow * slow * slow)};

@@ -7,19 +7,71 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "cncplan/smooth/motion_bounds.hpp"
 #include "cncplan/smooth/speed_law.hpp"
 
 namespace cncplan::smooth {
 
-/// A function of the three Bezier coefficients of b in a cell: value, gradient, and a Hessian that is never
+/// A function of the three Bezier coefficients of b in a cell: gradient, and a Hessian that is never
 /// indefinite, in the order 00 01 02 11 12 22.
 template <std::floating_point S>
 struct BasicCellModel {
-  S value{};
   std::array<S, 3> gradient{};
   std::array<S, 6> hessian{};
+};
+
+/// One limit of acceleration and jerk at one place of a path: squares as shares of the limits' squares, each
+/// to stay below 1, by b, b' and b'' there. The prices are the multipliers of an interior-point method: what
+/// the time gains by a higher limit.
+template <std::floating_point S>
+struct BasicForceShare {
+  std::array<S, 6> p{};  ///< products of q', q'', q'''
+  S acceleration_sq{};   ///< reciprocal square of the limit; 0: none
+  S jerk_sq{};           ///< the same of jerk
+  S acceleration_price{};
+  S jerk_price{};
+
+  /// acceleration = q'' b + q' b'/2
+  [[nodiscard]] S acceleration(S b, S slope) const {
+    return acceleration_sq * (p[3] * b * b + p[1] * b * slope + p[0] * slope * slope / S(4));
+  }
+  /// The derivatives of that share by b and b'.
+  [[nodiscard]] std::array<S, 2> by_acceleration(S b, S slope) const {
+    return {acceleration_sq * (S(2) * p[3] * b + p[1] * slope),
+            acceleration_sq * (p[1] * b + p[0] * slope / S(2))};
+  }
+  /// jerk / sqrt(b) = q''' b + 3/2 q'' b' + q' b''/2: the gradient of half its square
+  [[nodiscard]] std::array<S, 3> pull(S b, S slope, S bend) const {
+    return {p[5] * b + S(1.5) * p[4] * slope + S(0.5) * p[2] * bend,
+            S(1.5) * p[4] * b + S(2.25) * p[3] * slope + S(0.75) * p[1] * bend,
+            S(0.5) * p[2] * b + S(0.75) * p[1] * slope + S(0.25) * p[0] * bend};
+  }
+  [[nodiscard]] S jerk(S b, S slope, S bend) const {
+    const auto y = pull(b, slope, bend);
+    return jerk_sq * b * (y[0] * b + y[1] * slope + y[2] * bend);
+  }
+};
+
+/// The limit of b at one place: its reciprocal, and its price.
+template <std::floating_point S>
+struct BasicSpeedShare {
+  S speed_sq{};
+  S price{};
+};
+
+/// The limits of a cell at its start, its middle and its end: three of the speed, and all others of one place
+/// after those of the other.
+template <std::floating_point S>
+struct BasicCellShares {
+  S length{};
+  std::span<BasicSpeedShare<S>> speeds;
+  std::span<BasicForceShare<S>> forces;
+
+  [[nodiscard]] std::span<BasicForceShare<S>> forces_at(std::size_t place) const {
+    return forces.subspan(place * (forces.size() / 3), forces.size() / 3);
+  }
 };
 
 namespace detail {
@@ -44,29 +96,6 @@ template <std::floating_point S>
 [[nodiscard]] constexpr S row(const std::array<S, 3>& numbers, const BasicCellSpeed<S>& b) {
   return numbers[0] * b.start + numbers[1] * b.middle + numbers[2] * b.end;
 }
-
-/// Squares of the limits at one place, as shares: each must stay below 1.
-template <std::floating_point S>
-struct Shares {
-  S b, slope, bend;            // of the law
-  std::array<S, 6> p;          // products of q', q'', q'''
-  S acceleration_sq, jerk_sq;  // reciprocal squares of the limits; 0: none
-
-  /// acceleration = q'' b + q' b'/2
-  [[nodiscard]] S acceleration() const {
-    return acceleration_sq * (p[3] * b * b + p[1] * b * slope + p[0] * slope * slope / S(4));
-  }
-  /// jerk / sqrt(b) = q''' b + 3/2 q'' b' + q' b''/2: the gradient of half its square
-  [[nodiscard]] std::array<S, 3> pull() const {
-    return {p[5] * b + S(1.5) * p[4] * slope + S(0.5) * p[2] * bend,
-            S(1.5) * p[4] * b + S(2.25) * p[3] * slope + S(0.75) * p[1] * bend,
-            S(0.5) * p[2] * b + S(0.75) * p[1] * slope + S(0.25) * p[0] * bend};
-  }
-  [[nodiscard]] S jerk() const {
-    const auto y = pull();
-    return jerk_sq * b * (y[0] * b + y[1] * slope + y[2] * bend);
-  }
-};
 
 /// The reciprocal of the highest b at a place, by the feed and by the limits of velocity.
 template <std::floating_point S, int N>
@@ -98,6 +127,34 @@ struct BasicPace {
   [[nodiscard]] constexpr S jerk() const { return force * force * force; }
 };
 
+/// How many limits `for_each_limit` has.
+template <std::floating_point S, int N>
+[[nodiscard]] std::size_t limit_count(const BasicMotionLimits<S, N>& limits) {
+  std::size_t count = 0;
+  for_each_limit(limits, [&](const auto&, const auto&) { ++count; });
+  return count;
+}
+
+/// Writes the limits of a cell, lowered to a pace, and leaves the prices.
+template <std::floating_point S, int N>
+void set_shares(const BasicSpeedCell<S, N>& cell, const BasicMotionLimits<S, N>& limits,
+                const BasicPace<S>& pace, const BasicCellShares<S>& shares) {
+  const S acceleration_sq = detail::reciprocal_square(pace.acceleration()),
+          jerk_sq = detail::reciprocal_square(pace.jerk());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const S at = cell.length * static_cast<S>(i) / S(2);
+    const auto first = cell.first_at(at), second = cell.second_at(at);
+    shares.speeds[i].speed_sq = detail::least_speed_sq(cell, first, limits) / (pace.speed * pace.speed);
+    auto force = shares.forces_at(i).begin();
+    for_each_limit(limits, [&](const BasicLimits<S>& own, const auto& inner) {
+      force->p = products(first, second, cell.third, inner);
+      force->acceleration_sq = acceleration_sq * detail::reciprocal_square(own.acceleration);
+      force->jerk_sq = jerk_sq * detail::reciprocal_square(own.jerk);
+      ++force;
+    });
+  }
+}
+
 /// The use of the limits at the start, the middle and the end of a cell; infinite where b is not positive.
 template <std::floating_point S, int N>
 [[nodiscard]] BasicUse<S> sampled_use(const BasicSpeedCell<S, N>& cell, const BasicMotionLimits<S, N>& limits,
@@ -111,14 +168,12 @@ template <std::floating_point S, int N>
     const auto first = cell.first_at(at), second = cell.second_at(at);
     use.include({std::sqrt(b * detail::least_speed_sq(cell, first, limits)), S(0), S(0)});
     for_each_limit(limits, [&](const BasicLimits<S>& own, const auto& inner) {
-      const detail::Shares<S> shares{b,
-                                     detail::row(places[i].slope, law),
-                                     detail::row(places[i].bend, law),
-                                     products(first, second, cell.third, inner),
+      const S slope = detail::row(places[i].slope, law), bend = detail::row(places[i].bend, law);
+      const BasicForceShare<S> share{products(first, second, cell.third, inner),
                                      detail::reciprocal_square(own.acceleration),
-                                     detail::reciprocal_square(own.jerk)};
-      use.include(
-          {S(0), std::sqrt(std::max(shares.acceleration(), S(0))), std::sqrt(std::max(shares.jerk(), S(0)))});
+                                     detail::reciprocal_square(own.jerk), S(0), S(0)};
+      use.include({S(0), std::sqrt(std::max(share.acceleration(b, slope), S(0))),
+                   std::sqrt(std::max(share.jerk(b, slope, bend), S(0)))});
     });
   }
   return use;
@@ -132,108 +187,95 @@ struct BasicCellCost {
   S barrier{};
 };
 
-template <std::floating_point S, int N>
-[[nodiscard]] BasicCellCost<S> cell_cost(const BasicSpeedCell<S, N>& cell,
-                                         const BasicMotionLimits<S, N>& limits, BasicPace<S> pace,
-                                         const BasicCellSpeed<S>& law) {
+template <std::floating_point S>
+[[nodiscard]] BasicCellCost<S> cell_cost(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law) {
   constexpr S none = std::numeric_limits<S>::infinity();
-  const auto places = detail::places(cell.length);
-  const S speed_sq = detail::reciprocal_square(pace.speed);
-  const S acceleration_sq = detail::reciprocal_square(pace.acceleration()),
-          jerk_sq = detail::reciprocal_square(pace.jerk());
+  const auto places = detail::places(shares.length);
   BasicCellCost<S> cost;
-  S room = S(1);  // the product of what is left of all limits
-  bool inside = true;
+  S room = S(1);   // the product of what is left of all limits
+  S least = S(1);  // of what is left of one
   for (std::size_t i = 0; i < 3; ++i) {
-    const S at = cell.length * static_cast<S>(i) / S(2), b = detail::row(places[i].b, law);
+    const S b = detail::row(places[i].b, law);
     if (!(b > S(0))) return {none, none};
-    const auto first = cell.first_at(at), second = cell.second_at(at);
+    const S slope = detail::row(places[i].slope, law), bend = detail::row(places[i].bend, law);
     const auto take = [&](S share) {
-      if (!(share < S(1))) inside = false;
       room *= S(1) - share;
+      least = std::min(least, S(1) - share);
     };
-    take(b * speed_sq * detail::least_speed_sq(cell, first, limits));
-    for_each_limit(limits, [&](const BasicLimits<S>& own, const auto& inner) {
-      const detail::Shares<S> shares{b,
-                                     detail::row(places[i].slope, law),
-                                     detail::row(places[i].bend, law),
-                                     products(first, second, cell.third, inner),
-                                     acceleration_sq * detail::reciprocal_square(own.acceleration),
-                                     jerk_sq * detail::reciprocal_square(own.jerk)};
-      if (shares.acceleration_sq > S(0)) take(shares.acceleration());
-      if (shares.jerk_sq > S(0)) take(shares.jerk());
-    });
-    cost.time += (i == 1 ? S(4) : S(1)) * cell.length / (S(6) * std::sqrt(b));
+    take(b * shares.speeds[i].speed_sq);
+    for (const BasicForceShare<S>& force : shares.forces_at(i)) {
+      take(force.acceleration(b, slope));
+      take(force.jerk(b, slope, bend));
+    }
+    cost.time += (i == 1 ? S(4) : S(1)) * shares.length / (S(6) * std::sqrt(b));
+    if (!(least > S(0))) return {none, none};
     if (room < S(1e-30)) {
-      if (!inside || !(room > S(0))) return {none, none};
+      if (!(room > S(0))) return {none, none};
       cost.barrier -= std::log(room);
       room = S(1);
     }
   }
-  if (!inside) return {none, none};
   cost.barrier -= std::log(room);
   return cost;
 }
 
-/// Gradient and Hessian of time + weight * barrier. All terms are convex but the jerk's: with u = b |y|^2 /
-/// J^2 and y = q''' b + 3/2 q'' b' + q' b''/2, linear in (b, b', b''), the Hessian of u is positive but for
-/// -2 u / b^2 in its first entry, which is left out.
-template <std::floating_point S, int N>
-[[nodiscard]] BasicCellModel<S> cell_model(const BasicSpeedCell<S, N>& cell,
-                                           const BasicMotionLimits<S, N>& limits, BasicPace<S> pace,
-                                           const BasicCellSpeed<S>& law, S weight) {
-  const auto places = detail::places(cell.length);
-  const S speed_sq = detail::reciprocal_square(pace.speed);
-  const S acceleration_sq = detail::reciprocal_square(pace.acceleration()),
-          jerk_sq = detail::reciprocal_square(pace.jerk());
+/// Gradient of time + weight * barrier, and the Hessian of the time and of the shares at their prices. The
+/// prices are kept near to what the barrier makes them, weight / (1 - share), by a factor `spread`: 1 gives
+/// the Hessian of the barrier itself. All terms are convex but the jerk's: with u = b |y|^2 / J^2 and y =
+/// q''' b + 3/2 q'' b' + q' b''/2, linear in (b, b', b''), the Hessian of u is positive but for -2 u / b^2 in
+/// its first entry, which is taken off what the time has there, as far as that goes.
+template <std::floating_point S>
+[[nodiscard]] BasicCellModel<S> cell_model(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law,
+                                           S weight, S spread) {
+  const auto places = detail::places(shares.length);
   BasicCellModel<S> model;
+  const auto settle = [&](S& price, S pressure) {
+    price = std::clamp(price, pressure / spread, pressure * spread);
+    return price;
+  };
   for (std::size_t i = 0; i < 3; ++i) {
     const detail::Place<S>& place = places[i];
-    const S at = cell.length * static_cast<S>(i) / S(2);
     const S b = detail::row(place.b, law), slope = detail::row(place.slope, law),
             bend = detail::row(place.bend, law);
-    const auto first = cell.first_at(at), second = cell.second_at(at);
     // By b, b' and b''.
     std::array<S, 3> g{};
     std::array<S, 6> H{};
-    const S w = (i == 1 ? S(4) : S(1)) * cell.length / S(6), root = S(1) / std::sqrt(b);
+    const S w = (i == 1 ? S(4) : S(1)) * shares.length / S(6), root = S(1) / std::sqrt(b);
     g[0] = -w * root / (S(2) * b);
-    H[0] = S(0.75) * w * root / (b * b);
-    const S cap = speed_sq * detail::least_speed_sq(cell, first, limits), left = cap / (S(1) - b * cap);
-    g[0] += weight * left;
-    H[0] += weight * left * left;
-    for_each_limit(limits, [&](const BasicLimits<S>& own, const auto& inner) {
-      const auto p = products(first, second, cell.third, inner);
-      const detail::Shares<S> shares{b,
-                                     slope,
-                                     bend,
-                                     p,
-                                     acceleration_sq * detail::reciprocal_square(own.acceleration),
-                                     jerk_sq * detail::reciprocal_square(own.jerk)};
-      if (const S k = shares.acceleration_sq; k > S(0)) {
-        const S f = S(1) / (S(1) - shares.acceleration());
-        const S x = f * k * (S(2) * p[3] * b + p[1] * slope), y = f * k * (p[1] * b + p[0] * slope / S(2));
-        g[0] += weight * x;
-        g[1] += weight * y;
-        H[0] += weight * (x * x + f * k * S(2) * p[3]);
-        H[1] += weight * (x * y + f * k * p[1]);
-        H[3] += weight * (y * y + f * k * p[0] / S(2));
+    S own = S(0.75) * w * root / (b * b);
+    const S cap = shares.speeds[i].speed_sq, left = S(1) / (S(1) - b * cap);
+    g[0] += weight * left * cap;
+    H[0] += settle(shares.speeds[i].price, weight * left) * left * cap * cap;
+    for (BasicForceShare<S>& force : shares.forces_at(i)) {
+      if (const S k = force.acceleration_sq; k > S(0)) {
+        const S f = S(1) / (S(1) - force.acceleration(b, slope));
+        const auto [x, y] = force.by_acceleration(b, slope);
+        const S pressure = weight * f, price = settle(force.acceleration_price, pressure);
+        g[0] += pressure * x;
+        g[1] += pressure * y;
+        H[0] += price * (f * x * x + k * S(2) * force.p[3]);
+        H[1] += price * (f * x * y + k * force.p[1]);
+        H[3] += price * (f * y * y + k * force.p[0] / S(2));
       }
-      if (const S k = shares.jerk_sq; k > S(0)) {
-        const auto y = shares.pull();
-        const S square = y[0] * b + y[1] * slope + y[2] * bend;
+      if (const S k = force.jerk_sq; k > S(0)) {
+        const auto& p = force.p;
+        const auto y = force.pull(b, slope, bend);
+        const S square = y[0] * b + y[1] * slope + y[2] * bend, two = S(2) * k;
         const S f = S(1) / (S(1) - k * b * square);
-        const S kf = k * f, two = S(2) * kf;
-        const std::array<S, 3> d{kf * (square + S(2) * b * y[0]), two * b * y[1], two * b * y[2]};
-        for (std::size_t q = 0; q < 3; ++q) g[q] += weight * d[q];
-        H[0] += weight * (d[0] * d[0] + two * (b * p[5] + S(2) * y[0] + square / b));
-        H[1] += weight * (d[0] * d[1] + two * (S(1.5) * b * p[4] + y[1]));
-        H[2] += weight * (d[0] * d[2] + two * (S(0.5) * b * p[2] + y[2]));
-        H[3] += weight * (d[1] * d[1] + two * S(2.25) * b * p[3]);
-        H[4] += weight * (d[1] * d[2] + two * S(0.75) * b * p[1]);
-        H[5] += weight * (d[2] * d[2] + two * S(0.25) * b * p[0]);
+        const S pressure = weight * f, price = settle(force.jerk_price, pressure), pf = price * f;
+        const std::array<S, 3> d{k * (square + S(2) * b * y[0]), two * b * y[1], two * b * y[2]};
+        for (std::size_t q = 0; q < 3; ++q) g[q] += pressure * d[q];
+        const S bent = price * two;
+        own -= bent * square / b;
+        H[0] += pf * d[0] * d[0] + bent * (b * p[5] + S(2) * y[0] + square / b);
+        H[1] += pf * d[0] * d[1] + bent * (S(1.5) * b * p[4] + y[1]);
+        H[2] += pf * d[0] * d[2] + bent * (S(0.5) * b * p[2] + y[2]);
+        H[3] += pf * d[1] * d[1] + bent * S(2.25) * b * p[3];
+        H[4] += pf * d[1] * d[2] + bent * S(0.75) * b * p[1];
+        H[5] += pf * d[2] * d[2] + bent * S(0.25) * b * p[0];
       }
-    });
+    }
+    H[0] += std::max(own, S(0));
     // To the Bezier coefficients.
     const auto& [r0, r1, r2] = place;
     std::size_t entry = 0;
@@ -246,6 +288,33 @@ template <std::floating_point S, int N>
     }
   }
   return model;
+}
+
+/// Moves the prices by a part of the Newton step that belongs to a step of the law: to where price (1 -
+/// share) is the weight, to first order.
+template <std::floating_point S>
+void move_prices(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law,
+                 const BasicCellSpeed<S>& step, S weight, S part) {
+  const auto places = detail::places(shares.length);
+  const auto move = [&](S& price, S left, S rise) {
+    price += part * ((weight + price * rise) / left - price);
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const S b = detail::row(places[i].b, law), slope = detail::row(places[i].slope, law),
+            bend = detail::row(places[i].bend, law);
+    const S db = detail::row(places[i].b, step), dslope = detail::row(places[i].slope, step),
+            dbend = detail::row(places[i].bend, step);
+    const S cap = shares.speeds[i].speed_sq;
+    move(shares.speeds[i].price, S(1) - b * cap, db * cap);
+    for (BasicForceShare<S>& force : shares.forces_at(i)) {
+      const auto [x, y] = force.by_acceleration(b, slope);
+      move(force.acceleration_price, S(1) - force.acceleration(b, slope), x * db + y * dslope);
+      const auto pull = force.pull(b, slope, bend);
+      const S square = pull[0] * b + pull[1] * slope + pull[2] * bend, k = force.jerk_sq;
+      move(force.jerk_price, S(1) - k * b * square,
+           k * (square * db + S(2) * b * (pull[0] * db + pull[1] * dslope + pull[2] * dbend)));
+    }
+  }
 }
 
 }  // namespace cncplan::smooth

@@ -29,8 +29,9 @@ struct BasicSpeedProblem {
 
 template <std::floating_point S>
 struct BasicSpeedOptions {
-  S gap = S(1e-3);   ///< how far from the least time, as a share of it, about
-  int rounds = 100;  ///< the most Newton steps of a window
+  S gap = S(1e-3);     ///< how far from the least time, as a share of it, about
+  bool proven = true;  ///< that the phases of the law keep the limits, not only the law at three places
+  int rounds = 100;    ///< the most Newton steps of a window
 };
 
 /// What a window's optimisation came to.
@@ -41,23 +42,23 @@ struct BasicWindowResult {
   bool converged{};
 };
 
-/// Room for windows of up to so many coefficients: eleven numbers each.
+/// Room for windows, caller-owned.
 template <std::floating_point S>
-class BasicWindowMemory {
- public:
-  static constexpr std::size_t numbers = 11;
+struct BasicWindowMemory {
+  std::span<S> numbers;                  ///< eight for each coefficient
+  std::span<BasicSpeedShare<S>> speeds;  ///< three
+  std::span<BasicForceShare<S>> forces;  ///< three for each limit that there is
 
-  explicit BasicWindowMemory(std::span<S> memory) : memory_(memory), size_(memory.size() / numbers) {}
+  static constexpr std::size_t rooms = 8;
 
-  [[nodiscard]] std::size_t capacity() const { return size_; }
-  /// Room number `index` of up to `capacity()` numbers.
-  [[nodiscard]] std::span<S> room(std::size_t index, std::size_t count) const {
-    return memory_.subspan(index * size_, count);
+  /// How many coefficients there is room for.
+  [[nodiscard]] std::size_t capacity(std::size_t limits) const {
+    return std::min({numbers.size() / rooms, speeds.size() / 3, forces.size() / (3 * limits)});
   }
-
- private:
-  std::span<S> memory_;
-  std::size_t size_;
+  /// Room number `index` for numbers.
+  [[nodiscard]] std::span<S> room(std::size_t index, std::size_t count) const {
+    return numbers.subspan(index * (numbers.size() / rooms), count);
+  }
 };
 
 namespace detail {
@@ -92,126 +93,126 @@ void solve_banded(std::span<S> diagonal, std::span<S> below, std::span<S> second
 }  // namespace detail
 
 /// Finds the fastest law between coefficients that stay: `law` are the coefficients of all cells, of which
-/// [first, last) move. Each step is tested against the very function whose gradient made it. Where the law
-/// breaks limits when it comes, these are raised until it does not, and come down as it gets better; a law
-/// that keeps them keeps them for good. b > 0 throughout.
+/// [first, last) move. The law keeps the limits, lowered to the paces, strictly at the start, the middle and
+/// the end of each cell when it comes and when it goes. Where its phases do not, the pace of the cell is
+/// lowered, and the law goes back towards the last one that was proven; the paces stay lowered.
+///
+/// The steps are Newton's for the multipliers too (primal and dual); each is tested against the very function
+/// of which it has the gradient.
 template <std::floating_point S, int N>
 BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<S> law, std::size_t first,
                               std::size_t last, const BasicSpeedOptions<S>& options,
                               const BasicWindowMemory<S>& memory) {
-  const std::size_t count = std::min(last - first, memory.capacity() - 4);
-  const auto gradient = memory.room(0, count), diagonal = memory.room(1, count),
-             below = memory.room(2, count), second = memory.room(3, count), step = memory.room(4, count);
+  const std::size_t limits = limit_count(*problem.limits);
   // Two coefficients on each side are read beside those that move.
-  const auto trial = memory.room(5, count + 4);
+  const std::size_t count = std::min(last - first, memory.capacity(limits) - 4);
+  const auto gradient = memory.room(0, count), diagonal = memory.room(1, count),
+             below = memory.room(2, count), second = memory.room(3, count), kept = memory.room(4, count);
   const std::size_t cells = problem.cells.size();
   const std::size_t cell0 = first >= 2 ? first - 2 : 0;
   const std::size_t cell1 = std::min(first + count, cells);  // cells [cell0, cell1) read what moves
-  const auto speed_share = memory.room(6, cell1 - cell0), force_share = memory.room(7, cell1 - cell0);
-  const auto kept = memory.room(8, count), kept_speed = memory.room(9, cell1 - cell0),
-             kept_force = memory.room(10, cell1 - cell0);
   const std::size_t low = cell0, high = std::min(cell1 + 2, law.size());
-  const std::span<const S> tried(trial.data(), high - low);
-  const auto lengths = [&](std::size_t cell) {
-    return std::array<S, 3>{cell > 0 ? problem.cells[cell - 1].length : S(0), problem.cells[cell].length,
-                            cell + 1 < cells ? problem.cells[cell + 1].length : S(0)};
+  const auto trial = memory.room(5, high - low), step = memory.room(6, high - low);
+  // Of each cell the part of its length in that of it and the cell before.
+  const auto parts = memory.room(7, cell1 - cell0 + 1);
+  for (std::size_t cell = cell0; cell <= cell1; ++cell) {
+    const S before = cell > 0 ? problem.cells[cell - 1].length : S(0);
+    const S own = cell < cells ? problem.cells[cell].length : S(0);
+    parts[cell - cell0] = before / (before + own);
+  }
+  const auto shares_of = [&](std::size_t cell) {
+    const std::size_t i = cell - cell0;
+    return BasicCellShares<S>{problem.cells[cell].length, memory.speeds.subspan(3 * i, 3),
+                              memory.forces.subspan(3 * limits * i, 3 * limits)};
   };
-  const auto paces = [&](std::size_t cell) {
-    return BasicPace<S>{speed_share[cell - cell0], force_share[cell - cell0]};
+  const auto set = [&](std::size_t cell) {
+    set_shares(problem.cells[cell], *problem.limits, problem.paces[cell], shares_of(cell));
   };
-  // Cells whose limits are raised are pushed off them harder and harder until they no longer need to be.
-  S push = S(10);
-  const auto above = [&](std::size_t cell) {
-    return speed_share[cell - cell0] > problem.paces[cell].speed ||
-           force_share[cell - cell0] > problem.paces[cell].force;
+  // b in a cell from the coefficients from number `low` on.
+  const auto speed_in = [&](std::size_t cell, std::span<const S> numbers) {
+    const std::size_t i = cell - cell0;
+    const S a = parts[i], z = parts[i + 1];
+    const S c0 = numbers[i], c1 = numbers[i + 1], c2 = numbers[i + 2];
+    return BasicCellSpeed<S>{c0 + a * (c1 - c0), c1, c1 + z * (c2 - c1)};
   };
-  const auto cost_of = [&](std::span<const S> numbers, std::size_t offset) {
+  const std::span<const S> own = std::span<const S>(law).subspan(low, high - low);
+  const auto cost_of = [&](std::span<const S> numbers) {
     BasicCellCost<S> cost;
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto [h0, h1, h2] = lengths(cell);
-      const auto part = cell_cost(problem.cells[cell], *problem.limits, paces(cell),
-                                  cell_speed(numbers, cell - offset, h0, h1, h2));
+      const auto part = cell_cost(shares_of(cell), speed_in(cell, numbers));
       cost.time += part.time;
-      cost.barrier += above(cell) ? push * part.barrier : part.barrier;
+      cost.barrier += part.barrier;
       if (!(cost.barrier < std::numeric_limits<S>::infinity())) break;
     }
     return cost;
   };
-  // The limits of each cell, raised where the law needs it. Whether any are.
-  const auto raise = [&] {
-    bool raised = false;
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const std::size_t i = cell - cell0;
-      const BasicPace<S> wanted = problem.paces[cell];
-      if (speed_share[i] == wanted.speed && force_share[i] == wanted.force) continue;
-      const auto [h0, h1, h2] = lengths(cell);
-      const BasicUse<S> use = sampled_use(problem.cells[cell], *problem.limits,
-                                          cell_speed(std::span<const S>(law), cell, h0, h1, h2));
-      constexpr S room = S(1.02);
-      const S force = use.force();
-      speed_share[i] = use.velocity < wanted.speed ? wanted.speed : use.velocity * room;
-      force_share[i] = force < wanted.force ? wanted.force : force * room;
-      raised = raised || speed_share[i] != wanted.speed || force_share[i] != wanted.force;
+  const auto take = [&](std::span<const S> numbers) {
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(first - low), count,
+                law.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  const auto keep = [&] {
+    std::copy_n(law.begin() + static_cast<std::ptrdiff_t>(first), count, kept.begin());
+  };
+  // Between the law that is kept and the present one.
+  const auto between = [&](S share) {
+    std::copy(own.begin(), own.end(), trial.begin());
+    for (std::size_t i = 0; i < count; ++i) {
+      S& number = trial[first - low + i];
+      number = kept[i] + share * (number - kept[i]);
     }
-    return raised;
+    return std::span<const S>(trial);
   };
   constexpr S margin = S(1e-4);
-  // Whether the phases of the law keep the limits, by proof. What they use beyond the samples of the law is
-  // taken off its limits; but cells that hang on coefficients that stay are left, there may be no way to
-  // obey.
-  const auto prove = [&] {
+  int failures = 0;  // of the present weight
+  bool failed = false;
+  // By proof. Phases use a little more of the limits than the law does at three places: that comes off the
+  // limits of their cell before the law comes to them, so that it keeps what is left as a rule. The law that
+  // is kept keeps it in any case.
+  const auto prove = [&](std::span<const S> numbers, bool pace_too) {
     bool proven = true;
-    const std::size_t from = first <= 2 ? cell0 : cell0 + 2;
-    const std::size_t to = first + count + 2 >= law.size() ? cell1 : cell1 - 2;
+    const std::span<const S> before = pace_too ? between(S(0)) : numbers;
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto [h0, h1, h2] = lengths(cell);
-      const BasicCellSpeed<S> b = cell_speed(std::span<const S>(law), cell, h0, h1, h2);
+      const BasicCellSpeed<S> b = speed_in(cell, numbers);
+      const BasicUse<S> sampled = sampled_use(problem.cells[cell], *problem.limits, b);
+      if (sampled.force() < S(0.8) && sampled.velocity < S(0.99)) continue;  // far from all limits
       BasicUse<S> use;
-      emit_cell(b, h1, [&](const BasicPhase<S>& phase) {
+      emit_cell(b, problem.cells[cell].length, [&](const BasicPhase<S>& phase) {
         use.include(use_of(phase, problem.cells[cell], *problem.limits));
       });
       proven = proven && use.slow_down() <= S(1);
-      if (cell < from || cell >= to) continue;
-      const BasicUse<S> sampled = sampled_use(problem.cells[cell], *problem.limits, b);
+      if (!pace_too && !proven) return false;
+      if (!pace_too) continue;
+      const BasicUse<S> old = sampled_use(problem.cells[cell], *problem.limits, speed_in(cell, before));
+      const auto paced = [](S at_places, S in_phases, S of_kept, S less) {
+        return std::max(std::min(at_places / in_phases, S(1)) * (S(1) - less), of_kept * (S(1) + less));
+      };
       BasicPace<S>& pace = problem.paces[cell];
-      // Never up again: two cells that take turns would keep each other from settling.
-      if (use.velocity > S(1))
-        pace.speed = std::min(pace.speed, sampled.velocity / use.velocity * (S(1) - margin / S(10)));
-      if (use.force() > S(1))
-        pace.force = std::min(pace.force, std::max(sampled.force() / use.force(), S(0.5)) * (S(1) - margin));
+      const BasicPace<S> most = failed ? pace : BasicPace<S>{};
+      pace = {std::min(most.speed, paced(sampled.velocity, use.velocity, old.velocity, margin / S(10))),
+              std::min(most.force, paced(sampled.force(), use.force(), old.force(), margin))};
+      set(cell);
     }
     return proven;
   };
-  std::fill(speed_share.begin(), speed_share.end(), S(0));
-  bool raised = raise();
-  // What a window that gets no further goes back to: the law as it came, or the last that was proven.
-  const auto save = [&] {
-    std::copy_n(law.begin() + static_cast<std::ptrdiff_t>(first), count, kept.begin());
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      kept_speed[cell - cell0] = problem.paces[cell].speed;
-      kept_force[cell - cell0] = problem.paces[cell].force;
-    }
-  };
-  save();
-  constexpr int patience = 25;
-  int waiting = 0;
-  BasicCellCost<S> cost = cost_of(law, 0);
+
+  for (std::size_t cell = cell0; cell < cell1; ++cell) set(cell);
+  keep();
+  BasicCellCost<S> cost = cost_of(own);
   BasicWindowResult<S> result{cost.time, 0, false};
   if (!(cost.barrier < std::numeric_limits<S>::infinity()) || count == 0) return result;
-  const auto terms = static_cast<S>(9 * (cell1 - cell0));
+  const auto terms = static_cast<S>(3 * (1 + 2 * limits) * (cell1 - cell0));
   S weight = S(0.5) * cost.time / terms;
+  constexpr S far = S(1e4);  // of the prices from what the barrier would have
+  S spread = S(1);
   for (; result.rounds < options.rounds; ++result.rounds) {
     std::fill(gradient.begin(), gradient.end(), S(0));
     std::fill(diagonal.begin(), diagonal.end(), S(0));
     std::fill(below.begin(), below.end(), S(0));
     std::fill(second.begin(), second.end(), S(0));
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto [h0, h1, h2] = lengths(cell);
-      const auto model = cell_model(problem.cells[cell], *problem.limits, paces(cell),
-                                    cell_speed(std::span<const S>(law), cell, h0, h1, h2),
-                                    above(cell) ? push * weight : weight);
+      const auto model = cell_model(shares_of(cell), speed_in(cell, own), weight, spread);
       // start = (1 - a) c0 + a c1, middle = c1, end = (1 - z) c1 + z c2
-      const S a = h0 / (h0 + h1), z = h1 / (h1 + h2), c = S(1) - a, y = S(1) - z;
+      const S a = parts[cell - cell0], z = parts[cell - cell0 + 1], c = S(1) - a, y = S(1) - z;
       const auto& [g0, g1, g2] = model.gradient;
       const auto& [k00, k01, k02, k11, k12, k22] = model.hessian;
       const std::array<S, 3> g{c * g0, a * g0 + g1 + y * g2, z * g2};
@@ -228,55 +229,68 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
         if (q < 1 && at + 2 < count) second[at] += c * z * k02;
       }
     }
-    for (std::size_t i = 0; i < count; ++i) step[i] = -gradient[i];
-    detail::solve_banded(diagonal, below, second, step);
+    std::fill(step.begin(), step.end(), S(0));
+    const auto moving = step.subspan(first - low, count);
+    for (std::size_t i = 0; i < count; ++i) moving[i] = -gradient[i];
+    detail::solve_banded(diagonal, below, second, moving);
     S decrease = S(0);
-    for (std::size_t i = 0; i < count; ++i) decrease -= gradient[i] * step[i];
+    for (std::size_t i = 0; i < count; ++i) decrease -= gradient[i] * moving[i];
     const S before = cost.time + weight * cost.barrier;
     S share = S(1);
     bool moved = false;
-    for (int halving = 0; halving < 30 && !moved; ++halving, share *= S(0.5)) {
-      for (std::size_t i = low; i < high; ++i)
-        trial[i - low] = law[i] + (i >= first && i - first < count ? share * step[i - first] : S(0));
-      const BasicCellCost<S> next = cost_of(tried, low);
+    for (int halving = 0; halving < 20; ++halving, share *= S(0.5)) {
+      for (std::size_t i = 0; i < trial.size(); ++i) trial[i] = own[i] + share * step[i];
+      const BasicCellCost<S> next = cost_of(trial);
       if (!(next.barrier < std::numeric_limits<S>::infinity())) continue;
       if (!(next.time + weight * next.barrier < before - S(1e-4) * share * decrease)) continue;
       moved = true;
       cost = next;
+      break;
     }
-    if (moved)
-      std::copy_n(trial.begin() + static_cast<std::ptrdiff_t>(first - low), count,
-                  law.begin() + static_cast<std::ptrdiff_t>(first));
-    if (raised) {
-      raised = raise();
-      push = raised ? std::min(S(2) * push, S(1e6)) : S(10);
-      cost = cost_of(law, 0);
-      if (raised && ++waiting > patience) break;
-      if (moved) continue;
-    } else if (moved && decrease > weight * terms * S(0.02)) {
-      continue;
+    if (moved) {
+      for (std::size_t cell = cell0; cell < cell1; ++cell)
+        move_prices(shares_of(cell), speed_in(cell, own), speed_in(cell, std::span<const S>(step)), weight,
+                    share);
+      take(trial);
+      spread = far;
+      if (decrease > weight * terms * S(0.02)) continue;
     }
-    waiting = 0;
-    if (weight * terms < S(0.1) * cost.time) {
-      const bool proven = prove();
-      if (proven) save();
-      if (proven && weight * terms < options.gap * cost.time) {
+    if (!options.proven || !(weight * terms < S(0.3) * cost.time)) {
+      if (weight * terms < options.gap * cost.time) {
         result.converged = true;
         break;
       }
-      raised = raise();
-      cost = cost_of(law, 0);
-      if (raised || weight * terms < options.gap * cost.time) continue;
+      weight *= S(0.2);
+      continue;
+    }
+    const bool proven = prove(own, true);
+    cost = cost_of(own);
+    bool go_on = proven && cost.barrier < std::numeric_limits<S>::infinity();
+    if (!go_on) {
+      // Back to where it is, towards the law that is kept; once more to the optimum under the new paces.
+      S back = S(0.9);
+      for (int halving = 0; halving < 12; ++halving, back *= S(0.8)) {
+        cost = cost_of(between(back));
+        if (cost.barrier < std::numeric_limits<S>::infinity() && prove(trial, false)) break;
+        if (halving == 11) cost = cost_of(between(S(0)));
+      }
+      take(trial);
+      spread = S(1);
+      failed = true;
+      go_on = ++failures > 2;
+    }
+    keep();
+    if (!go_on) continue;
+    failures = 0;
+    if (weight * terms < options.gap * cost.time) {
+      result.converged = true;
+      break;
     }
     weight *= S(0.2);
   }
-  if (!result.converged) {
-    std::copy(kept.begin(), kept.end(), law.begin() + static_cast<std::ptrdiff_t>(first));
-    for (std::size_t cell = cell0; cell < cell1; ++cell)
-      problem.paces[cell] = {kept_speed[cell - cell0], kept_force[cell - cell0]};
-    std::fill(speed_share.begin(), speed_share.end(), S(0));
-    raise();
-    cost = cost_of(law, 0);
+  if (!result.converged && options.proven) {
+    take(between(S(0)));
+    cost = cost_of(own);
   }
   result.time = cost.time;
   return result;
