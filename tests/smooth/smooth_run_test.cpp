@@ -191,4 +191,45 @@ TEST_CASE("random programs keep limits and tolerance") {
   }
 }
 
+TEST_CASE("rapids beside slow feeds are planned as any others") {
+  // Slow cuts with rapids between, as on a lathe; V^2 changes by three decades.
+  Program program;
+  program.limits.tool = {30, 1000, 1e4};
+  Vector3 at = Vector3::Zero();
+  const auto to = [&](double x, double y, double feed) {
+    const Vector3 next(x, y, 0);
+    program.line(at, next, feed);
+    at = next;
+  };
+  for (int i = 0; i < 4; ++i) {
+    const double y = i;
+    to(12, y, 30);
+    to(13, y, 50.0 / 60);
+    to(13.5, y + 0.2, 50.0 / 60);
+    to(13, y + 0.4, 75.0 / 60);
+    to(0, y + 0.5, 30);
+    to(0, y + 1, 30);
+  }
+  const Run run = smooth_run<Segment>(program.blocks(), program.limits);
+  // Stopping at each corner costs sqrt(V / J) at both ends of each line.
+  double stopping = 0, at_feed = 0;
+  for (std::size_t i = 0; i < program.paths.size(); ++i) {
+    at_feed += program.paths[i].length() / program.feeds[i];
+    stopping += program.paths[i].length() / program.feeds[i] +
+                2 * std::sqrt(program.feeds[i] / program.limits.tool.jerk);
+  }
+  CHECK(run.duration > at_feed);
+  CHECK(run.duration < 0.2 * at_feed + 0.8 * stopping);
+  CHECK(run.use.slow_down() <= 1);
+  CHECK(run.deviation <= 1);
+  // The work is bounded: no window gives up, none needs more than some tens of steps.
+  CHECK(run.speed.start_slow_down < 1.1);
+  CHECK(run.speed.unconverged == 0);
+  CHECK(run.speed.rounds < 70 * static_cast<int>(run.speed.windows));
+  const Found found = differences(run, program);
+  CHECK(found.velocity < 1 + 1e-6);
+  CHECK(found.acceleration < 1 + 1e-6);
+  CHECK(found.jerk < 1 + 1e-4);
+}
+
 }  // namespace
