@@ -232,4 +232,19 @@ TEST_CASE("rapids beside slow feeds are planned as any others") {
   CHECK(found.jerk < 1 + 1e-4);
 }
 
+TEST_CASE("a slow line between rapids costs its ramps and no more") {
+  Program program;
+  program.limits.tool = {30, 1000, 1e4};
+  const double slow = 50.0 / 60;
+  program.line(Vector3(0, 0, 0), Vector3(20, 0, 0), 30);
+  program.line(Vector3(20, 0, 0), Vector3(21, 0, 0), slow);
+  program.line(Vector3(21, 0, 0), Vector3(41, 0, 0), 30);
+  const Run run = smooth_run<Segment>(program.blocks(), program.limits);
+  // A ramp from v to 30 takes 2 sqrt((30 - v) / J), at the mean of both speeds.
+  const auto loss = [](double v) { return 2 * std::sqrt((30 - v) / 1e4) * (1 - (30 + v) / 60); };
+  const double least = 1 / slow + 40.0 / 30 + 2 * loss(0) + 2 * loss(slow);
+  CHECK(run.duration > least * (1 - 1e-6));
+  CHECK(run.duration < least + 0.015);
+}
+
 }  // namespace
