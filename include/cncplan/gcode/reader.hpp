@@ -222,10 +222,6 @@ class Reader {
     for (const char letter : {'$', 'S', 'T'})
       if (block_.has(letter) && !(letter == 'S' && dwells_by_s(block_)))
         emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
-    warnings_.tell(block_, modal_, motion, alphabet_, [&](Diagnostic about) {
-      about.line = line_;
-      emit(Warning{about});
-    });
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);
@@ -250,7 +246,11 @@ class Reader {
   Out execute(Code motion, Out out) {
     const auto emit = emitter(out);
     const Code non_modal = block_.code(Group::non_modal);
-    if (!block_.only(Group::motion) || (block_.letters() & bits("ST")) != 0) prepare(emit);
+    warnings_.tell(block_, modal_, motion, alphabet_, [&](Diagnostic about) {
+      about.line = line_;
+      emit(Warning{about});
+    });
+    if (!block_.only(Group::motion) || (block_.letters() & bits("ST$")) != 0) prepare(emit);
     if (!is_cycle(motion) && motion != no_code) cycles_.end_series();
     if (is_arc(motion)) {
       turn(motion, emit);
