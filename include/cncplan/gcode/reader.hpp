@@ -375,15 +375,9 @@ class Reader {
     if (block_.code(Group::non_modal) == code(10) && sets_tool() &&
         !has_room_for(dialect_, static_cast<int>(block_.number('P'))))
       return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
-    if (place_.rotated() && modal.plane != Plane::xy &&
-        (is_arc(motion) || is_spline(motion) || is_nurbs(motion) || modal.compensation != code(40)))
-      return detail::conflict(
-          Diagnostic{
-              {{}, "G", modal.plane == Plane::yz ? 19.0 : 18.0, 0.0}, 0, detail::motion_column(block_)},
-          "rotation of G10 R");
-    if (names_polar(block_) && motion != no_code && position()[0] == 0.0 && position()[1] == 0.0 &&
-        (modal.incremental ? !is_cycle(motion) : !block_.has('^')))
-      return detail::missing("^", block_.first_column(polar_words));
+    if (place_.rotated())
+      if (auto ok = check_rotated(block_, modal, motion); !ok) return ok;
+    if (auto ok = check_polar(block_, modal, motion, position()); !ok) return ok;
     if (auto ok = splines_.check(block_, modal, motion, before); !ok) return ok;
     return is_cycle(motion) ? cycles_.check(block_, modal, dialect_, motion, position())
                             : Expected<void, Diagnostic>();
@@ -599,9 +593,7 @@ class Reader {
   double tool_radius_{};  ///< of cutter compensation, as in `Motion`
   Letters doubtful_{};    ///< axes whose place a line in error left open
   int line_{};
-  bool percent_seen_{};
-  bool words_seen_{};
-  bool finished_{};
+  bool percent_seen_{}, words_seen_{}, finished_{};
 };
 
 }  // namespace cncplan::gcode

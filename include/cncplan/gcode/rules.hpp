@@ -501,4 +501,22 @@ using Check = Expected<void, Diagnostic>;
   return motion;
 }
 
+/// Curves and cutter compensation of a rotated work system are made in XY alone.
+[[nodiscard]] inline Expected<void, Diagnostic> check_rotated(const Block& block, const Modal& modal,
+                                                              Code motion) {
+  const bool curves = is_arc(motion) || is_spline(motion) || is_nurbs(motion);
+  if (modal.plane == Plane::xy || !(curves || modal.compensation != code(40))) return {};
+  const double plane = modal.plane == Plane::yz ? 19.0 : 18.0;
+  return detail::conflict(Diagnostic{{{}, "G", plane, 0.0}, 0, detail::motion_column(block)},
+                          "rotation of G10 R");
+}
+
+/// The origin has no angle: a motion from `here` that names polar coordinates needs one of its own there.
+[[nodiscard]] inline Expected<void, Diagnostic> check_polar(const Block& block, const Modal& modal,
+                                                            Code motion, const Position& here) {
+  if (!names_polar(block) || motion == no_code || here[0] != 0.0 || here[1] != 0.0) return {};
+  if (modal.incremental ? is_cycle(motion) : block.has('^')) return {};
+  return detail::missing("^", block.first_column(polar_words));
+}
+
 }  // namespace cncplan::gcode
