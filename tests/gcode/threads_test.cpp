@@ -22,8 +22,8 @@ std::string steps(std::string_view program) {
   std::string all = reading.error;
   for (const gcode::Item& item : reading.items) {
     if (const auto* motion = std::get_if<gcode::Motion>(&item))
-      all += std::string(motion->kind == gcode::MotionKind::rapid ? " r" : " f") +
-             std::to_string(std::lround(motion->end[2] * 1000.0));
+      all.append(motion->kind == gcode::MotionKind::rapid ? " r" : " f")
+          .append(std::to_string(std::lround(motion->end[2] * 1000.0)));
     if (const auto* word = std::get_if<gcode::Word>(&item); word != nullptr && word->letter == 'M')
       all += " M" + std::to_string(std::lround(word->number));
     if (std::holds_alternative<gcode::Dwell>(item)) all += " d";
@@ -68,9 +68,11 @@ TEST_CASE("a thread is cut pass by pass to its depth") {
   const auto reading = test::read("G18 S60 M3\nG0 X10 Z0\nG76 P1 Z-8 I-1 J.3 K.4 H1");
   std::string places = reading.error;
   for (const auto& motion : reading.motions())
-    places += (motion.kind == gcode::MotionKind::rapid ? "r" : "f") +
-              std::to_string(std::lround(motion.end[0] * 10.0)) + ',' +
-              std::to_string(std::lround(motion.end[2])) + ' ';
+    places.append(motion.kind == gcode::MotionKind::rapid ? "r" : "f")
+        .append(std::to_string(std::lround(motion.end[0] * 10.0)))
+        .append(",")
+        .append(std::to_string(std::lround(motion.end[2])))
+        .append(" ");
   CHECK(places ==
         "r100,0 "
         "r101,0 r87,0 f87,-8 r101,-8 "
