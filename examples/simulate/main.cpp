@@ -67,10 +67,7 @@ void settle(Options& options, const support::Machine& machine) {
 
 int run(Options options) {
   support::Machine file;
-  if (options.machine)
-    file = support::read_machine(*options.machine);
-  else
-    file.dialect.lenient = true;  // of some control or other
+  if (options.machine) file = support::read_machine(*options.machine);
   settle(options, file);
   if (options.report || options.serve) report::check_libraries();
   if (options.serve) serve::check_libraries();
