@@ -15,7 +15,7 @@ Vector3 end_of(std::string_view program) {
   INFO(program << '\n' << reading.error);
   REQUIRE(reading.error.empty());
   REQUIRE_FALSE(reading.motions().empty());
-  const gcode::Motion& last = reading.motions().back();
+  const gcode::Motion last = reading.motions().back();
   return Vector3(last.end[0], last.end[1], last.end[2]) +
          Vector3(last.offset[0], last.offset[1], last.offset[2]);
 }
