@@ -31,11 +31,11 @@ auto cells_of(const std::vector<bench::Block>& blocks) {
 }
 
 // Looks ahead over all cells.
-bool look_ahead(const plan::BasicCells<double>& cells, std::vector<plan::Gate>& gates, Spans& spans) {
+bool look_ahead(const plan::BasicCells<double>& cells, std::vector<plan::Waypoint>& waypoints, Spans& spans) {
   spans.clear();
-  gates.resize(cells.caps.size() + 1);
-  return plan::plan_spans(std::span<const plan::BlockCaps>(cells.caps), plan::SevenPhase{}, std::span(gates),
-                          std::back_inserter(spans))
+  waypoints.resize(cells.caps.size() + 1);
+  return plan::plan_spans(std::span<const plan::BlockCaps>(cells.caps), plan::SevenPhase{},
+                          std::span(waypoints), std::back_inserter(spans))
       .has_value();
 }
 
@@ -44,7 +44,7 @@ bool plan_through(std::size_t window, const std::vector<bench::Block>& blocks, S
   const auto cells = cells_of(blocks);
   if (!cells) return false;
   std::vector<plan::BlockCaps> ahead(window);
-  std::vector<plan::Gate> first(window + 1), second(window + 1);
+  std::vector<plan::Waypoint> first(window + 1), second(window + 1);
   spans.clear();
   plan::StreamPlanner<double> planner({ahead, first, second});
   const auto out = std::back_inserter(spans);
@@ -56,11 +56,11 @@ bool plan_through(std::size_t window, const std::vector<bench::Block>& blocks, S
 // Caps and spans over blocks in memory. An item is a block.
 void plan_ball(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
-  std::vector<plan::Gate> gates;
+  std::vector<plan::Waypoint> waypoints;
   Spans spans;
   for (auto _ : state) {
     const auto cells = cells_of(blocks);
-    if (!cells || !look_ahead(*cells, gates, spans)) state.SkipWithError("the program has no plan");
+    if (!cells || !look_ahead(*cells, waypoints, spans)) state.SkipWithError("the program has no plan");
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
@@ -78,10 +78,10 @@ BENCHMARK(plan_ball_cells)->Name("plan/ball/cells")->Unit(benchmark::kMillisecon
 void plan_ball_look_ahead(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
   const auto cells = cells_of(blocks);
-  std::vector<plan::Gate> gates;
+  std::vector<plan::Waypoint> waypoints;
   Spans spans;
   for (auto _ : state)
-    if (!cells || !look_ahead(*cells, gates, spans)) state.SkipWithError("the program has no plan");
+    if (!cells || !look_ahead(*cells, waypoints, spans)) state.SkipWithError("the program has no plan");
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(plan_ball_look_ahead)->Name("plan/ball/look_ahead")->Unit(benchmark::kMillisecond);
@@ -107,13 +107,13 @@ void plan_random(benchmark::State& state) {
     programs.push_back(test::random_program(random, test::LimitSpread::wide, 4000));
     blocks += static_cast<std::int64_t>(programs.back().size());
   }
-  std::vector<plan::Gate> gates(4001);
+  std::vector<plan::Waypoint> waypoints(4001);
   std::vector<plan::Span> spans;
   for (auto _ : state)
     for (const auto& program : programs) {
       spans.clear();
       const auto planned = plan::plan_spans(std::span<const plan::BlockCaps>(program), plan::SevenPhase{},
-                                            std::span(gates), std::back_inserter(spans));
+                                            std::span(waypoints), std::back_inserter(spans));
       if (!planned) state.SkipWithError("a program has no plan");
     }
   state.SetItemsProcessed(state.iterations() * blocks);

@@ -179,8 +179,8 @@ class Run {
       std::vector<double> speeds(caps.size() + 1);
       refuse(published::plan_blocks(all, law, std::span(speeds), std::back_inserter(spans)));
     } else {
-      std::vector<plan::Gate> gates(caps.size() + 1);
-      refuse(plan::plan_spans(all, law, std::span(gates), std::back_inserter(spans)));
+      std::vector<plan::Waypoint> waypoints(caps.size() + 1);
+      refuse(plan::plan_spans(all, law, std::span(waypoints), std::back_inserter(spans)));
     }
     return spans;
   }

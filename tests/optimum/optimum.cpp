@@ -99,10 +99,10 @@ int main(int argc, char** argv) {
     const Program program = draw(random, limits);
     const double step = (program.to - program.from) / static_cast<double>(nodes - 1);
     const std::span<const plan::BlockCaps> blocks(program.blocks);
-    std::vector<plan::Gate> gates(blocks.size() + 1);
+    std::vector<plan::Waypoint> waypoints(blocks.size() + 1);
     std::vector<double> speeds(blocks.size() + 1);
     std::vector<plan::Span> spans, singles;
-    if (!plan::plan_spans(blocks, plan::SevenPhase{}, std::span(gates), std::back_inserter(spans)) ||
+    if (!plan::plan_spans(blocks, plan::SevenPhase{}, std::span(waypoints), std::back_inserter(spans)) ||
         !published::plan_blocks(blocks, plan::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
       return std::fprintf(stderr, "no plan\n"), 1;
 

@@ -16,8 +16,8 @@ template <std::floating_point S, class Law = plan::SevenPhase>
 std::vector<plan::BasicSpan<S>> spans_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
                                          const Law& law = {}) {
   std::vector<plan::BasicSpan<S>> spans;
-  std::vector<plan::BasicGate<S>> gates(blocks.size() + 1);
-  REQUIRE(plan::plan_spans(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(gates),
+  std::vector<plan::BasicWaypoint<S>> waypoints(blocks.size() + 1);
+  REQUIRE(plan::plan_spans(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(waypoints),
                            std::back_inserter(spans)));
   return spans;
 }

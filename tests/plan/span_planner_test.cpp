@@ -172,11 +172,11 @@ TEST_CASE("the same blocks give the same bits, without heap") {
   test::Random random;
   for (int draws = 0; draws < 20; ++draws) {
     const auto blocks = draw(random);
-    std::vector<plan::Gate> gates(blocks.size() + 1);
+    std::vector<plan::Waypoint> waypoints(blocks.size() + 1);
     std::vector<plan::Span> first(2 * blocks.size()), second(2 * blocks.size());
     const auto plan = [&](std::vector<plan::Span>& out) {
-      (void)plan::plan_spans(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(gates),
-                             out.begin());
+      (void)plan::plan_spans(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{},
+                             std::span(waypoints), out.begin());
     };
     plan(first);
     CHECK(test::heap_allocations_of([&] { plan(second); }) == 0);

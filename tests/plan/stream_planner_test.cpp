@@ -16,10 +16,10 @@ namespace {
 
 struct Windowed {
   explicit Windowed(std::size_t size)
-      : window(size), gates(size + 1), held(size + 1), planner({window, gates, held}) {}
+      : window(size), waypoints(size + 1), held(size + 1), planner({window, waypoints, held}) {}
 
   std::vector<plan::BlockCaps> window;
-  std::vector<plan::Gate> gates, held;
+  std::vector<plan::Waypoint> waypoints, held;
   plan::StreamPlanner<double> planner;
 };
 

@@ -191,9 +191,9 @@ void make_cells(gcode::Reader& program, const Take& take) {
 
 void stream_a_program() {
   std::array<plan::BlockCaps, 4> window;
-  std::array<plan::Gate, 5> window_gates, held_gates;
+  std::array<plan::Waypoint, 5> window_waypoints, held_waypoints;
   std::array<plan::Span, 8> spans;
-  plan::StreamPlanner planner(plan::StreamMemory{window, window_gates, held_gates});
+  plan::StreamPlanner planner(plan::StreamMemory{window, window_waypoints, held_waypoints});
   make_cells(reader_of_stream, [&](const ProgramBlock<Machine<3>>&, const plan::BlockCaps& caps) {
     sink = planner.push(caps, spans.begin()).has_value() ? 1.0 : 0.0;
   });

@@ -127,8 +127,8 @@ inline PlayerFaults play(const PlayedProgram& played, Random& random, int mean_g
   constexpr long most_ticks = 1'000'000;
   std::vector<plan::PlayedBlock> blocks(window + 24);
   std::vector<plan::BlockCaps> ahead(window);
-  std::vector<plan::Gate> gates(window + 1), spare(window + 1);
-  plan::Player player({blocks, ahead, gates, spare}, 16);
+  std::vector<plan::Waypoint> waypoints(window + 1), spare(window + 1);
+  plan::Player player({blocks, ahead, waypoints, spare}, 16);
   std::vector<double> start(program.size() + 1);
   for (std::size_t i = 0; i < program.size(); ++i) start[i + 1] = start[i] + program[i].caps.length;
 

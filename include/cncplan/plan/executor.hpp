@@ -62,7 +62,7 @@ class Executor {
         tool_(tool_axes(machine)),
         background_(options.background),
         feed_(machine, {{options.tolerance}, options.tolerance, options.rotary_tolerance}),
-        player_({played_, ahead_, gates_, spare_gates_}, static_cast<std::int64_t>(capacity)) {}
+        player_({played_, ahead_, waypoints_, spare_waypoints_}, static_cast<std::int64_t>(capacity)) {}
 
   [[nodiscard]] const M& machine() const { return machine_; }
 
@@ -312,8 +312,8 @@ class Executor {
   bool background_;
   std::array<Cell, room> played_{};
   std::array<plan::BasicBlockCaps<Scalar>, capacity> ahead_{};
-  std::array<plan::BasicGate<Scalar>, capacity + 1> gates_{};
-  std::array<plan::BasicGate<Scalar>, capacity + 1> spare_gates_{};
+  std::array<plan::BasicWaypoint<Scalar>, capacity + 1> waypoints_{};
+  std::array<plan::BasicWaypoint<Scalar>, capacity + 1> spare_waypoints_{};
   plan::CellFeed<M, B, room> feed_;
   plan::BasicPlayer<Scalar> player_;
   plan::BasicElapsed<Scalar> time_;

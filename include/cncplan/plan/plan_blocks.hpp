@@ -60,8 +60,8 @@ template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar
   const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing);
   if (!cells) return tl::unexpected(error_in(blocks, cells.error()));
   std::vector<BasicSpan<S>> spans;
-  std::vector<BasicGate<S>> gates(cells->caps.size() + 1);
-  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(gates),
+  std::vector<BasicWaypoint<S>> waypoints(cells->caps.size() + 1);
+  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(waypoints),
                                   std::back_inserter(spans));
   if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
   auto phases = block_phases(std::span<const BasicSpan<S>>(spans), *cells);

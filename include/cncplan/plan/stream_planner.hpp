@@ -13,21 +13,21 @@
 namespace cncplan::plan {
 
 /// What a stream planner works in; all of it belongs to the caller. `window` blocks are looked at, and each
-/// of the gate buffers has one entry more than that.
+/// of the waypoint buffers has one entry more than that.
 template <std::floating_point S>
 struct BasicStreamMemory {
   std::span<BasicBlockCaps<S>> window;
-  std::span<BasicGate<S>> gates;
-  std::span<BasicGate<S>> held_gates;
+  std::span<BasicWaypoint<S>> waypoints;
+  std::span<BasicWaypoint<S>> held_waypoints;
 };
 
 using StreamMemory = BasicStreamMemory<double>;
 
 /// Plans when the window is full, as if the motion ended with it, and lets go of at least a quarter of the
-/// window: up to the last knot that is settled (whose speed nothing later can change), else up to a junction
-/// in a cruise, else up to a knot made a quarter of the way. So a block is planned at most four times however
-/// long the program, the machine can always stop on what it has been given, and the same blocks give the same
-/// spans however they arrive.
+/// window: up to the last steady waypoint that is settled (whose speed nothing later can change), else up to
+/// a junction in a cruise, else up to a steady waypoint made a quarter of the way. So a block is planned at
+/// most four times however long the program, the machine can always stop on what it has been given, and the
+/// same blocks give the same spans however they arrive.
 template <std::floating_point S, RampLaw<S> Law = SevenPhase>
 class StreamPlanner {
  public:
@@ -51,7 +51,7 @@ class StreamPlanner {
   template <std::output_iterator<BasicSpan<S>> Out>
   Expected<Out> finish(Out out) {
     while (count_ > 0) {
-      auto written = write(plan_anew() ? held_count_ - 1 : next_knot(0), out);
+      auto written = write(plan_anew() ? held_count_ - 1 : next_steady(0), out);
       if (!written) return written;
       out = *written;
     }
@@ -62,40 +62,41 @@ class StreamPlanner {
   [[nodiscard]] std::size_t pending() const { return count_; }
 
  private:
-  using Gate = BasicGate<S>;
+  using Waypoint = BasicWaypoint<S>;
 
-  // Plans the window anew from where the last span ended. `divide` is a block to begin with a knot. False
-  // where the motion could not be brought down from the speed it has: then the plan before goes on to hold.
+  // Plans the window anew from where the last span ended. `divide` is a block to begin with a steady
+  // waypoint. False where the motion could not be brought down from the speed it has: then the plan before
+  // goes on to hold.
   bool plan_anew(std::size_t divide = 0) {
     const std::span<const BasicBlockCaps<S>> blocks = memory_.window.first(count_);
-    const std::size_t gates = make_gates(blocks, start_speed_, memory_.gates, divide);
-    GatePlanner<S, Law> planner(memory_.gates.first(gates), law_);
+    const std::size_t waypoints = make_waypoints(blocks, start_speed_, memory_.waypoints, divide);
+    WaypointPlanner<S, Law> planner(memory_.waypoints.first(waypoints), law_);
     planner.solve();
-    if (memory_.gates[0].speed < start_speed_) return false;
-    std::copy_n(memory_.gates.begin(), gates, memory_.held_gates.begin());
-    held_count_ = gates;
+    if (memory_.waypoints[0].speed < start_speed_) return false;
+    std::copy_n(memory_.waypoints.begin(), waypoints, memory_.held_waypoints.begin());
+    held_count_ = waypoints;
     return true;
   }
 
-  // The gate up to which spans can go out.
+  // The waypoint up to which spans can go out.
   std::size_t plan() {
-    if (!plan_anew()) return next_knot(0);
+    if (!plan_anew()) return next_steady(0);
     const std::size_t enough = std::max<std::size_t>(count_ / 4, 1);
-    for (std::size_t gate = held_count_ - 1; gate-- > 1;)
-      if (held(gate).knot && held(gate).settled && held(gate).block >= enough) return gate;
-    if (!plan_anew(cruise_junction(enough))) return next_knot(0);
-    std::size_t gate = 1;
-    while (!(held(gate).knot && held(gate).block >= enough)) ++gate;
-    return gate;
+    for (std::size_t waypoint = held_count_ - 1; waypoint-- > 1;)
+      if (held(waypoint).steady && held(waypoint).settled && held(waypoint).block >= enough) return waypoint;
+    if (!plan_anew(cruise_junction(enough))) return next_steady(0);
+    std::size_t waypoint = 1;
+    while (!(held(waypoint).steady && held(waypoint).block >= enough)) ++waypoint;
+    return waypoint;
   }
 
   // The last junction in the cruise of the span that passes block `enough`; that block where it is not
   // cruising.
   std::size_t cruise_junction(std::size_t enough) {
     std::size_t from = 0;
-    std::size_t to = next_knot(0);
-    while (held(to).block <= enough && to + 1 < held_count_) from = std::exchange(to, next_knot(to));
-    GatePlanner<S, Law> planner(memory_.held_gates.first(held_count_), law_);
+    std::size_t to = next_steady(0);
+    while (held(to).block <= enough && to + 1 < held_count_) from = std::exchange(to, next_steady(to));
+    WaypointPlanner<S, Law> planner(memory_.held_waypoints.first(held_count_), law_);
     const auto profile = planner.profile(from, to);
     if (!profile) return enough;
     const auto phases = profile->phases();
@@ -109,12 +110,12 @@ class StreamPlanner {
     return junction;
   }
 
-  // Writes the spans of the held plan up to a knot, and lets their blocks go.
+  // Writes the spans of the held plan up to a steady waypoint, and lets their blocks go.
   template <class Out>
   Expected<Out> write(std::size_t until, Out out) {
-    GatePlanner<S, Law> planner(memory_.held_gates.first(held_count_), law_);
+    WaypointPlanner<S, Law> planner(memory_.held_waypoints.first(held_count_), law_);
     for (std::size_t from = 0; from < until;) {
-      const std::size_t to = next_knot(from);
+      const std::size_t to = next_steady(from);
       const auto profile = planner.profile(from, to);
       if (!profile) return tl::unexpected(profile.error());
       const std::size_t end = held(to).block;
@@ -129,21 +130,21 @@ class StreamPlanner {
     count_ -= blocks;
     std::copy_n(memory_.window.begin() + static_cast<std::ptrdiff_t>(blocks), count_, memory_.window.begin());
     held_count_ -= until;
-    std::copy_n(memory_.held_gates.begin() + static_cast<std::ptrdiff_t>(until), held_count_,
-                memory_.held_gates.begin());
-    for (Gate& gate : memory_.held_gates.first(held_count_)) gate.block -= blocks;
+    std::copy_n(memory_.held_waypoints.begin() + static_cast<std::ptrdiff_t>(until), held_count_,
+                memory_.held_waypoints.begin());
+    for (Waypoint& waypoint : memory_.held_waypoints.first(held_count_)) waypoint.block -= blocks;
     return out;
   }
 
-  [[nodiscard]] const Gate& held(std::size_t gate) const { return memory_.held_gates[gate]; }
-  [[nodiscard]] std::size_t next_knot(std::size_t gate) const {
-    return plan::next_knot<S>(memory_.held_gates, gate);
+  [[nodiscard]] const Waypoint& held(std::size_t waypoint) const { return memory_.held_waypoints[waypoint]; }
+  [[nodiscard]] std::size_t next_steady(std::size_t waypoint) const {
+    return plan::next_steady<S>(memory_.held_waypoints, waypoint);
   }
 
   BasicStreamMemory<S> memory_;
   Law law_;
   std::size_t count_ = 0;       // blocks in the window
-  std::size_t held_count_ = 0;  // gates of the plan that holds
+  std::size_t held_count_ = 0;  // waypoints of the plan that holds
   std::size_t released_ = 0;    // blocks that have gone out
   S start_speed_{};
 };

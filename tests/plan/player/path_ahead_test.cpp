@@ -40,24 +40,24 @@ TEST_CASE("overrides act on feed or rapid rate, up to what a block bears") {
   CHECK(given.path.must_rest(2));
 }
 
-TEST_CASE("spots go on across junctions, in both directions") {
+TEST_CASE("places go on across junctions, in both directions") {
   Blocks given(4);
   auto& path = given.path;
-  using Spot = plan::BasicSpot<double>;
-  CHECK(path.advance(Spot{0, 0.5}, 0.25) == Spot{0, 0.75});
-  CHECK(path.advance(Spot{0, 0.5}, 0.5) == Spot{1, 0.0});
-  CHECK(path.advance(Spot{0, 0.5}, 3.0) == Spot{2, 0.5});
-  CHECK(path.advance(Spot{3, 3.0}, 5.0) == Spot{3, 8.0});  // behind the end
-  CHECK(path.snapped(Spot{1, 2.0 - 1e-12}) == Spot{2, 0.0});
-  CHECK(path.snapped(Spot{1, 1e-12}) == Spot{1, 0.0});
-  CHECK(path.snapped(Spot{1, 1.0}) == Spot{1, 1.0});
+  using Place = plan::BasicPlace<double>;
+  CHECK(path.advance(Place{0, 0.5}, 0.25) == Place{0, 0.75});
+  CHECK(path.advance(Place{0, 0.5}, 0.5) == Place{1, 0.0});
+  CHECK(path.advance(Place{0, 0.5}, 3.0) == Place{2, 0.5});
+  CHECK(path.advance(Place{3, 3.0}, 5.0) == Place{3, 8.0});  // behind the end
+  CHECK(path.snapped(Place{1, 2.0 - 1e-12}) == Place{2, 0.0});
+  CHECK(path.snapped(Place{1, 1e-12}) == Place{1, 0.0});
+  CHECK(path.snapped(Place{1, 1.0}) == Place{1, 1.0});
   CHECK(path.junction_cap(2) == 12.0);
   path.asked.direction = -1;
-  CHECK(path.turn_round(Spot{1, 0.5}) == Spot{1, 1.5});
-  CHECK(path.advance(Spot{1, 1.5}, 1.0) == Spot{0, 0.5});
+  CHECK(path.turn_round(Place{1, 0.5}) == Place{1, 1.5});
+  CHECK(path.advance(Place{1, 1.5}, 1.0) == Place{0, 0.5});
   CHECK(path.junction_cap(1) == 12.0);  // it enters block 1 from block 2
   path.asked.direction = 1;
-  CHECK(path.turn_round(Spot{-1, 0.0}) == Spot{0, 0.0});  // it had run back behind the first
+  CHECK(path.turn_round(Place{-1, 0.0}) == Place{0, 0.0});  // it had run back behind the first
 }
 
 TEST_CASE("a look-ahead ends at stops, at blocks that are held, and where it matters no more") {
@@ -116,15 +116,15 @@ TEST_CASE("where there is no room for all zones the last is as weak as all the r
   CHECK(out[1].limits.jerk == 10000.0 / 0.9);
 }
 
-TEST_CASE("in float a spot is a junction but for rounding too") {
+TEST_CASE("in float a place is a junction but for rounding too") {
   std::vector<plan::BasicPlayedBlock<float>> memory(8);
   plan::BasicPathAhead<float> path(memory);
   for (int i = 0; i < 8; ++i) path.ring.push({{12.7F, 30.0F, {30.0F, 1e3F, 1e4F}, 0.0F}, 30.0F});
   path.ring.take();
-  using Spot = plan::BasicSpot<float>;
+  using Place = plan::BasicPlace<float>;
   for (int blocks = 1; blocks < 8; ++blocks) {
     CAPTURE(blocks);
-    CHECK(path.snapped(path.advance(Spot{0, 0.0F}, 12.7F * static_cast<float>(blocks))) ==
-          Spot{blocks, 0.0F});
+    CHECK(path.snapped(path.advance(Place{0, 0.0F}, 12.7F * static_cast<float>(blocks))) ==
+          Place{blocks, 0.0F});
   }
 }

@@ -23,13 +23,13 @@ struct BasicRig {
   explicit BasicRig(std::size_t window, std::int64_t keep = 8)
       : blocks(window + 16),
         ahead(window),
-        gates(window + 1),
+        waypoints(window + 1),
         spare(window + 1),
-        player({blocks, ahead, gates, spare}, keep) {}
+        player({blocks, ahead, waypoints, spare}, keep) {}
 
   std::vector<plan::BasicPlayedBlock<S>> blocks;
   std::vector<plan::BasicBlockCaps<S>> ahead;
-  std::vector<plan::BasicGate<S>> gates, spare;
+  std::vector<plan::BasicWaypoint<S>> waypoints, spare;
   plan::BasicPlayer<S> player;
 };
 
@@ -215,19 +215,19 @@ TEST_CASE("random requests break no limit, and the end stays exact") {
   }
 }
 
-TEST_CASE("gates that are too few shorten the look-ahead") {
+TEST_CASE("waypoints that are too few shorten the look-ahead") {
   std::vector<plan::PlayedBlock> blocks(16);
   std::vector<plan::BlockCaps> ahead(16);
-  std::vector<plan::Gate> gates(20), spare(20);
-  for (auto* guarded : {&gates, &spare})
-    for (plan::Gate& gate : *guarded) gate.block = 77;
-  plan::Player player({blocks, ahead, std::span(gates).first(8), std::span(spare).first(3)});
+  std::vector<plan::Waypoint> waypoints(20), spare(20);
+  for (auto* guarded : {&waypoints, &spare})
+    for (plan::Waypoint& waypoint : *guarded) waypoint.block = 77;
+  plan::Player player({blocks, ahead, std::span(waypoints).first(8), std::span(spare).first(3)});
   for (int i = 0; i < 12; ++i)
     REQUIRE(player.push({.caps = {1.0, i == 0 ? 0.0 : 1e3, limits, 0.0}, .feed = 20.0 + i % 2}));
   int ticks = 0;
   while (!player.finished() && ticks < 10000) player.tick(1e-3), ++ticks;
   CHECK(player.finished());
-  CHECK(gates[8].block == 77);
+  CHECK(waypoints[8].block == 77);
   CHECK(spare[3].block == 77);
 }
 

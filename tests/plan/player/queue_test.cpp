@@ -103,8 +103,8 @@ TEST_CASE("a player is fed from another thread, with requests from a third") {
   });
   std::array<plan::PlayedBlock, 64> memory;
   std::array<plan::BlockCaps, 64> ahead;
-  std::array<plan::Gate, 65> gates, spare_gates;
-  plan::Player player({memory, ahead, gates, spare_gates});
+  std::array<plan::Waypoint, 65> waypoints, spare_waypoints;
+  plan::Player player({memory, ahead, waypoints, spare_waypoints});
   plan::Played before{}, now{};
   double worst = 0.0;
   int fed = 0;

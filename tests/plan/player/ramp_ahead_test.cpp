@@ -36,7 +36,7 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
     refused += ramp ? 0 : 1;
     if (!ramp) continue;
     ++ramps;
-    plan::BasicSpot<double> at{0, 0.0};
+    plan::BasicPlace<double> at{0, 0.0};
     for (int k = 0; k <= 400; ++k) {
       const State state = ramp->at(ramp->duration() * k / 400);
       const auto before = at.block;

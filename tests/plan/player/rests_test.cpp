@@ -18,9 +18,9 @@ template <std::floating_point S>
 struct BasicRig {
   std::vector<plan::BasicPlayedBlock<S>> blocks = std::vector<plan::BasicPlayedBlock<S>>(24);
   std::vector<plan::BasicBlockCaps<S>> ahead = std::vector<plan::BasicBlockCaps<S>>(8);
-  std::vector<plan::BasicGate<S>> gates = std::vector<plan::BasicGate<S>>(9);
-  std::vector<plan::BasicGate<S>> spare = std::vector<plan::BasicGate<S>>(9);
-  plan::BasicPlayer<S> player{{blocks, ahead, gates, spare}};
+  std::vector<plan::BasicWaypoint<S>> waypoints = std::vector<plan::BasicWaypoint<S>>(9);
+  std::vector<plan::BasicWaypoint<S>> spare = std::vector<plan::BasicWaypoint<S>>(9);
+  plan::BasicPlayer<S> player{{blocks, ahead, waypoints, spare}};
 };
 
 plan::PlayedBlock straight(double length, double pause, int line, double entry = 1e3) {

@@ -41,11 +41,11 @@ using PlayedBlock = BasicPlayedBlock<double>;
 /// A place on the path: a block, and the distance from the end at which it is entered in the direction of
 /// travel.
 template <std::floating_point S>
-struct BasicSpot {
+struct BasicPlace {
   std::int64_t block{};
   S along{};
 
-  friend bool operator==(const BasicSpot&, const BasicSpot&) = default;
+  friend bool operator==(const BasicPlace&, const BasicPlace&) = default;
 };
 
 /// Blocks by their number in the program. One thread pushes, another looks and releases; neither waits. A

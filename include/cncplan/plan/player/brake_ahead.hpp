@@ -23,19 +23,19 @@ inline constexpr S negligible_speed = S(1e5) * std::numeric_limits<S>::epsilon()
 template <std::floating_point S>
 inline constexpr S junction_tolerance = S(1) + path_rounding<S>;
 
-/// The highest speed that braking at once leaves ahead of a state at a spot.
+/// The highest speed that braking at once leaves ahead of a state at a place.
 template <std::floating_point S>
-[[nodiscard]] S fastest_ahead(const BasicPathAhead<S>& path, const BasicSpot<S>& at,
+[[nodiscard]] S fastest_ahead(const BasicPathAhead<S>& path, const BasicPlace<S>& at,
                               const BasicState<S>& now) {
   const profile::BasicStartState<S> state{now.velocity, now.acceleration};
   return std::max(now.velocity, profile::settled_speed(state, path.limits(at.block)));
 }
 
-/// The motion towards rest from a spot, under the limits of each block, up to where they change. Nothing
+/// The motion towards rest from a place, under the limits of each block, up to where they change. Nothing
 /// where no brake from this state keeps them. `zones` is room to work in.
 template <std::floating_point S>
 [[nodiscard]] std::optional<BasicRunningProfile<S>> brake_profile(const BasicPathAhead<S>& path,
-                                                                  const BasicSpot<S>& at,
+                                                                  const BasicPlace<S>& at,
                                                                   const BasicState<S>& now,
                                                                   std::span<BasicBlockCaps<S>> zones,
                                                                   bool going_on) {
@@ -52,7 +52,7 @@ template <std::floating_point S>
 
 /// The next profile of a brake that has begun: there always is one.
 template <std::floating_point S>
-[[nodiscard]] BasicRunningProfile<S> braking_on(const BasicPathAhead<S>& path, const BasicSpot<S>& at,
+[[nodiscard]] BasicRunningProfile<S> braking_on(const BasicPathAhead<S>& path, const BasicPlace<S>& at,
                                                 const BasicState<S>& now,
                                                 std::span<BasicBlockCaps<S>> zones) {
   return *brake_profile(path, at, now, zones, true);
@@ -61,7 +61,7 @@ template <std::floating_point S>
 /// Whether a profile passes no junction too fast; that at its end is left out.
 template <std::floating_point S>
 [[nodiscard]] bool keeps_junctions(const BasicPathAhead<S>& path, const BasicRunningProfile<S>& profile,
-                                   const BasicSpot<S>& from, const BasicState<S>& start) {
+                                   const BasicPlace<S>& from, const BasicState<S>& start) {
   const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
   const S fastest = start.velocity + rising * rising / (S(2) * path.limits(from.block).jerk);
   S position = path.ring.length(from.block) - from.along;
@@ -75,27 +75,28 @@ template <std::floating_point S>
   return true;
 }
 
-/// The first profile of coming to rest from a spot; `braking_on` gives the next ones. Nothing where no brake
+/// The first profile of coming to rest from a place; `braking_on` gives the next ones. Nothing where no brake
 /// from here keeps limits and junctions all the way.
 template <std::floating_point S>
 [[nodiscard]] std::optional<BasicRunningProfile<S>> brake_ahead(const BasicPathAhead<S>& path,
-                                                                const BasicSpot<S>& at,
+                                                                const BasicPlace<S>& at,
                                                                 const BasicState<S>& now,
                                                                 std::span<BasicBlockCaps<S>> zones) {
   const auto first = brake_profile(path, at, now, zones, false);
   if (!first || !keeps_junctions(path, *first, at, now)) return {};
   BasicRunningProfile<S> profile = *first;
-  BasicSpot<S> spot = at;
+  BasicPlace<S> place = at;
   for (std::int64_t profiles = 0; profiles < path.ring.capacity(); ++profiles) {
     const S length = profile.length();
     profile.advance(profile.left());
     const BasicState<S> end = profile.state();
-    spot = path.snapped(path.advance(spot, length));
+    place = path.snapped(path.advance(place, length));
     if (!(end.velocity > negligible_speed<S>)) return first;
-    if (!path.ring.holds(spot.block)) return {};
-    if (spot.along == S(0) && end.velocity > path.junction_cap(spot.block) * junction_tolerance<S>) return {};
-    profile = braking_on(path, spot, end, zones);
-    if (!keeps_junctions(path, profile, spot, end)) return {};
+    if (!path.ring.holds(place.block)) return {};
+    if (place.along == S(0) && end.velocity > path.junction_cap(place.block) * junction_tolerance<S>)
+      return {};
+    profile = braking_on(path, place, end, zones);
+    if (!keeps_junctions(path, profile, place, end)) return {};
   }
   return {};
 }

@@ -31,7 +31,7 @@ struct BasicRequests {
   bool program_stops{};
 };
 
-/// Blocks ahead of a spot, for planning.
+/// Blocks ahead of a place, for planning.
 struct Ahead {
   std::size_t blocks{};
   bool whole{};  ///< up to where the motion has to rest, or the blocks end
@@ -42,7 +42,7 @@ template <std::floating_point S>
 class BasicPathAhead {
  public:
   using Block = BasicPlayedBlock<S>;
-  using Spot = BasicSpot<S>;
+  using Place = BasicPlace<S>;
 
   explicit BasicPathAhead(std::span<Block> memory) : ring(memory) {}
 
@@ -95,9 +95,9 @@ class BasicPathAhead {
     return direction > 0 ? ring[block].caps.entry : ring[block + 1].caps.entry;
   }
 
-  /// A spot so much farther on; `along` is below the block's length but where no block follows. A block
+  /// A place so much farther on; `along` is below the block's length but where no block follows. A block
   /// behind which the motion rests is not left by rounding: that is for `snapped`, once it rests.
-  [[nodiscard]] Spot advance(Spot from, S distance) const {
+  [[nodiscard]] Place advance(Place from, S distance) const {
     from.along += distance;
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
       const S length = ring.length(from.block);
@@ -109,26 +109,26 @@ class BasicPathAhead {
     return from;
   }
 
-  /// A spot that is a junction but for rounding, at the junction.
-  [[nodiscard]] Spot snapped(Spot spot) const {
-    if (!ring.holds(spot.block)) return spot;
-    if (spot.along >= ring.length(spot.block) - path_rounding<S>) return {spot.block + direction, S(0)};
-    return {spot.block, spot.along < path_rounding<S> ? S(0) : spot.along};
+  /// A place that is a junction but for rounding, at the junction.
+  [[nodiscard]] Place snapped(Place place) const {
+    if (!ring.holds(place.block)) return place;
+    if (place.along >= ring.length(place.block) - path_rounding<S>) return {place.block + direction, S(0)};
+    return {place.block, place.along < path_rounding<S> ? S(0) : place.along};
   }
 
-  /// Takes the direction that is asked for; where a spot is in that one.
-  Spot turn_round(Spot spot) {
-    if (asked.direction == direction) return spot;
+  /// Takes the direction that is asked for; where a place is in that one.
+  Place turn_round(Place place) {
+    if (asked.direction == direction) return place;
     direction = asked.direction;
-    if (!ring.holds(spot.block)) return {spot.block + direction, S(0)};
-    return {spot.block, ring.length(spot.block) - spot.along};
+    if (!ring.holds(place.block)) return {place.block + direction, S(0)};
+    return {place.block, ring.length(place.block) - place.along};
   }
 
-  /// The blocks from a spot on that is passed at `speed`, as far as they matter.
-  Ahead ahead(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
+  /// The blocks from a place on that is passed at `speed`, as far as they matter.
+  Ahead ahead(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     Ahead ahead{0, true};
     Horizon<S> horizon;
-    for (Spot at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
+    for (Place at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
       if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false};
       const bool first = ahead.blocks == 0;
       BasicBlockCaps<S> caps = ring[at.block].caps;
@@ -144,9 +144,9 @@ class BasicPathAhead {
     return ahead;
   }
 
-  /// The zones of equal limits from a spot on, as far as it takes to come to rest from `speed`; how many.
+  /// The zones of equal limits from a place on, as far as it takes to come to rest from `speed`; how many.
   /// When `out` (room for one at least) is full, the last goes on under the lowest limits of all that follow.
-  std::size_t zones(const Spot& from, S speed, std::span<BasicBlockCaps<S>> out) const {
+  std::size_t zones(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     std::size_t count = 0;
     to_rest(from, speed, [&](S length, BasicLimits<S> limits) {
       limits.velocity = S(1);  // plays no part
@@ -160,8 +160,8 @@ class BasicPathAhead {
     return count;
   }
 
-  /// The highest limits of acceleration and jerk from a spot on, likewise.
-  [[nodiscard]] BasicLimits<S> strongest(const Spot& from, S speed) const {
+  /// The highest limits of acceleration and jerk from a place on, likewise.
+  [[nodiscard]] BasicLimits<S> strongest(const Place& from, S speed) const {
     BasicLimits<S> highest{S(0), S(0), S(0)};
     to_rest(from, speed, [&](S, const BasicLimits<S>& limits) {
       highest.acceleration = std::max(highest.acceleration, limits.acceleration);
@@ -171,12 +171,12 @@ class BasicPathAhead {
   }
 
  private:
-  // Calls with the length and the limits of each block, from a spot on, that coming to rest from `speed` may
+  // Calls with the length and the limits of each block, from a place on, that coming to rest from `speed` may
   // touch.
   template <class Visit>
-  void to_rest(const Spot& from, S speed, Visit&& visit) const {
+  void to_rest(const Place& from, S speed, Visit&& visit) const {
     Horizon<S> horizon;
-    for (Spot at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
+    for (Place at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
       const BasicLimits<S>& here = limits(at.block);
       const S length = std::max(ring.length(at.block) - at.along, S(0));
       horizon.take({speed, here.acceleration, here.jerk}, length);

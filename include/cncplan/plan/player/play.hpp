@@ -127,8 +127,8 @@ template <BlockModel B, std::invocable<const B&> Feed>
   }
   std::vector<PlayedBlock> memory(window + 1);
   std::vector<BlockCaps> ahead(window);
-  std::vector<Gate> gates(window + 1), spare_gates(window + 1);
-  Player player({memory, ahead, gates, spare_gates});
+  std::vector<Waypoint> waypoints(window + 1), spare_waypoints(window + 1);
+  Player player({memory, ahead, waypoints, spare_waypoints});
   detail::PlayRecord record(played, cells.blocks);
   double time = 0.0;
   std::int64_t ticks = 1;  // the next one ends at so many periods

@@ -21,15 +21,15 @@
 
 namespace cncplan::plan {
 
-/// What a player works in; all of it belongs to the caller. `ahead` and the gates bound the look-ahead:
-/// `ahead` blocks, at least one, and one gate more than that in each buffer. Of what is more than its
+/// What a player works in; all of it belongs to the caller. `ahead` and the waypoints bound the look-ahead:
+/// `ahead` blocks, at least one, and one waypoint more than that in each buffer. Of what is more than its
 /// neighbours serve, nothing is used.
 template <std::floating_point S>
 struct BasicPlayerMemory {
   std::span<BasicPlayedBlock<S>> blocks;
   std::span<BasicBlockCaps<S>> ahead;
-  std::span<BasicGate<S>> gates;
-  std::span<BasicGate<S>> spare_gates;
+  std::span<BasicWaypoint<S>> waypoints;
+  std::span<BasicWaypoint<S>> spare_waypoints;
 };
 
 using PlayerMemory = BasicPlayerMemory<double>;
@@ -70,14 +70,15 @@ template <std::floating_point S>
 class BasicPlayer {
  public:
   using Block = BasicPlayedBlock<S>;
-  using Gate = BasicGate<S>;
+  using Waypoint = BasicWaypoint<S>;
 
   /// `keep_behind` blocks stay in memory for running backwards; fewer where that would not leave room for
   /// `memory.ahead`, none where it is negative.
   explicit BasicPlayer(const BasicPlayerMemory<S>& memory, std::int64_t keep_behind = 0)
       : memory_(memory), path_(memory.blocks) {
-    const std::size_t gates = std::min(memory.gates.size(), memory.spare_gates.size());
-    memory_.ahead = memory.ahead.first(std::min(memory.ahead.size(), std::max<std::size_t>(gates, 1) - 1));
+    const std::size_t waypoints = std::min(memory.waypoints.size(), memory.spare_waypoints.size());
+    memory_.ahead =
+        memory.ahead.first(std::min(memory.ahead.size(), std::max<std::size_t>(waypoints, 1) - 1));
     const std::int64_t room = path_.ring.capacity() - static_cast<std::int64_t>(memory_.ahead.size());
     keep_behind_ = std::clamp(keep_behind, std::int64_t{0}, std::max(room, std::int64_t{0}));
   }
@@ -113,7 +114,7 @@ class BasicPlayer {
     hold();
     if (idle_) return;
     const BasicState<S> now = running_.state();
-    const BasicSpot<S> at = locate();
+    const BasicPlace<S> at = locate();
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
     path_.above = running_above_;
     BasicLimits<S> limits = path_.strongest(at, fastest_ahead(path_, at, now));
@@ -122,7 +123,7 @@ class BasicPlayer {
     limits.jerk = std::max(limits.jerk, jerk);
     const auto ramp = profile::stop(state, limits);
     if (!ramp) return;
-    follow(BasicRunningProfile<S>(*ramp), at, no_gate);
+    follow(BasicRunningProfile<S>(*ramp), at, no_waypoint);
     pending_ = false;
   }
 
@@ -190,7 +191,7 @@ class BasicPlayer {
         advance(turn, left);
         left -= turn;
         --plans;
-        const BasicSpot<S> at = locate();
+        const BasicPlace<S> at = locate();
         if (plan_from(at, running_.state().velocity)) adopt(at);
       } else if (left < running_.left()) {
         advance(left, left);
@@ -237,7 +238,7 @@ class BasicPlayer {
   [[nodiscard]] bool stopped() const { return path_.asked.stopped && idle_; }
 
  private:
-  static constexpr std::size_t no_gate = static_cast<std::size_t>(-1);
+  static constexpr std::size_t no_waypoint = static_cast<std::size_t>(-1);
   static constexpr int most_plans = 16;  // in one tick
 
   [[nodiscard]] static S share_up_to(S most, S share) { return share > S(0) ? std::min(share, most) : S(0); }
@@ -253,7 +254,7 @@ class BasicPlayer {
   template <class Visit>
   void drive(S seconds, S passed, Visit& visit) {
     while (seconds > S(0)) {
-      const BasicSpot<S> at = path_.snapped(locate());
+      const BasicPlace<S> at = path_.snapped(locate());
       const BlockRing<S>& ring = path_.ring;
       const BasicState<S> now = running_.state();
       const S edge = running_.to_edge();
@@ -299,10 +300,10 @@ class BasicPlayer {
 
   // Where it is now. The block goes along, the profile's start then lies before it. At rest a block of no
   // length is not passed by.
-  BasicSpot<S> locate() {
+  BasicPlace<S> locate() {
     if (idle_) return at_;
     const S position = running_.state().position;
-    const BasicSpot<S> at = path_.advance(at_, position);
+    const BasicPlace<S> at = path_.advance(at_, position);
     if (at.block != at_.block) at_ = {at.block, at.along - position};
     return at;
   }
@@ -311,7 +312,7 @@ class BasicPlayer {
     const BlockRing<S>& ring = path_.ring;
     if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = running_.state();
-    BasicSpot<S> at = locate();
+    BasicPlace<S> at = locate();
     if (!ring.holds(at.block) ||
         (waits() > S(0) && ring.holds(at.block - 1)))  // behind the last, or dwelling
       at = {at.block - path_.direction, ring.length(at.block - path_.direction)};
@@ -346,12 +347,12 @@ class BasicPlayer {
 
   bool replan(bool asked) {
     const BasicState<S> now = running_.state();
-    const BasicSpot<S> at = locate();
+    const BasicPlace<S> at = locate();
     if (!path_.ring.holds(at.block)) return false;
     if (path_.must_rest(at.block)) {
       path_.above = running_above_;
       const auto braking = brake_ahead(path_, at, now, memory_.ahead);
-      if (braking) follow(*braking, at, no_gate);
+      if (braking) follow(*braking, at, no_waypoint);
       return braking.has_value();
     }
     if (now.acceleration == S(0) && now.velocity <= path_.wanted_speed(at.block) &&
@@ -366,7 +367,7 @@ class BasicPlayer {
   }
 
   // By a ramp under the limits above the feed, or those up to it.
-  bool replan(bool asked, const BasicState<S>& now, const BasicSpot<S>& at, bool ramp_above) {
+  bool replan(bool asked, const BasicState<S>& now, const BasicPlace<S>& at, bool ramp_above) {
     const bool above = path_.asks_above();
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
     path_.above = above;
@@ -387,111 +388,112 @@ class BasicPlayer {
     return false;
   }
 
-  // Plans from a spot at a speed with zero acceleration, into the spare gates. False if the speed is too high
-  // there.
-  bool plan_from(const BasicSpot<S>& from, S speed) {
+  // Plans from a place at a speed with zero acceleration, into the spare waypoints. False if the speed is too
+  // high there.
+  bool plan_from(const BasicPlace<S>& from, S speed) {
     path_.above = path_.asks_above();
     const auto [blocks, whole] = path_.ahead(from, speed, memory_.ahead);
     spare_whole_ = whole;
     spare_count_ = 0;
     if (blocks == 0) return speed == S(0);
     const std::span<const BasicBlockCaps<S>> ahead = memory_.ahead.first(blocks);
-    spare_count_ = make_gates(ahead, speed, memory_.spare_gates);
-    GatePlanner planner(memory_.spare_gates.first(spare_count_));
+    spare_count_ = make_waypoints(ahead, speed, memory_.spare_waypoints);
+    WaypointPlanner planner(memory_.spare_waypoints.first(spare_count_));
     planner.solve();
-    return !(memory_.spare_gates[0].speed < speed);
+    return !(memory_.spare_waypoints[0].speed < speed);
   }
 
-  // Whether a ramp from here, with the plan in the spare gates behind it, is sooner where the profile ends,
-  // no slower there, and does not brake there. A way down that has begun is given up for nothing less: once
-  // the brake is released it has to begin anew.
+  // Whether a ramp from here, with the plan in the spare waypoints behind it, is sooner where the profile
+  // ends, no slower there, and does not brake there. A way down that has begun is given up for nothing less:
+  // once the brake is released it has to begin anew.
   [[nodiscard]] bool betters(const profile::BasicProfile<S>& ramp) const {
     const BasicState<S> now = running_.state(), end = running_.end();
     S left = running_.length() - now.position;
     S time = ramp.time_at(left);
     BasicState<S> there = ramp.at(time);
     left -= ramp.length();
-    GatePlanner planner(memory_.spare_gates.first(spare_count_));
-    for (std::size_t gate = 0; gate + 1 < spare_count_ && left > S(0);) {
-      const std::size_t next = next_knot<S>(memory_.spare_gates, gate);
-      const auto profile = planner.profile(gate, next);
+    WaypointPlanner planner(memory_.spare_waypoints.first(spare_count_));
+    for (std::size_t waypoint = 0; waypoint + 1 < spare_count_ && left > S(0);) {
+      const std::size_t next = next_steady<S>(memory_.spare_waypoints, waypoint);
+      const auto profile = planner.profile(waypoint, next);
       if (!profile) return false;
       const S within = profile->time_at(left);
       time += within;
       there = profile->at(within);
       left -= profile->length();
-      gate = next;
+      waypoint = next;
     }
     constexpr S but_for_rounding = S(1) - path_rounding<S>;
     return time < running_.left() * but_for_rounding && there.velocity >= end.velocity * but_for_rounding;
   }
 
-  // Makes the plan in the spare gates the one that holds.
+  // Makes the plan in the spare waypoints the one that holds.
   void take_spare() {
-    std::swap(memory_.gates, memory_.spare_gates);
-    gate_count_ = spare_count_;
+    std::swap(memory_.waypoints, memory_.spare_waypoints);
+    waypoint_count_ = spare_count_;
     plan_above_ = path_.asks_above();
     more_ = !spare_whole_;
   }
 
-  // The same, and follows it from a spot.
-  void adopt(const BasicSpot<S>& from) {
+  // The same, and follows it from a place.
+  void adopt(const BasicPlace<S>& from) {
     at_ = from;
     take_spare();
-    if (gate_count_ == 0)
+    if (waypoint_count_ == 0)
       rest();
     else
       begin_span(0);
   }
 
-  // Drives a profile; behind it the plan goes on at a gate, or the machine comes to rest.
-  void follow(const BasicRunningProfile<S>& profile, const BasicSpot<S>& from, std::size_t gate) {
+  // Drives a profile; behind it the plan goes on at a waypoint, or the machine comes to rest.
+  void follow(const BasicRunningProfile<S>& profile, const BasicPlace<S>& from, std::size_t waypoint) {
     at_ = from;
     running_ = profile;
-    next_gate_ = gate;
-    if (gate != no_gate) running_above_ = plan_above_;
-    running_settled_ = gate == no_gate || gate == 0 || memory_.gates[gate].settled;
+    next_waypoint_ = waypoint;
+    if (waypoint != no_waypoint) running_above_ = plan_above_;
+    running_settled_ = waypoint == no_waypoint || waypoint == 0 || memory_.waypoints[waypoint].settled;
     idle_ = false;
   }
 
-  void begin_span(std::size_t gate) {
-    GatePlanner planner(memory_.gates.first(gate_count_));
-    const std::size_t next = next_knot<S>(memory_.gates, gate);
-    if (const auto profile = planner.profile(gate, next)) {
-      const Gate& end = memory_.gates[next];
+  void begin_span(std::size_t waypoint) {
+    WaypointPlanner planner(memory_.waypoints.first(waypoint_count_));
+    const std::size_t next = next_steady<S>(memory_.waypoints, waypoint);
+    if (const auto profile = planner.profile(waypoint, next)) {
+      const Waypoint& end = memory_.waypoints[next];
       const profile::BasicRampLaw<S> law = profile::seven_phase_law(end.limits);
       return follow(BasicRunningProfile<S>(*profile, S(2) * law.half_duration(std::sqrt(end.speed))), at_,
                     next);
     }
-    const auto stop = profile::stop(profile::BasicStartState<S>{memory_.gates[gate].speed, S(0)},
-                                    memory_.gates[gate].limits);
-    follow(BasicRunningProfile<S>(*stop), at_, no_gate);
+    const auto stop = profile::stop(profile::BasicStartState<S>{memory_.waypoints[waypoint].speed, S(0)},
+                                    memory_.waypoints[waypoint].limits);
+    follow(BasicRunningProfile<S>(*stop), at_, no_waypoint);
   }
 
   // The profile is over: the next one, or rest. True if it has planned, where that is allowed.
   bool next_profile(bool may_plan) {
     const BasicState<S> end = running_.state();
-    const BasicSpot<S> from = at_;
+    const BasicPlace<S> from = at_;
     at_ = path_.snapped(path_.advance(at_, running_.length()));
     const bool rests = !(end.velocity > negligible_speed<S>);
     const bool at_junction = at_.along == S(0) && (at_.block != from.block || from.along < S(0));
-    if (next_gate_ == no_gate) {
+    if (next_waypoint_ == no_waypoint) {
       path_.above = running_above_;
       if (!rests && path_.ring.holds(at_.block))
-        return follow(braking_on(path_, at_, end, memory_.ahead), at_, no_gate), false;
+        return follow(braking_on(path_, at_, end, memory_.ahead), at_, no_waypoint), false;
       return at_junction && !path_.asked.stopped ? rest_as_planned() : rest(), false;
     }
-    if (next_gate_ + 1 >= gate_count_) return rest_as_planned(), false;
+    if (next_waypoint_ + 1 >= waypoint_count_) return rest_as_planned(), false;
     // a ramp that began on the way to a stop, and ends there
     const std::int64_t done = at_.block - path_.direction;
     if (rests && at_junction && path_.ring.holds(done) && path_.stops_behind(done))
       return rest_as_planned(), false;
     // nothing that comes can change where a span ends that is settled
-    const bool plans = may_plan && more_ && !memory_.gates[next_knot<S>(memory_.gates, next_gate_)].settled;
-    if (plans && plan_from(at_, memory_.gates[next_gate_].speed))
+    const bool plans =
+        may_plan && more_ && !memory_.waypoints[next_steady<S>(memory_.waypoints, next_waypoint_)].settled;
+    if (plans && plan_from(at_, memory_.waypoints[next_waypoint_].speed))
       adopt(at_);
     else
-      begin_span(next_gate_);
+      begin_span(next_waypoint_);
     return plans;
   }
 
@@ -527,19 +529,19 @@ class BasicPlayer {
   BasicPlayerMemory<S> memory_;
   BasicPathAhead<S> path_;
   std::int64_t keep_behind_ = 0;
-  BasicSpot<S>
+  BasicPlace<S>
       at_;  // where the profile started, seen from the block the machine is in; at rest, where that is
   BasicRunningProfile<S> running_;
-  std::size_t gate_count_ = 0;
+  std::size_t waypoint_count_ = 0;
   std::size_t spare_count_ = 0;
-  std::size_t next_gate_ = no_gate;
+  std::size_t next_waypoint_ = no_waypoint;
   BasicElapsed<S> dwell_;         // s to its end, below 0
   S rested_{};                    // s
   bool plan_above_ = false;       // the plan is made for more than the feed
   bool running_above_ = false;    // the profile is
   bool pending_ = false;          // a request has not been met yet
   bool more_ = false;             // there are blocks that the plan does not know
-  bool spare_whole_ = false;      // the plan in the spare gates knows all
+  bool spare_whole_ = false;      // the plan in the spare waypoints knows all
   bool running_settled_ = false;  // what comes cannot change where the profile ends
   bool idle_ = true;
 };

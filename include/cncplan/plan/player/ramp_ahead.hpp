@@ -31,11 +31,11 @@ template <std::floating_point S>
 
 }  // namespace detail
 
-/// The ramp from the state at a spot to a speed with zero acceleration, under the lowest limits of all blocks
-/// that it touches. Nothing where a cap ahead forbids it, or the state is beyond these limits.
+/// The ramp from the state at a place to a speed with zero acceleration, under the lowest limits of all
+/// blocks that it touches. Nothing where a cap ahead forbids it, or the state is beyond these limits.
 template <std::floating_point S>
 [[nodiscard]] std::optional<profile::BasicProfile<S>> ramp_ahead(const BasicPathAhead<S>& path,
-                                                                 const BasicSpot<S>& from,
+                                                                 const BasicPlace<S>& from,
                                                                  const BasicState<S>& now, S target) {
   const profile::BasicStartState<S> start{now.velocity, now.acceleration};
   BasicLimits<S> limits = path.limits(from.block);
@@ -51,7 +51,7 @@ template <std::floating_point S>
     const S fastest = std::max({now.velocity, target, crest.velocity});
     constexpr S tolerance = S(1) + std::max(S(1e-12), S(64) * std::numeric_limits<S>::epsilon());
     BasicLimits<S> touched = limits;
-    BasicSpot<S> at = from;
+    BasicPlace<S> at = from;
     S position = S(0);
     S speed = now.velocity;
     for (S until = path.ring.length(at.block) - at.along;; until += path.ring.length(at.block)) {
