@@ -172,30 +172,35 @@ template <MachineModel M>
     for (const Row& row : rows) v = speed_of(row, v, acceleration_share, jerk_share);
     return v;
   };
-  const auto at = [&](S v, S share) {
-    BasicLimits<S> limits;
-    limits.velocity = v;
-    for (const Row& row : rows) limits.acceleration = std::min(limits.acceleration, acceleration_of(row, v));
-    if (share < S(1)) limits.acceleration *= share;
-    for (const Row& row : rows) limits.jerk = std::min(limits.jerk, jerk_of(row, v, limits.acceleration));
+  const auto acceleration_at = [&](S v) {
+    S a = std::numeric_limits<S>::infinity();
+    for (const Row& row : rows) a = std::min(a, acceleration_of(row, v));
+    return a;
+  };
+  const auto at = [&](S v, S a) {
+    BasicLimits<S> limits{v, a, std::numeric_limits<S>::infinity()};
+    for (const Row& row : rows) limits.jerk = std::min(limits.jerk, jerk_of(row, v, a));
     return limits;
   };
   const S least = fastest(S(0.8), S(0.5));
-  BasicLimits<S> best = at(least, S(1));
+  BasicLimits<S> best = at(least, acceleration_at(least));
   const bool bends = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.bends(); });
   if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
   constexpr int speeds = 4;
   const S rise = (fastest(S(1), S(1)) - least) / S(speeds);
   const S alone = time_with_ramps(best, length, S(1));
   S shortest = time_with_ramps(best, length, S(2));
-  for (int i = 0; i <= speeds; ++i)
+  for (int i = 0; i <= speeds; ++i) {
+    const S v = least + static_cast<S>(i) * rise;
+    const S most = acceleration_at(v);
     for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
-      const BasicLimits<S> other = at(least + static_cast<S>(i) * rise, share);
+      const BasicLimits<S> other = at(v, share * most);
       const S takes = time_with_ramps(other, length, S(2));
       if (!(takes < shortest && time_with_ramps(other, length, S(1)) <= alone)) continue;
       shortest = takes;
       best = other;
     }
+  }
   return best;
 }
 
