@@ -38,21 +38,21 @@ class CutByLimits {
  public:
   using Scalar = typename M::Scalar;
   using Part = BasicPartLimits<Scalar>;
+  using Driven = smooth::Smoothed<typename B::Path>;
 
-  /// The path that is driven in place of the block's from now on; it is to stay as the block is.
-  void drive(const smooth::Smoothed<typename B::Path>& path) { path_ = path; }
-
-  /// Begins with a piece of a block that moves; the block is to stay until all parts are cut. `speed` is what
-  /// the program asks for, `tool_speed` the most that the tool may.
-  void begin(const B& block, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
+  /// Begins with a piece of a block that moves, driven on a path of its own or on the block's; the block is
+  /// to stay until all parts are cut. `speed` is what the program asks for, `tool_speed` the most that the
+  /// tool may.
+  void begin(const B& block, const Driven& driven, const M& machine, Scalar from, Scalar to, Scalar speed,
+             Scalar tool_speed) {
     block_ = &block;
-    straight_ = path_.exact() && block.path.line() != nullptr;
+    straight_ = driven.exact() && block.path.line() != nullptr;
     speed_ = speed;
     tool_speed_ = tool_speed;
     Part& whole = open_[0].part;
     whole.from = from;
     whole.to = to;
-    whole.limits = limits(machine, from, to, speed);
+    whole.limits = limits(driven, machine, from, to, speed);
     open_[0].depth = 0;
     count_ = 1;
   }
@@ -60,15 +60,15 @@ class CutByLimits {
   [[nodiscard]] bool done() const { return count_ == 0; }
 
   /// The next part, in order along the path, until the next call; only before it is done.
-  [[nodiscard]] const Part& next(const M& machine) {
+  [[nodiscard]] const Part& next(const Driven& driven, const M& machine) {
     for (;;) {
       const Part& top = open_[--count_].part;
       const int depth = open_[count_].depth;
       if (straight_ || depth == deepest || !(top.limits.velocity < speed_)) return top;
       const Part part = top;
       const Scalar middle = part.from + (part.to - part.from) / Scalar(2);
-      const Part first{part.from, middle, limits(machine, part.from, middle, speed_)};
-      const Part second{middle, part.to, limits(machine, middle, part.to, speed_)};
+      const Part first{part.from, middle, limits(driven, machine, part.from, middle, speed_)};
+      const Part second{middle, part.to, limits(driven, machine, middle, part.to, speed_)};
       const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
       if (halves >= worth_it / part.limits.velocity) return top;
       open_[count_++] = {second, depth + 1};
@@ -77,12 +77,13 @@ class CutByLimits {
   }
 
   /// The limits of a part of the block at any speed.
-  [[nodiscard]] BasicLimits<Scalar> limits(const M& machine, Scalar from, Scalar to, Scalar speed) const {
+  [[nodiscard]] BasicLimits<Scalar> limits(const Driven& driven, const M& machine, Scalar from, Scalar to,
+                                           Scalar speed) const {
     const auto along = [&](const auto& path) {
       return limits_along(path.bounds(from, to), machine, speed, tool_speed_, path.length());
     };
     if constexpr (EnclosedPath<typename B::Path>)
-      if (!path_.exact()) return along(path_);
+      if (!driven.exact()) return along(driven);
     return block_->path.visit(along);
   }
 
@@ -96,7 +97,6 @@ class CutByLimits {
   };
 
   const B* block_ = nullptr;
-  smooth::Smoothed<typename B::Path> path_;
   bool straight_ = false;  // its limits hold all along
   Scalar speed_{};
   Scalar tool_speed_{};
@@ -145,7 +145,7 @@ class CellMaker {
 
   /// The next cell of the block. Errors: those of `validate` for its limits.
   [[nodiscard]] Expected<Cell> next() {
-    Expected<Cell> made(Cell{cut_.next(machine_), entry_, Scalar(0)});
+    Expected<Cell> made(Cell{cut_.next(driven_, machine_), entry_, Scalar(0)});
     Cell& cell = *made;
     const auto& [from, to, limits] = cell.part;
     if (auto ok = validate(limits); !ok) return tl::unexpected(ok.error());
@@ -170,7 +170,7 @@ class CellMaker {
   }
   /// The limits of a part of the block at another speed than that.
   [[nodiscard]] BasicLimits<Scalar> limits(const BasicPartLimits<Scalar>& part, Scalar speed) const {
-    return cut_.limits(machine_, part.from, part.to, speed);
+    return cut_.limits(driven_, machine_, part.from, part.to, speed);
   }
 
   /// Where the last block ended: the next one has to begin there. Nothing before the first.
@@ -226,7 +226,6 @@ class CellMaker {
       before_ = Before{speed, counted, block.exact_path, block.goes_on};
       block_ = &block;
       driven_ = driven;
-      if constexpr (requires { cut_.drive(driven); }) cut_.drive(driven);
       turnings_.begin(block.path);
       cut_on(Scalar(0));
     } else {
@@ -256,7 +255,7 @@ class CellMaker {
       if (turning_count_ < turning_.size()) turning_[turning_count_++] = turning;
     }
     const Scalar to = std::min(driven_.next_change(from), turnings_.next());
-    cut_.begin(*block_, machine_, from, to, wanted_,
+    cut_.begin(*block_, driven_, machine_, from, to, wanted_,
                block_->rapid ? rapid_speed(machine_) : machine_.limits.velocity);
   }
 

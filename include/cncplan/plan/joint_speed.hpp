@@ -72,6 +72,15 @@ struct PathEnds {
 template <class P>
 PathEnds(const P&) -> PathEnds<typename P::Vector>;
 
+/// The direction of a vector; zero has none. What is a unit vector already stays as it is.
+template <class Vector>
+[[nodiscard]] Vector unit(const Vector& v) {
+  using S = typename Vector::Scalar;
+  const S norm_sq = v.squaredNorm();
+  if (std::abs(norm_sq - S(1)) <= S(4) * std::numeric_limits<S>::epsilon() || !(norm_sq > S(0))) return v;
+  return v / std::sqrt(norm_sq);
+}
+
 /// One side of a joint, as junction policies see it: a path, with what its axes are at its ends.
 template <MachineModel M, Path P>
 [[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const P& path, bool rapid,
@@ -85,8 +94,7 @@ template <MachineModel M, Path P>
     junction::BasicSide<S> side;
     side.kind = rapid ? junction::Kind::rapid : junction::Kind::line;
     const auto set = [&](const Vector3& first, const Vector3& second, const Vector3& chord) {
-      const S norm = first.norm();
-      side.tangent = norm > S(0) ? Vector3(first / norm) : first;
+      side.tangent = unit(first);
       side.curvature = second;
       side.chord = chord;
     };

@@ -27,7 +27,9 @@ class WholeBlocks {
   using Scalar = typename M::Scalar;
   using Part = plan::BasicPartLimits<Scalar>;
 
-  void begin(const B& block, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
+  template <class Driven>
+  void begin(const B& block, const Driven&, const M& machine, Scalar from, Scalar to, Scalar speed,
+             Scalar tool_speed) {
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
     const auto bounds = block.path.bounds(from, to);
     BasicLimits<Scalar> tool = machine.limits;
@@ -43,7 +45,10 @@ class WholeBlocks {
   }
 
   [[nodiscard]] bool done() const { return !part_; }
-  [[nodiscard]] Part next(const M&) { return *std::exchange(part_, std::nullopt); }
+  template <class Driven>
+  [[nodiscard]] Part next(const Driven&, const M&) {
+    return *std::exchange(part_, std::nullopt);
+  }
 
  private:
   std::optional<Part> part_;

@@ -24,13 +24,17 @@ class ToolLimits {
   using Scalar = typename M::Scalar;
   using Part = plan::BasicPartLimits<Scalar>;
 
-  void begin(const B&, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar) {
+  template <class Driven>
+  void begin(const B&, const Driven&, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar) {
     part_ = Part{from, to, machine.limits};
     part_->limits.velocity = speed;
   }
 
   [[nodiscard]] bool done() const { return !part_; }
-  [[nodiscard]] Part next(const M&) { return *std::exchange(part_, std::nullopt); }
+  template <class Driven>
+  [[nodiscard]] Part next(const Driven&, const M&) {
+    return *std::exchange(part_, std::nullopt);
+  }
 
  private:
   std::optional<Part> part_;
