@@ -22,17 +22,17 @@ constexpr double period = 1e-3;
 // Ticks from the program's start to its end, and again; `ask` is called before each. Pushes are not timed,
 // nor is `plan`, which the main loop calls where `background` is set.
 template <class Ask>
-void measure(const char* name, const std::vector<bench::Block>& program, std::size_t count, bool background,
-             const Ask& ask) {
+void measure(const char* name, const std::vector<bench::Block>& program, std::size_t count,
+             const Runner::Options& options, const Ask& ask) {
   bench::Latencies latencies(count);
   std::size_t done = 0, first_run = 0;
   while (done < count) {
-    const auto executor = std::make_unique<Runner>(bench::mill, Runner::Options{.background = background});
+    const auto executor = std::make_unique<Runner>(bench::mill, options);
     std::size_t pushed = 0;
     while (done < count && !executor->finished()) {
       while (pushed < program.size() && executor->push(program[pushed]))
         if (++pushed == program.size()) executor->end_of_program();
-      if (background) executor->plan();
+      if (options.background) executor->plan();
       ask(*executor);
       latencies.time([&] { bench::keep(executor->tick(period)); });
       ++done;
@@ -55,9 +55,11 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < count; ++i) nothing.time([&] { bench::keep(i); });
   nothing.print("nothing (the clock)");
   const auto both = [&](const char* name, const auto& ask) {
-    std::printf("%s\n", name);
-    measure("  plan in the main loop", blocks, count, true, ask);
-    measure("  plan in the tick", blocks, count, false, ask);
+    for (const double tolerance : {0.0, 0.01}) {
+      std::printf("%s, %s\n", name, tolerance > 0 ? "within 0.01 mm" : "on the exact path");
+      measure("  plan in the main loop", blocks, count, {.tolerance = tolerance, .background = true}, ask);
+      measure("  plan in the tick", blocks, count, {.tolerance = tolerance}, ask);
+    }
   };
   both("undisturbed", [](Runner&) {});
   test::Random random;

@@ -43,6 +43,7 @@ struct Disturbance {
   double period = 1e-3;
   double rounding = 1e-9;  ///< relative, of what is compared
   bool restarts = false;   ///< it is stopped on the way, and begins anew from there
+  double tolerance = 0;    ///< mm, within which the path is smoothed; then nothing jumps at joints either
 };
 
 template <class Executor>
@@ -109,7 +110,8 @@ class TickCheck {
       if (told_ == words_.size() || !(words_[told_++] == word)) faults.words_wrong = true;
     const B& block = blocks_[now.block];
     const auto s = path_length(block, now);
-    grow(faults.place, (block.path.position_at(s) - now.position).cwiseAbs().maxCoeff() - rounding_of(now));
+    grow(faults.place, (block.path.position_at(s) - now.position).cwiseAbs().maxCoeff() - how_.tolerance -
+                           rounding_of(now));
     if (now.velocity.isZero() && !(s < block.path.length())) ++waited_[now.block];
     before_ = now;
   }
@@ -170,7 +172,8 @@ class TickCheck {
 
   void compare(const Point& now) {
     const double period = how_.period, rounding = rounding_of(now);
-    const bool inside = now.block == before_.block && now.along.velocity * before_.along.velocity >= 0;
+    const bool inside = (now.block == before_.block || (how_.tolerance > 0 && !exact_between(now))) &&
+                        now.along.velocity * before_.along.velocity >= 0;
     for (int i = 0; i < n; ++i) {
       const auto& axis = machine_.axes[static_cast<std::size_t>(i)];
       const double way = static_cast<double>(now.position[i]) - static_cast<double>(before_.position[i]);
@@ -184,6 +187,14 @@ class TickCheck {
       const double change = static_cast<double>(now.acceleration[i] - before_.acceleration[i]);
       grow(faults.change, std::abs(change) / (jerk * period) - 1);
     }
+  }
+
+  // Whether a block on the way from the set point before is to be kept exactly.
+  [[nodiscard]] bool exact_between(const Point& now) const {
+    const auto [first, last] = std::minmax(now.block, before_.block);
+    return std::any_of(blocks_.begin() + static_cast<std::ptrdiff_t>(first),
+                       blocks_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                       [](const B& block) { return block.exact_path; });
   }
 
   const M& machine_;
@@ -202,7 +213,8 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
   using S = typename M::Scalar;
   using Runner = Executor<M, capacity, B>;
   constexpr long most_ticks = 200'000;
-  const auto owner = std::make_unique<Runner>(machine);
+  const auto owner =
+      std::make_unique<Runner>(machine, typename Runner::Options{.tolerance = static_cast<S>(how.tolerance)});
   auto& executor = *owner;
   const int lines = blocks.back().line;
   const long stops_at = how.restarts ? random.integer(1, static_cast<int>(how.restless)) : most_ticks;

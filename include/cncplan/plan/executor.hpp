@@ -24,10 +24,15 @@ namespace cncplan {
 /// What holds for all that an executor runs.
 template <std::floating_point S>
 struct BasicExecutorOptions {
-  S tolerance = S(0.01);  ///< mm, >= 0. The path is kept exactly; a corner is passed as fast as one that is
-                          ///< rounded within this could be
-  S rotary_tolerance = S(8.726646259971648e-4);  ///< rad, >= 0: the same for rotary axes; 0.05 degrees
-  bool background = false;  ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+  /// mm, >= 0: how far the tool may leave the programmed path, so that it moves without a jump of velocity or
+  /// acceleration; 0: the exact path
+  S tolerance = S(0.01);
+  S rotary_tolerance = S(8.726646259971648e-4);  ///< rad, > 0: the same for rotary axes; 0.05 degrees
+  /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
+  S junction_deviation = S(0.01);
+  bool exact_between_rapids_and_feeds{};  ///< keeps the joints of rapids with feed moves exact
+  S longest_wait = S(0.05);  ///< s at rest for which blocks are held back for the ones that follow them
+  bool background = false;   ///< another thread, or the main loop, calls `plan`; else `tick` does its work
 };
 
 using ExecutorOptions = BasicExecutorOptions<double>;
@@ -35,7 +40,13 @@ using ExecutorOptions = BasicExecutorOptions<double>;
 /// Runs a program on a machine: blocks go in, and each tick gives a set point. It is always on a plan that
 /// ends at rest on blocks that it has; a request is met by a new plan from the state of that instant, at the
 /// next tick. Whatever is asked for and however often, the tool and every axis keep their limits inside
-/// blocks; at a joint that is not smooth the velocity jumps, at no more than `plan_blocks` allows.
+/// blocks, and at joints that are smoothed; at another one the velocity jumps, at no more than `plan_blocks`
+/// allows.
+///
+/// Within a tolerance the path is smoothed, as by `plan_blocks`; no request changes it. What a block's path
+/// is depends on the blocks that follow: half of `capacity`, 66 at most, hold it back until they
+/// come, until a rest is known, or until the machine has rested for `longest_wait` (then the part ends at
+/// rest). From a capacity of 16 on that loses nothing; under a map paths stay exact.
 ///
 /// Look-ahead reaches over `capacity` blocks, and as many are kept behind to run backwards. All memory is
 /// inside. `Block` is that of `BlockReader`, or one with curves of one's own.
@@ -61,7 +72,9 @@ class Executor {
       : machine_(machine),
         tool_(tool_axes(machine)),
         background_(options.background),
-        feed_(machine, {{options.tolerance}, options.tolerance, options.rotary_tolerance}),
+        longest_wait_(options.longest_wait),
+        feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
+              {options.tolerance, options.rotary_tolerance, options.exact_between_rapids_and_feeds}),
         player_({played_, ahead_, waypoints_, spare_waypoints_}, static_cast<std::int64_t>(capacity)) {}
 
   [[nodiscard]] const M& machine() const { return machine_; }
@@ -79,7 +92,11 @@ class Executor {
   /// How many blocks have been taken.
   [[nodiscard]] std::int64_t pushed() const { return feed_.pushed(); }
   /// Nothing will follow.
-  void end_of_program() { end_.store(feed_.pushed(), std::memory_order_release); }
+  void end_of_program() {
+    feed_.end_part();
+    end_.store(feed_.pushed(), std::memory_order_release);
+    plan();
+  }
   /// Cuts blocks into cells and finds their limits, at most so many cells; whether there is more to be done
   /// now or later. `push` and, without `background`, `tick` do this by themselves.
   bool plan(std::size_t most_cells = std::numeric_limits<std::size_t>::max()) {
@@ -90,7 +107,7 @@ class Executor {
   /// came to rest before a block that cannot be planned.
   [[nodiscard]] bool finished() const {
     if (player_.stopped()) return true;
-    if (away_ || !player_.finished()) return false;
+    if (!player_.finished() || (away_ && player_.oldest() != player_.end())) return false;
     if (feed_.failed()) return true;
     const std::int64_t end = end_.load(std::memory_order_acquire);
     return end != not_ended && told_ >= end;
@@ -152,12 +169,13 @@ class Executor {
 
   /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
   /// block of a line (0: nothing is), and the motion begins where that block passes the place at which the
-  /// axes stand; where it does not pass within 1e-6, the error is discontinuous. False, and nothing done,
-  /// where the machine moves.
+  /// axes stand; where it does not pass within 1e-6, the error is discontinuous. Within a tolerance the block
+  /// is smoothed with those that follow only: the axes go to it first, where it passes within the tolerance.
+  /// False, and nothing done, where the machine moves.
   bool restart(int line, const Vector& position) {
     if (jog_.moves() || !player_.skip_to(0)) return false;
     feed_.restart(line, position);
-    away_ = returns_ = false;
+    away_ = returns_ = feed_.smooths();
     told_ = 0;
     end_.store(not_ended, std::memory_order_relaxed);
     stand_at(position);
@@ -176,6 +194,7 @@ class Executor {
   /// The same, and tells what the axes do over the tick, part by part; rests are none.
   template <std::invocable<const Part&> Visit>
   SetPoint tick(Scalar period, Visit&& visit, bool tell = true) {
+    if (player_.finished() && player_.rested() >= longest_wait_) feed_.let_go();
     if (!background_) plan(cells_in_tick);
     const std::int64_t ready = feed_.ready();
     time_.add(period);
@@ -186,7 +205,7 @@ class Executor {
         period,
         [&](const plan::BasicPlayedPart<Scalar>& part) {
           const Cell& cell = player_[part.block];
-          visit(Part(feed_[cell.block], part.phase, cell.from + part.along, part.direction));
+          visit(Part(feed_.path(cell.block), part.phase, cell.from + part.along, part.direction));
         },
         tell);
     std::int64_t reached = -1;
@@ -242,7 +261,7 @@ class Executor {
     const plan::BasicPlayed<Scalar> now = player_.place();
     if (now.block < 0) return false;
     const Cell& cell = player_[now.block];
-    const auto& path = feed_[cell.block].path;
+    const auto path = feed_.path(cell.block);
     path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
     return true;
   }
@@ -271,10 +290,10 @@ class Executor {
 
   void evaluate(const Cell& cell, const plan::BasicPlayed<Scalar>& now) {
     const B& block = feed_[cell.block];
-    const Scalar length = block.path.length();
-    const Scalar s = std::clamp(cell.from + now.along, Scalar(0), length);
+    const auto path = feed_.path(cell.block);
+    const Scalar s = std::clamp(cell.from + now.along, Scalar(0), path.length());
     const AxisMotion<Vector> axes =
-        motion(block.path.point_at(s), BasicState<Scalar>{s, now.velocity, now.acceleration, now.jerk});
+        motion(path.point_at(s), BasicState<Scalar>{s, now.velocity, now.acceleration, now.jerk});
     last_.block = static_cast<std::size_t>(cell.block);
     last_.line = block.line;
     last_.position = axes.position;
@@ -310,6 +329,7 @@ class Executor {
   M machine_;
   std::array<int, 3> tool_;
   bool background_;
+  Scalar longest_wait_;
   std::array<Cell, room> played_{};
   std::array<plan::BasicBlockCaps<Scalar>, capacity> ahead_{};
   std::array<plan::BasicWaypoint<Scalar>, capacity + 1> waypoints_{};

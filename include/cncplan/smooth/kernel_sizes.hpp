@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "cncplan/smooth/kernel.hpp"
 
@@ -81,30 +82,55 @@ template <std::floating_point S>
 
 }  // namespace detail
 
+/// The first of three steps to a size: that of the kernel alone, as large as wanted, as there is room for,
+/// and as the tolerance allows.
+template <std::floating_point S>
+void set_widest(BasicSizing<S>& own) {
+  const S share = own.deviation(S(1), own.tolerance);
+  // A curvature's correction leaves half of the tolerance to those of directions.
+  const S most = own.jump == Jump::direction ? S(1) / share : std::sqrt(S(0.5) / share);
+  own.widest = own.size = std::min({own.wanted, most, own.room / reach<S>(own.jump)});
+}
+
+/// The second: the sum of what the widest kernels of `all` deviate at number j of them, over the tolerance.
+template <std::floating_point S>
+[[nodiscard]] S deviation_sum(std::span<const BasicSizing<S>> all, std::size_t j) {
+  S sum = S(0);
+  for (std::size_t i = 0; i < all.size(); ++i) sum += detail::deviation_at(all, i, j);
+  return sum;
+}
+
+/// The third: the size of number i of `all`. One pass is enough: where the deviations add up to D > 1
+/// tolerances, kernels made smaller by D deviate less by D at least.
+template <std::floating_point S>
+[[nodiscard]] S fitted_size(std::span<const BasicSizing<S>> all, std::size_t i) {
+  S size = all[i].size;
+  for (std::size_t j = 0; j < all.size(); ++j)
+    if (all[j].sum > S(1) && detail::deviation_at(all, i, j) > S(0))
+      size = std::min(size, all[i].widest / all[j].sum);
+  return size;
+}
+
 /// Finds the sizes for corrections in order of their places, at most two at one: as large as wanted, as there
-/// is room for, and as the tolerance allows where kernels overlap. One pass is enough: where the deviations
-/// add up to D > 1 tolerances, kernels made smaller by D deviate less by D at least.
+/// is room for, and as the tolerance allows where kernels overlap.
 template <std::floating_point S>
 void fit_sizes(std::span<BasicSizing<S>> all) {
   constexpr std::size_t window = 2 * most_neighbours + 1;
-  const std::span<const BasicSizing<S>> read(all);
-  const auto around = [&](std::size_t j, auto&& visit) {
-    const std::size_t last = std::min(j + window + 1, all.size());
-    for (std::size_t i = j > window ? j - window : 0; i < last; ++i) visit(i);
+  const auto around = [&](std::size_t j) {
+    const std::size_t first = j > window ? j - window : 0;
+    return std::pair(
+        std::span<const BasicSizing<S>>(all).subspan(first, std::min(j + window + 1, all.size()) - first),
+        j - first);
   };
-  for (BasicSizing<S>& own : all) {
-    const S share = own.deviation(S(1), own.tolerance);
-    // A curvature's correction leaves half of the tolerance to those of directions.
-    const S most = own.jump == Jump::direction ? S(1) / share : std::sqrt(S(0.5) / share);
-    own.widest = own.size = std::min({own.wanted, most, own.room / reach<S>(own.jump)});
+  for (BasicSizing<S>& own : all) set_widest(own);
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const auto [near, at] = around(j);
+    all[j].sum = deviation_sum(near, at);
   }
-  for (std::size_t j = 0; j < all.size(); ++j)
-    around(j, [&](std::size_t i) { all[j].sum += detail::deviation_at(read, i, j); });
-  for (std::size_t i = 0; i < all.size(); ++i)
-    around(i, [&](std::size_t j) {
-      if (all[j].sum > S(1) && detail::deviation_at(read, i, j) > S(0))
-        all[i].size = std::min(all[i].size, all[i].widest / all[j].sum);
-    });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [near, at] = around(i);
+    all[i].size = fitted_size(near, at);
+  }
 }
 
 }  // namespace cncplan::smooth

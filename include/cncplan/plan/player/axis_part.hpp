@@ -8,6 +8,7 @@
 #include "cncplan/core/phase.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/player/jog.hpp"
+#include "cncplan/smooth/smoothed.hpp"
 
 namespace cncplan::plan {
 
@@ -19,11 +20,12 @@ class AxisPart {
  public:
   using Scalar = typename M::Scalar;
   using Vector = VectorN<Scalar, M::axis_count>;
+  using Driven = smooth::Smoothed<typename B::Path>;
 
   AxisPart() = default;
-  /// Along a block from `from` on, forwards or backwards.
-  AxisPart(const B& block, const BasicPhase<Scalar>& phase, Scalar from, int direction)
-      : block_(&block), phase_(phase), from_(from), direction_(direction) {}
+  /// Along a block's path from `from` on, forwards or backwards.
+  AxisPart(const Driven& path, const BasicPhase<Scalar>& phase, Scalar from, int direction)
+      : path_(path), phase_(phase), from_(from), direction_(direction) {}
   /// By a jog, which is `behind` seconds past the part's start.
   AxisPart(const Jog<M>& jog, Scalar behind)
       : jog_(&jog), phase_{Scalar(0), behind, Scalar(0), Scalar(0), Scalar(0), Scalar(0)}, from_(behind) {}
@@ -42,14 +44,14 @@ class AxisPart {
     if (jog_ != nullptr) return jog_->at(t - from_);
     const auto sense = static_cast<Scalar>(direction_);
     BasicState<Scalar> state = phase_.at(t);
-    state.position = std::clamp(from_ + sense * state.position, Scalar(0), block_->path.length());
+    state.position = std::clamp(from_ + sense * state.position, Scalar(0), path_.length());
     state.velocity *= sense;
     state.acceleration *= sense;
     state.jerk *= sense;
-    return motion(block_->path.point_at(state.position), state);
+    return motion(path_.point_at(state.position), state);
   }
 
-  const B* block_ = nullptr;
+  Driven path_;
   const Jog<M>* jog_ = nullptr;
   BasicPhase<Scalar> phase_{};
   Scalar from_{};

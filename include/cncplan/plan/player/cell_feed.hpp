@@ -16,6 +16,8 @@
 #include "cncplan/plan/cell_maker.hpp"
 #include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/plan/player/nearest.hpp"
+#include "cncplan/plan/player/smoothing_ahead.hpp"
+#include "cncplan/plan/smooth_junction.hpp"
 
 namespace cncplan::plan {
 
@@ -31,8 +33,14 @@ template <std::floating_point S>
   return limits;
 }
 
-/// Keeps blocks by their number and cuts them into cells, as far as there is room for those. One thread
-/// pushes and cuts; another one asks for blocks and lets them go.
+/// Over how many blocks the kernels of a feed with room for so many may reach on each side: it is to know the
+/// paths of blocks while a quarter of the room is ahead of them.
+[[nodiscard]] constexpr std::size_t neighbours_for(std::size_t room) {
+  return std::clamp<std::size_t>(room / 4 > 2 ? (room / 4 - 2) / 4 : 1, 1, smooth::most_neighbours);
+}
+
+/// Keeps blocks by their number, smooths them and cuts them into cells, as far as there is room for those.
+/// One thread pushes and cuts; another one asks for blocks and lets them go.
 template <MachineModel M, BlockModel B, std::size_t room>
 class CellFeed {
  public:
@@ -41,7 +49,10 @@ class CellFeed {
   using Cell = BasicPlayedBlock<Scalar>;
   using Rules = JointRules<Scalar, junction::BasicDeviation<Scalar>>;
 
-  CellFeed(const M& machine, const Rules& rules) : machine_(machine), maker_(machine, rules) {
+  using Driven = smooth::Smoothed<typename B::Path>;
+
+  CellFeed(const M& machine, const Rules& rules, const SmoothingRules<Scalar>& smoothing)
+      : machine_(machine), tool_(tool_axes(machine)), maker_(machine, rules), smoothing_(smoothing) {
     if (const auto ok = validate(machine); !ok) fail({ok.error(), 0, 0, {}});
   }
 
@@ -56,13 +67,17 @@ class CellFeed {
     slot.start = length_;
     if (block.path.length() > Scalar(0) && length_of(block.path, machine_) != LengthOf::rotary_axes)
       length_ += block.path.length();
+    smoothing_.push(slot.block, machine_);
     pushed_.store(number + 1, std::memory_order_release);
     return true;
   }
+  /// Nothing follows without a rest what has been pushed.
+  void end_part() { smoothing_.end_part(); }
 
   /// Hands at most so many cells to `take`, which says false when there is no room; whether there are more.
   template <class Take>
   bool cut(std::size_t most, Take&& take) {
+    if (waits_.exchange(false, std::memory_order_acquire)) smoothing_.end_part();
     for (; most > 0; --most) {
       if (!waiting_ && !make()) return false;
       if (waiting_) {
@@ -78,6 +93,8 @@ class CellFeed {
   /// any), passes a place, if one is given. Not while blocks are pushed or asked for.
   void restart(int line, const std::optional<Vector>& place) {
     maker_.restart(std::nullopt);
+    smoothing_.restart();
+    waits_ = false;
     waiting_.reset();
     next_.reset();
     first_line_ = line;
@@ -90,12 +107,22 @@ class CellFeed {
 
   // For the other thread.
   [[nodiscard]] const B& operator[](std::int64_t number) const { return slot(number).block; }
+  /// The path that is driven in its place.
+  [[nodiscard]] Driven path(std::int64_t number) const {
+    return smoothing_.driven(slot(number).block, number, tool_);
+  }
   /// mm from the start of the program.
   [[nodiscard]] Scalar start_length(std::int64_t number) const { return slot(number).start; }
   /// Blocks before this one are not asked for again.
   void release(std::int64_t number) { needed_.store(number, std::memory_order_release); }
 
+  /// The machine rests and waits for blocks: those that wait for what follows them go on without it.
+  void let_go() {
+    if (ready() < pushed()) waits_.store(true, std::memory_order_release);
+  }
+
   // For both.
+  [[nodiscard]] bool smooths() const { return smoothing_.smooths(); }
   /// How many blocks have been pushed, and of how many all cells have been taken.
   [[nodiscard]] std::int64_t pushed() const { return pushed_.load(std::memory_order_acquire); }
   [[nodiscard]] std::int64_t ready() const { return ready_.load(std::memory_order_acquire); }
@@ -132,7 +159,7 @@ class CellFeed {
     if (failed()) return false;
     if (next_) return waiting_ = std::exchange(next_, std::nullopt), true;
     if (maker_.done()) {
-      if (begun_ == pushed_.load(std::memory_order_relaxed)) return false;
+      if (begun_ == smoothing_.known()) return false;
       const B& block = slot(begun_).block;
       if (const auto ok = begin(block); !ok) return fail({ok.error(), block.line, block.column, {}}), false;
       ++begun_;
@@ -157,14 +184,27 @@ class CellFeed {
   }
 
   Expected<void> begin(const B& block) {
-    if (auto ok = maker_.begin(block); !ok) return ok;
+    const Driven driven = path(begun_);
+    if (auto ok = maker_.begin(block, driven, smoothing_.passing(begun_)); !ok) return ok;
     skipped_ = Scalar(0);
     if (!place_) return {};
-    skipped_ = nearest_length(block.path, *place_);
-    const Vector there = block.path.position_at(skipped_);
+    skipped_ = nearest_length(driven, *place_);
+    const Vector there = driven.position_at(skipped_);
     const Vector place = *place_;
     place_.reset();
+    if (near(place, there)) return {};
     return joined(std::optional<Vector>(place), there, machine_);
+  }
+
+  // Whether a place may be one on the path before it was cut anew: it is smoothed with the blocks before.
+  [[nodiscard]] bool near(const Vector& place, const Vector& there) const {
+    for (int i = 0; i < M::axis_count; ++i) {
+      const bool rotary = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
+      const SmoothingRules<Scalar>& rules = smoothing_.rules();
+      if (!(std::abs(there[i] - place[i]) <= (rotary ? rules.rotary_tolerance : rules.tolerance)))
+        return false;
+    }
+    return true;
   }
 
   [[nodiscard]] Cell played(const B& block, const BasicCell<Scalar>& cell) const {
@@ -210,7 +250,9 @@ class CellFeed {
   }
 
   M machine_;
+  std::array<int, 3> tool_;
   CellMaker<M, B, junction::BasicDeviation<Scalar>> maker_;
+  SmoothingAhead<M, B, room, neighbours_for(room)> smoothing_;
   std::array<Slot, room> slots_{};
   std::optional<Cell> waiting_;  // for room
   std::optional<Cell> next_;     // behind that
@@ -221,6 +263,7 @@ class CellFeed {
   std::int64_t begun_ = 0;       // blocks of which cells have been made
   gcode::Diagnostic fault_{};
   std::atomic<bool> failed_{false};
+  std::atomic<bool> waits_{false};  // the machine rests, and blocks are held back
   std::atomic<std::int64_t> pushed_{0};
   std::atomic<std::int64_t> ready_{0};
   std::atomic<std::int64_t> needed_{0};

@@ -1,0 +1,163 @@
+// The junction of two blocks: whether it is smoothed, and what that needs.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "cncplan/core/fixed_list.hpp"
+#include "cncplan/plan/block_checks.hpp"
+#include "cncplan/plan/limits_along.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/passing.hpp"
+#include "cncplan/plan/tool.hpp"
+#include "cncplan/smooth/kernel_sizes.hpp"
+
+namespace cncplan::plan {
+
+/// Tolerances for smoothing.
+template <std::floating_point S>
+struct SmoothingRules {
+  S tolerance{};         ///< mm, > 0, of blocks that do not say their own
+  S rotary_tolerance{};  ///< rad, > 0
+  bool exact_between_rapids_and_feeds{};
+};
+
+/// Turns sharper than this stay exact: where a tool goes back the way it came, the depth counts.
+template <std::floating_point S>
+inline constexpr S sharpest_smooth_turn = S(175) * std::numbers::pi_v<S> / S(180);
+
+/// Exact junctions of the exact path mode that turn by no more than this are passed.
+template <std::floating_point S>
+inline constexpr S flattest_stop = std::numbers::pi_v<S> / S(1800);
+
+namespace detail {
+
+/// Two blocks that follow each other without a rest between them.
+template <MachineModel M, BlockModel B>
+struct Junction {
+  using S = typename M::Scalar;
+  using Vector = VectorN<S, M::axis_count>;
+
+  Vector direction, curvature;  ///< their jumps
+  S turn{};                     ///< of the tool, rad; of the axes where it stands still
+
+  Junction(const B& before, const B& after, const std::array<int, 3>& tool) {
+    const auto last = before.path.point_at(before.path.length()), first = after.path.point_at(S(0));
+    direction = first.first - last.first;
+    curvature = first.second - last.second;
+    const auto a = in_space(last.first, tool), b = in_space(first.first, tool);
+    turn = a.norm() > S(0) && b.norm() > S(0) ? between(a, b) : between(last.first, first.first);
+  }
+
+ private:
+  template <class V>
+  static S between(const V& a, const V& b) {
+    const V x = a.normalized(), y = b.normalized();
+    return S(2) * std::atan2((y - x).norm(), (y + x).norm());
+  }
+};
+
+}  // namespace detail
+
+/// How far the tool may leave a block, mm; 0 where it may not.
+template <BlockModel B, std::floating_point S>
+[[nodiscard]] S tolerance_of(const B& block, const SmoothingRules<S>& rules) {
+  return block.exact_path ? S(0) : block.tolerance.value_or(rules.tolerance);
+}
+
+/// How the motion passes from one block to the next, both of a length > 0, without a rest between them.
+template <BlockModel B, MachineModel M>
+[[nodiscard]] Passing passing_between(const B& before, const B& after, const M& machine,
+                                      const SmoothingRules<typename M::Scalar>& rules) {
+  using S = typename M::Scalar;
+  if (length_of(before.path, machine) != length_of(after.path, machine)) return Passing::stop;
+  const S turn = detail::Junction<M, B>(before, after, tool_axes(machine)).turn;
+  const bool exact = !(std::min(tolerance_of(before, rules), tolerance_of(after, rules)) > S(0)) ||
+                     (rules.exact_between_rapids_and_feeds && before.rapid != after.rapid);
+  if (exact) return turn > flattest_stop<S> ? Passing::stop : Passing::policy;
+  return turn > sharpest_smooth_turn<S> ? Passing::stop : Passing::smooth;
+}
+
+namespace detail {
+
+/// The limits of a block as it is programmed.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] BasicLimits<typename M::Scalar> top_limits(const B& block, const M& machine) {
+  using S = typename M::Scalar;
+  return limits_along(block.path.bounds(S(0), block.path.length()), machine,
+                      wanted_speed(block, machine, length_of(block.path, machine)),
+                      block.rapid ? rapid_speed(machine) : machine.limits.velocity);
+}
+
+}  // namespace detail
+
+/// A jump of a derivative at a junction: what its correction has to keep to, and the jump.
+template <std::floating_point S, int N>
+struct BasicJump {
+  smooth::BasicSizing<S> sizing;
+  VectorN<S, N> step = VectorN<S, N>::Zero();
+};
+
+/// The jumps between two blocks that follow each other, of direction and of curvature; one that is only
+/// rounding is none. `at` is where the junction is, `speed` what both blocks allow.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] FixedList<BasicJump<typename M::Scalar, M::axis_count>, 2> jumps_between(
+    const B& before, const B& behind, typename M::Scalar at, typename M::Scalar speed, const M& machine,
+    const SmoothingRules<typename M::Scalar>& rules) {
+  using S = typename M::Scalar;
+  constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();
+  constexpr S smallest = S(1e-3);  // mm: what is only rounding has the size of what is next to it
+  const auto tool = tool_axes(machine);
+  const detail::Junction<M, B> junction(before, behind, tool);
+  FixedList<BasicJump<S, M::axis_count>, 2> jumps;
+  const auto add = [&](smooth::Jump kind, const VectorN<S, M::axis_count>& step) {
+    if (!(step.cwiseAbs().maxCoeff() > rounding)) return;
+    smooth::BasicSizing<S> sizing{.at = at, .jump = kind, .wanted = smallest};
+    const auto want = [&](S size, S acceleration, S jerk) {
+      sizing.wanted = std::max(sizing.wanted, smooth::wanted_size(kind, size, speed, acceleration, jerk));
+    };
+    sizing.tool = in_space(step, tool).norm();
+    want(sizing.tool, machine.limits.acceleration, machine.limits.jerk);
+    for (int i = 0; i < M::axis_count; ++i) {
+      const auto& axis = machine.axes[static_cast<std::size_t>(i)];
+      want(std::abs(step[i]), least_acceleration(axis), axis.jerk);
+      if (std::find(tool.begin(), tool.end(), i) != tool.end()) continue;
+      const S allowed = axis.kind == AxisKind::rotary ? rules.rotary_tolerance : rules.tolerance;
+      sizing.others = std::max(sizing.others, std::abs(step[i]) / allowed);
+    }
+    jumps.push_back({sizing, step});
+  };
+  add(smooth::Jump::direction, junction.direction);
+  add(smooth::Jump::curvature, junction.curvature);
+  return jumps;
+}
+
+/// What a junction has to know of a block beside it.
+template <std::floating_point S>
+struct BasicBeside {
+  S length{};
+  BasicLimits<S> limits;  ///< as it is programmed
+};
+
+/// Whether coming to rest at a corner takes less time than going round it: at the speed u at which its kernel
+/// of length 4 w takes half of the jerk J, with a ramp down to that and one up again. From V to u and back at
+/// J, ramps lose 2 sqrt((V - u) / J) (V - u) / V. V is what the shorter neighbour has room for.
+template <std::floating_point S, int N>
+[[nodiscard]] bool faster_at_rest(const BasicJump<S, N>& jump, const BasicBeside<S>& before,
+                                  const BasicBeside<S>& behind) {
+  const smooth::BasicSizing<S>& sizing = jump.sizing;
+  if (sizing.jump != smooth::Jump::direction || !(sizing.size < sizing.wanted)) return false;
+  const S J = std::min(before.limits.jerk, behind.limits.jerk), L = std::min(before.length, behind.length);
+  const S V = std::min({before.limits.velocity, behind.limits.velocity, std::cbrt(J * L * L / S(4))});
+  const S w = sizing.size;
+  const S u = std::min(V, std::cbrt(S(0.75) * J * w * w / jump.step.norm()));
+  const S round = S(2) * std::sqrt((V - u) / J) * (V - u) / V + S(4) * w * (S(1) / u - S(1) / V);
+  return S(2) * std::sqrt(V / J) < round;
+}
+
+}  // namespace cncplan::plan

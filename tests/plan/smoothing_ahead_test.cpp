@@ -1,0 +1,93 @@
+// Corrections of blocks that come in one by one, against those of the whole program.
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cncplan/plan/player/smoothing_ahead.hpp"
+#include "cncplan/plan/smoothing.hpp"
+#include "support/catch.hpp"
+#include "support/executor_check.hpp"
+#include "support/executor_machines.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+constexpr std::size_t room = 512;
+
+// How far the paths of a machine's blocks are apart, and where the first joint is that is passed otherwise.
+template <MachineModel M>
+void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, double tolerance) {
+  const plan::SmoothingRules<double> rules{tolerance, 1e-3, false};
+  const auto whole = plan::smoothing(std::span(blocks), machine, rules);
+  const auto ahead =
+      std::make_unique<plan::SmoothingAhead<M, ProgramBlock<M>, room, smooth::most_neighbours>>(rules);
+  const auto tool = tool_axes(machine);
+  std::size_t told = 0;
+  const auto look = [&] {
+    for (; told < static_cast<std::size_t>(ahead->known()); ++told) {
+      const auto& block = blocks[told];
+      const auto number = static_cast<std::int64_t>(told);
+      const double length = block.path.length();
+      if (!(length > 0)) continue;
+      CAPTURE(told);
+      CHECK(ahead->passing(number) == whole.passing(told));
+      const auto one = ahead->driven(block, number, tool);
+      const auto other = whole.path(block.path, told, tool);
+      for (int i = 0; i <= 8; ++i) {
+        const auto a = one.point_at(length * i / 8), b = other.point_at(length * i / 8);
+        CHECK((a.position - b.position).cwiseAbs().maxCoeff() < 1e-10);
+        CHECK((a.first - b.first).cwiseAbs().maxCoeff() < 1e-9);
+      }
+    }
+  };
+  std::int64_t held = 0;  // the most blocks that move and wait
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    ahead->push(blocks[i], machine);
+    look();
+    std::int64_t moving = 0;
+    for (std::size_t k = told; k <= i; ++k) moving += blocks[k].path.length() > 0 ? 1 : 0;
+    held = std::max(held, moving);
+  }
+  CHECK(held <= static_cast<std::int64_t>(4 * smooth::most_neighbours + 2));
+  ahead->end_part();
+  CHECK(ahead->known() == static_cast<std::int64_t>(blocks.size()));
+  look();
+}
+
+}  // namespace
+
+TEST_CASE("blocks one by one are smoothed as the whole program is", "[executor]") {
+  test::Random random;
+  constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+  for (int round = 0; round < 40; ++round) {
+    const double tolerance = random.log_uniform(1e-3, 0.3);
+    CAPTURE(round, tolerance);
+    compare(test::blocks_of(test::random_lines(random, 400, {0, 0, 0}, round % 2 == 0 ? 20 : 2, ""), mill),
+            mill, tolerance);
+    compare(test::blocks_of(test::random_lines(random, 200, {0, 0, 30}, 20, "ACU"), test::six_axes),
+            test::six_axes, tolerance);
+  }
+}
+
+TEST_CASE("a block is known once those are there that can act on it, or none will", "[executor]") {
+  constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+  const auto blocks = test::blocks_of({"F600", "G1 X1", "Y1", "X2", "G4 P0.1", "Y2", "X3"}, mill);
+  plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> ahead({0.1, 1e-3, false});
+  const auto after = [&](std::size_t i) {
+    ahead.push(blocks[i], mill);
+    return ahead.known();
+  };
+  CHECK(after(0) == 0);
+  CHECK(after(1) == 0);
+  CHECK(after(2) == 0);
+  CHECK(after(3) == 4);  // a dwell
+  CHECK(after(4) == 4);
+  CHECK(after(5) == 4);
+  ahead.end_part();
+  CHECK(ahead.known() == 6);
+  CHECK(ahead.passing(4) == plan::Passing::stop);
+  CHECK(ahead.passing(5) == plan::Passing::smooth);
+}
