@@ -26,9 +26,9 @@ constexpr std::array steps_per_unit{160.0, 400.0, 160.0, 400.0};
 
 using Runner = Executor<Machine<3>, 32>;
 
-std::unique_ptr<Runner> loaded(const Machine<3>& machine,
-                               const std::vector<ProgramBlock<Machine<3>>>& blocks) {
-  auto executor = std::make_unique<Runner>(machine);
+std::unique_ptr<Runner> loaded(const Machine<3>& machine, const std::vector<ProgramBlock<Machine<3>>>& blocks,
+                               double tolerance = 0.01) {
+  auto executor = std::make_unique<Runner>(machine, Runner::Options{.tolerance = tolerance});
   for (const auto& block : blocks) REQUIRE(executor->push(block));
   executor->end_of_program();
   return executor;
@@ -60,7 +60,7 @@ TEST_CASE("edges of an executor are those of the plan of the whole", "[live]") {
     REQUIRE(planned);
     std::array<std::vector<MotorEdge>, 4> expected, found;
     for (const MotorEdge& edge : planned->step_edges()) expected[edge.motor].push_back(edge);
-    const auto executor = loaded(machine, blocks);
+    const auto executor = loaded(machine, blocks, 0);
     LiveSteps steps(*executor);
     REQUIRE(steps.motor_count() == 4);
     while (!executor->finished()) {

@@ -112,7 +112,7 @@ class TickCheck {
     const auto s = path_length(block, now);
     grow(faults.place, (block.path.position_at(s) - now.position).cwiseAbs().maxCoeff() - how_.tolerance -
                            rounding_of(now));
-    if (now.velocity.isZero() && !(s < block.path.length())) ++waited_[now.block];
+    if (now.velocity.isZero() && !(s + rounding_of(now) < block.path.length())) ++waited_[now.block];
     before_ = now;
   }
 

@@ -107,7 +107,7 @@ struct BasicJump {
 /// rounding is none. `at` is where the junction is, `speed` what both blocks allow.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] FixedList<BasicJump<typename M::Scalar, M::axis_count>, 2> jumps_between(
-    const B& before, const B& behind, typename M::Scalar at, typename M::Scalar speed, const M& machine,
+    const B& before, const B& behind, double at, typename M::Scalar speed, const M& machine,
     const SmoothingRules<typename M::Scalar>& rules) {
   using S = typename M::Scalar;
   constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();

@@ -22,7 +22,7 @@ struct BasicSmoothing {
   struct OfBlock {
     std::size_t first{};  ///< of the corrections
     std::size_t count{};
-    S start{};  ///< mm from the start of the program, as the corrections are counted
+    double start{};  ///< mm from the start of the program, as the corrections are counted
     Passing passing = Passing::policy;
   };
 
@@ -36,7 +36,7 @@ struct BasicSmoothing {
   template <Path P>
   [[nodiscard]] smooth::Smoothed<P> path(const P& programmed, std::size_t block,
                                          const std::array<int, 3>& tool) const {
-    if (blocks.empty()) return {programmed, {}, S(0), tool};
+    if (blocks.empty()) return {programmed, {}, 0, tool};
     const OfBlock& own = blocks[block];
     return {programmed, std::span(corrections).subspan(own.first, own.count), own.start, tool};
   }
@@ -57,7 +57,7 @@ class Smoother {
 
   [[nodiscard]] Result run() {
     result_.blocks.resize(blocks_.size());
-    S place = S(0);
+    double place = 0;
     std::size_t before = none;
     bool rests = true;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -71,7 +71,7 @@ class Smoother {
         moving_.push_back(i);
         before = i;
         rests = false;
-        place += block.path.length();
+        place += static_cast<double>(block.path.length());
       }
       rests = rests || block.exact_stop || block.pause > S(0);
     }
@@ -98,7 +98,7 @@ class Smoother {
   }
 
   // Corrections of the part that ends here, and which of its blocks each acts on.
-  void finish(S end) {
+  void finish(double end) {
     if (!sizings_.empty()) {
       set_rooms(end);
       smooth::fit_sizes(std::span(sizings_));
@@ -117,18 +117,19 @@ class Smoother {
     moving_.clear();
   }
 
-  [[nodiscard]] S start_of(std::size_t moving, S end) const {
+  [[nodiscard]] double start_of(std::size_t moving, double end) const {
     return moving < moving_.size() ? result_.blocks[moving_[moving]].start : end;
   }
 
   // Room to the rests on both sides and to the farthest neighbours; the lowest tolerance next to each.
-  void set_rooms(S end) {
+  void set_rooms(double end) {
     for (std::size_t i = 0; i < sizings_.size(); ++i) {
       auto& sizing = sizings_[i];
       const std::size_t at = junctions_[i];  // the block behind
       const std::size_t left = at > smooth::most_neighbours ? at - smooth::most_neighbours : 0;
       const std::size_t right = std::min(at + smooth::most_neighbours, moving_.size());
-      sizing.room = std::min(sizing.at - start_of(left, end), start_of(right, end) - sizing.at);
+      sizing.room =
+          static_cast<S>(std::min(sizing.at - start_of(left, end), start_of(right, end) - sizing.at));
       std::size_t from = left, to = right;
       for (std::size_t k = i; k-- > 0 && from == left && junctions_[k] > left;)
         if (junctions_[k] < at) from = junctions_[k];
@@ -148,7 +149,8 @@ class Smoother {
 
   void reach_blocks(std::size_t correction, std::size_t behind) {
     const auto& own = result_.corrections[correction];
-    const S from = own.at - own.support(), to = own.at + own.support();
+    const auto support = static_cast<double>(own.support());
+    const double from = own.at - support, to = own.at + support;
     const auto use = [&](std::size_t moving) {
       auto& block = result_.blocks[moving_[moving]];
       if (block.count == 0) block.first = correction;

@@ -17,7 +17,7 @@ namespace cncplan::smooth {
 /// per mm where curvature jumps.
 template <std::floating_point S>
 struct BasicSizing {
-  S at{};  ///< mm, as in `BasicCorrection`
+  double at{};  ///< mm, as in `BasicCorrection`
   Jump jump{};
   S wanted{};     ///< mm: where the motion needs no larger one
   S room{};       ///< mm on each side that it may reach
@@ -70,10 +70,10 @@ template <std::floating_point S>
 [[nodiscard]] S deviation_at(std::span<const BasicSizing<S>> all, std::size_t i, std::size_t j) {
   const BasicSizing<S>& own = all[i];
   const S size = own.widest;
-  S place = all[j].at;
+  double place = all[j].at;
   if (own.jump == Jump::curvature)
     for (std::size_t k = j; k != i && place == all[j].at;) place = all[k < i ? ++k : --k].at;
-  const S x = std::abs(own.at - place);
+  const S x = static_cast<S>(std::abs(own.at - place));
   if (!(x < size * reach<S>(own.jump))) return S(0);
   const S most = own.deviation(size, all[j].tolerance);
   if (own.jump == Jump::curvature) return most;

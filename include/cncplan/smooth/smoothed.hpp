@@ -32,10 +32,10 @@ class Smoothed {
   using ToolAxes = std::array<int, 3>;
 
   Smoothed() = default;
-  Smoothed(const P& path, std::span<const Correction> corrections, Scalar start,
+  Smoothed(const P& path, std::span<const Correction> corrections, double start,
            const ToolAxes& tool = {0, 1, 2})
       : path_(&path), corrections_(corrections), start_(start), tool_(tool) {}
-  Smoothed(const P&&, std::span<const Correction>, Scalar, const ToolAxes& = {}) = delete;
+  Smoothed(const P&&, std::span<const Correction>, double, const ToolAxes& = {}) = delete;
 
   /// As programmed.
   [[nodiscard]] const P& programmed() const { return *path_; }
@@ -137,7 +137,7 @@ class Smoothed {
     Scalar next = length();
     for (const Correction& c : corrections_)
       for (const Scalar u : {Scalar(1), reach<Scalar>(c.jump)}) {
-        const Scalar place = c.at - start_ + (before(c) ? -u : u) * c.size;
+        const Scalar place = from_start(c) + (before(c) ? -u : u) * c.size;
         if (place > s && place < next) next = place;
       }
     return next;
@@ -154,11 +154,13 @@ class Smoothed {
   using Enclosed = std::array<Range, 4>;  // by the order of the derivative; the first is not used
 
   // Whether the path lies before the junction.
-  [[nodiscard]] bool before(const Correction& c) const { return start_ + length() / Scalar(2) < c.at; }
+  // From the path's start to the junction.
+  [[nodiscard]] Scalar from_start(const Correction& c) const { return static_cast<Scalar>(c.at - start_); }
+  [[nodiscard]] bool before(const Correction& c) const { return length() / Scalar(2) < from_start(c); }
 
   // From the junction, in sizes, never negative.
   [[nodiscard]] Scalar distance(const Correction& c, Scalar s) const {
-    const Scalar x = start_ - c.at + s;
+    const Scalar x = s - from_start(c);
     return std::max((before(c) ? -x : x) / c.size, Scalar(0));
   }
 
@@ -254,7 +256,7 @@ class Smoothed {
 
   const P* path_ = nullptr;
   std::span<const Correction> corrections_{};
-  Scalar start_{};
+  double start_{};
   ToolAxes tool_{0, 1, 2};
 };
 

@@ -53,14 +53,14 @@ class SmoothingAhead {
     if constexpr (possible) advance(true);
     begin_ = end_;
     sizings_end_ = 0;
-    place_ = Scalar(0);
+    place_ = 0;
     rests_ = true;
   }
   /// Forgets all blocks; the next one begins at rest.
   void restart() {
     begin_ = end_ = widest_ = summed_ = sized_ = known_ = pushed_ = 0;
     sizings_end_ = 0;
-    place_ = Scalar(0);
+    place_ = 0;
     rests_ = true;
   }
 
@@ -88,7 +88,7 @@ class SmoothingAhead {
   struct OfBlock {
     std::int64_t first{};  // of the corrections
     std::size_t count{};
-    Scalar start{};  // mm from the start of the part from rest to rest
+    double start{};  // mm from the start of the part from rest to rest
     Passing passing = Passing::policy;
   };
 
@@ -125,7 +125,7 @@ class SmoothingAhead {
              sizings_end_,
              0};
       if (passing == Passing::smooth) add_junction(own, block, machine);
-      place_ += block.path.length();
+      place_ += static_cast<double>(block.path.length());
       last_ = &block;
       rests_ = false;
       ++end_;
@@ -194,7 +194,7 @@ class SmoothingAhead {
     Mover& own = mover(at);
     if (own.sizing_count == 0) return;
     const std::int64_t left = std::max(at - reach, begin_), right = std::min(at + reach, end_);
-    const Scalar end = right < end_ ? mover(right).own.start : place_;
+    const double end = right < end_ ? mover(right).own.start : place_;
     std::int64_t from = at - 1, to = at + 1;
     while (from > left && mover(from).sizing_count == 0) --from;
     while (to < right && mover(to).sizing_count == 0) ++to;
@@ -202,7 +202,7 @@ class SmoothingAhead {
     for (std::int64_t i = from; i < to; ++i) tolerance = std::min(tolerance, mover(i).tolerance);
     for (std::size_t k = own.sizing; k < own.sizing + own.sizing_count; ++k) {
       auto& sizing = sizings_[k];
-      sizing.room = std::min(sizing.at - mover(left).own.start, end - sizing.at);
+      sizing.room = static_cast<Scalar>(std::min(sizing.at - mover(left).own.start, end - sizing.at));
       sizing.tolerance = tolerance;
       smooth::set_widest(sizing);
     }
@@ -226,7 +226,8 @@ class SmoothingAhead {
   }
 
   void reach_blocks(const Correction& correction, std::int64_t number, std::int64_t behind) {
-    const Scalar from = correction.at - correction.support(), to = correction.at + correction.support();
+    const auto support = static_cast<double>(correction.support());
+    const double from = correction.at - support, to = correction.at + support;
     const auto use = [&](std::int64_t i) {
       OfBlock& block = mover(i).own;
       if (block.count == 0) block.first = number;
@@ -245,7 +246,7 @@ class SmoothingAhead {
   Rules rules_;
   const B* last_ = nullptr;  // that moves
   bool rests_ = true;        // behind it
-  Scalar place_{};           // mm from the start of the part to its end so far
+  double place_ = 0;         // mm from the start of the part to its end so far
   std::int64_t pushed_ = 0;
   // Blocks that move: the first one of the part, and how far each step has come.
   std::int64_t begin_ = 0, end_ = 0, widest_ = 0, summed_ = 0, sized_ = 0, known_ = 0;
