@@ -195,6 +195,13 @@ TEST_CASE("words that belong together stay on one line") {
   CHECK(written(test::read("G5 P10000 Q3\n", dialect).items, dialect).ends_with("\nG5 P10000 Q3\n"));
 }
 
+TEST_CASE("a tap's turns of the spindle are written on lines of their own") {
+  const auto tap = test::read("G0 X1 Y1 Z5\nS900 M3\nG84 X2 Z-1 R2 P0.5 F9\n");
+  check_round_trip(tap.items);
+  const auto at_the_bottom = test::read("S9 M3\nF9 G84 X1 Z0 R0 P1\n");
+  check_round_trip(at_the_bottom.items);
+}
+
 TEST_CASE("what cannot be written is refused") {
   gcode::Writer writer;
   std::string text;
@@ -220,6 +227,20 @@ TEST_CASE("what cannot be written is refused") {
   CHECK(error(gcode::Word{'S', INFINITY, 1, 1}) == Error{ErrorCode::not_finite, "S", INFINITY, 1e15});
   CHECK(error(gcode::Word{'O', 1e16, 1, 1}).code == ErrorCode::above_limit);
   CHECK(text.empty());
+}
+
+TEST_CASE("no text ends a feed, which a thread has without F") {
+  const auto thread = test::read("S60 M3\nG33 Z-1 K1\nG1 X2\n");
+  REQUIRE(thread.error == "");
+  std::string text;
+  gcode::Writer writer;
+  int refused = 0;
+  for (const Item& item : thread.items)
+    if (const auto ok = writer.write(item, std::back_inserter(text)); !ok) {
+      CHECK(ok.error() == Error{ErrorCode::missing_word, "F"});
+      ++refused;
+    }
+  CHECK(refused == 1);
 }
 
 TEST_CASE("writing does not touch the heap") {

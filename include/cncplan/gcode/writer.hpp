@@ -73,7 +73,7 @@ class Writer {
 
   /// Writes one item and returns the iterator behind it. Errors, with nothing written: a number that is not
   /// finite, or beyond `max_number`; a dwell of less than no time; a motion that does not begin where the
-  /// last one ended.
+  /// last one ended; a feed move without a feed behind one that has it.
   template <std::output_iterator<char> Out>
   Expected<Out> write(const Item& item, Out out) {
     if (auto ok = check(item); !ok) return tl::unexpected(ok.error());
@@ -158,6 +158,8 @@ class Writer {
     if (auto ok = number(motion.radius, "R"); !ok) return ok;
     if (auto ok = number(motion.tolerance.value_or(0.0), "tolerance"); !ok) return ok;
     if (auto ok = number(motion.merge_tolerance, "merge tolerance"); !ok) return ok;
+    if (motion.kind != MotionKind::rapid && !motion.feed && modal_.feed)  // a thread has one without F
+      return tl::unexpected(Error{ErrorCode::missing_word, "F"});
     return number(motion.feed.value_or(0.0) * 60.0, "F");
   }
 
@@ -165,6 +167,7 @@ class Writer {
   void end_line(Pen<Out>& pen) {
     if (line_open_) pen.text("\n");
     line_open_ = false;
+    word_turns_ = false;
     word_line_ = 0;
   }
 
@@ -192,14 +195,16 @@ class Writer {
     pen.text({digits.data(), end});
   }
 
-  /// Words that came from one line stay on one: some belong together. The program's number stands before
-  /// everything.
+  /// Words that came from one line stay on one: some belong together. A tap stops its spindle and turns it
+  /// the other way, which takes two lines. The program's number stands before everything.
   template <class Out>
   void pass(const Word& word, Pen<Out>& pen) {
     if (word.letter != 'O' && !begun_) begin(pen);
-    if (word.line == 0 || word.line != word_line_) end_line(pen);
+    const bool turns = word.letter == 'M' && word.number >= 3.0 && word.number <= 5.0;
+    if (word.line == 0 || word.line != word_line_ || (turns && word_turns_)) end_line(pen);
     put(pen, name(word.letter), word.number);
     word_line_ = word.line;
+    word_turns_ = word_turns_ || turns;
   }
 
   template <class Out>
@@ -330,6 +335,7 @@ class Writer {
   Position offset_{};
   std::size_t work_system_{};
   int word_line_{};
+  bool word_turns_{};  ///< there is one of M3 to M5 on the line
   bool begun_{};
   bool line_open_{};
 };
