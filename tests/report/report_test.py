@@ -1,6 +1,6 @@
 """Reports in a real browser: report_test.py SIMULATE TIRE_MOLD EXAMPLES CASE...
 
-Values at the cursor are compared with the rows of --samples, which the page has never seen."""
+A case may end in " in firefox"; else it is run in chromium. Values at the cursor are compared with the rows of --samples, which the page has never seen."""
 
 import csv
 import json
@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 from browser import Browser
+from firefox import Firefox
 
 SIMULATE, TIRE_MOLD, EXAMPLES = sys.argv[1:4]
 NEAR = 1e-6  # of a value or of one, whichever is larger
@@ -25,6 +26,8 @@ def check(holds, text):
 
 class Run:
     """A program run in a folder of its own, and its report opened."""
+
+    open_browser = Browser
 
     def __init__(self, program, *options, command=SIMULATE):
         self.folder = tempfile.TemporaryDirectory(prefix="cncplan-report-")
@@ -41,7 +44,7 @@ class Run:
         self.summary = json.loads(run.stdout)
         with open(samples, newline="") as file:
             self.samples = [{name: float(x) for name, x in row.items()} for row in csv.DictReader(file)]
-        self.browser = Browser()
+        self.browser = Run.open_browser()
         self.seconds = self.browser.open(self.page)
 
     def __enter__(self):
@@ -410,5 +413,7 @@ CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_
          "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
 
 for case in sys.argv[4:]:
-    CASES[case]()
+    name, _, browser = case.partition(" in ")
+    Run.open_browser = Firefox if browser == "firefox" else Browser
+    CASES[name]()
     print(f"{case}: passed")
