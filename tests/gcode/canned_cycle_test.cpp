@@ -66,7 +66,9 @@ TEST_CASE("rows of holes, in increments and in other planes") {
 }
 
 TEST_CASE("words of a cycle hold until another code of motion") {
-  CHECK(steps("F1 G99 G0 Z2\nG82 X1 Z-1 R2 P1\nX2 Z-2\nG80\nX3").starts_with("5:1: G0, G1, G2 or G3"));
+  CHECK(test::read("F1 G99 G0 Z2\nG82 X1 Z-1 R2 P1\nX2 Z-2\nG80\nX3").motions().back().kind ==
+        gcode::MotionKind::rapid);
+  CHECK(steps("F1 G99 G0 Z2\nG82 X1 Z-1 R2 P1\nG1 X2\nG80\nX3").starts_with("5:1: G0, G1, G2 or G3"));
   CHECK(steps("F1 G99 G0 Z2\nG82 X1 Z-1 R2 P1\nG0 X3\nG82 X2").starts_with("4:1: Z: a required word"));
   CHECK(steps("F1 G99 G0 Z2\nG82 X1 Z-1 R2 P1\nX2 Z-2\nG0 X0") ==
         "r0,0,2 r1,0,2 f1,0,-1 d1 r1,0,2 r2,0,2 f2,0,-2 d1 r2,0,2 r0,0,2");

@@ -36,6 +36,11 @@ TEST_CASE("words of axes that the machine lacks are left out") {
 }
 
 TEST_CASE("a rapid where no motion code holds") {
+  const auto behind_a_cycle = test::read("F1 G81 X1 Z-1 R1\nG80\nG80\nX5");
+  CHECK(behind_a_cycle.error.empty());
+  CHECK(behind_a_cycle.motions().back().kind == gcode::MotionKind::rapid);
+  CHECK(behind_a_cycle.all<gcode::Warning>().size() == 1);
+  CHECK_FALSE(test::read("F1 G1 X1\nG80\nX5").error.empty());
   CHECK(warnings("F1 G81 X1 Z-1 R1\nG80\nZ5\nZ6") ==
         "3:1: warning: motion is a rapid: no motion code holds here\n");
   CHECK(read("X5\nG1 F1 X6\nX7").motions()[0].kind == gcode::MotionKind::rapid);
@@ -49,6 +54,7 @@ TEST_CASE("printers' words") {
   CHECK(read("G4 S2\nM3").all<gcode::Word>().size() == 1);  // S is no speed
   CHECK(read("G0 X5 Y5 Z5\nG28 X Y\nM117 Printing 50%\nG29").error.empty());
   CHECK(read("G0 X5 Y5 Z5\nG28 XY").motions().back().end == gcode::Position{0, 0, 5});
+  CHECK_FALSE(read("G95 G4 S600 F0.2 G1 X3").error.empty());  // nor makes it a feed
   CHECK_FALSE(test::read("G4 S2").error.empty());
   CHECK_FALSE(test::read("G0 X Y5").error.empty());
 }
@@ -64,7 +70,8 @@ TEST_CASE("codes that nothing is known of are handed on") {
 TEST_CASE("commands to a sender are passed over") {
   CHECK(warnings("$H\n$$\n? ; where\n$100=250\nG0 X1") ==
         "1:1: warning: $ is not known here: it is handed on\n");
-  CHECK_FALSE(test::read("$H").error.empty());
+  CHECK(test::read("$H\n$I  ; version\nG0 X1").motions().size() == 1);
+  CHECK_FALSE(test::read("$1").error.empty());
 }
 
 TEST_CASE("a centre of 0 beside the plane says nothing") {

@@ -63,9 +63,9 @@ struct Dialect {
   bool incremental_center = true;  ///< G91.1 holds at the start; false: G90.1
   bool retract_to_r = true;        ///< G99 holds at the start; false: G98
   bool block_delete = true;        ///< lines that begin with / are left out
-  /// What LinuxCNC refuses and real programs have is read with a warning: words of A B C E U V W that name no
-  /// axis are left out; G0 holds at the start (grbl) and behind G80 (Fanuc); G4 S counts seconds (Marlin);
-  /// commands to grbl's sender are passed over.
+  /// More of what LinuxCNC refuses and real programs have is read with a warning: words of A B C E U V W that
+  /// name no axis are left out; G0 holds at the start (grbl) and behind every G80; G4 S counts seconds
+  /// (Marlin).
   bool lenient = false;
 
   friend bool operator==(const Dialect&, const Dialect&) = default;

@@ -229,7 +229,7 @@ struct ModalCode {
 /// What holds from one line to the next, positions and offsets apart.
 struct Modal {
   Code motion = no_code;       ///< of the group; none at the start and after G80
-  bool assumed_rapid = false;  ///< G0 holds, though no code has said so (`Dialect::lenient`)
+  bool assumed_rapid = false;  ///< G0 holds, though no code has said so: behind the G80 of a cycle
   Plane plane = Plane::xy;
   bool incremental = false;           ///< G91
   bool incremental_center = true;     ///< G91.1

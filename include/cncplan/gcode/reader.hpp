@@ -147,7 +147,7 @@ class Reader {
       if (dialect_.block_delete) return out;
       ++from;
     }
-    if (dialect_.lenient && is_sender_command(text.substr(std::min(from, text.size())))) {
+    if (is_sender_command(text.substr(std::min(from, text.size())))) {
       if (!warnings_.first_sender_command()) return out;
       *out = Item(
           Warning{{{ErrorCode::handed_on, name(text[from]), 0.0, 0.0}, line_, static_cast<int>(from) + 1}});

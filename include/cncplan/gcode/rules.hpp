@@ -110,7 +110,7 @@ inline void control_path(const Block& block, Modal& modal) {
   if (block.has(Group::path_control)) control_path(block, modal);
   if (block.has(Group::motion)) {
     const bool ends = block.code(Group::motion) == code(80);
-    modal.assumed_rapid = ends && dialect.lenient;
+    modal.assumed_rapid = ends && (dialect.lenient || before.assumed_rapid || is_cycle(before.motion));
     modal.motion = !ends ? block.code(Group::motion) : modal.assumed_rapid ? code(0) : no_code;
   }
   if (block.has(Group::compensation)) modal.compensation = block.code(Group::compensation);

@@ -34,7 +34,8 @@ struct Spindle {
     const bool feeds = motion != no_code && motion != code(0);
     const int column = detail::motion_column(block);
     const bool per_turn = (feeds && modal.feed_mode == FeedMode::per_revolution) || is_synchronised(motion);
-    if (per_turn && !((block.has('S') ? block.number('S') : speed.value_or(0.0)) > 0.0))
+    const bool says = block.has('S') && !dwells_by_s(block);
+    if (per_turn && !((says ? block.number('S') : speed.value_or(0.0)) > 0.0))
       return detail::missing("S", column);
     const int turns = block.has(Group::spindle) ? direction_of(block) : direction;
     if (is_tap(motion) && turns == (motion == code(84) ? 4 : 3))
