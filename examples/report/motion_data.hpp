@@ -20,6 +20,7 @@ namespace report {
 /// Tool X, Y, Z (machine coordinates, mm), then axes (mm or degrees).
 using Channels = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 + cncplan::gcode::max_axes, 1>;
 using ChannelPoint = cncplan::PathPoint<Channels>;
+using ChannelMotion = cncplan::AxisMotion<Channels>;
 
 /// Where a motion of the program stands in its text, and what a machine coordinate lacks to a programmed one.
 struct Place {
@@ -31,6 +32,7 @@ struct Place {
 /// States at instants, from the start to the end.
 struct SampleData {
   double period{};  ///< s
+  double gap{};     ///< mm or degrees, of positions that the page finds half-way between two instants
   std::vector<float> velocity, acceleration, jerk, wanted;
   std::vector<double> travelled;  ///< mm from the program's start
   std::vector<std::uint32_t> line, offset;
@@ -176,6 +178,13 @@ void add_whole(MotionData& data, const T& trajectory, const ChannelsAt& channels
   }
 }
 
+// From the middle of the cubic between two instants, of which the page knows position and velocity.
+[[nodiscard]] inline double gap_between(const ChannelMotion& from, const ChannelMotion& to, double seconds,
+                                        const ChannelMotion& middle) {
+  const Channels cubic = (from.position + to.position) / 2 + (from.velocity - to.velocity) * (seconds / 8);
+  return (cubic - middle.position).cwiseAbs().maxCoeff();
+}
+
 template <class T, class ChannelsAt, class PlaceOf>
 void add_samples(MotionData& data, const T& trajectory, const ChannelsAt& channels_at,
                  const PlaceOf& place_of) {
@@ -183,7 +192,12 @@ void add_samples(MotionData& data, const T& trajectory, const ChannelsAt& channe
   SampleData& samples = data.samples.emplace();
   samples.period = data.duration / static_cast<double>(count);
   const auto limited = limited_by(trajectory);
+  const auto at = [&](const auto& point) -> ChannelMotion {
+    const double within = point.along.position - trajectory.start_length(point.block);
+    return cncplan::motion(channels_at(point.block, within), point.along);
+  };
   std::size_t phase = 0;
+  std::optional<ChannelMotion> last;
   for (std::size_t k = 0; k <= count; ++k) {
     const auto here = trajectory.at(samples.period * static_cast<double>(k));
     while (phase + 1 < limited.size() && trajectory.phases()[phase + 1].phase.time <= here.time) ++phase;
@@ -197,8 +211,12 @@ void add_samples(MotionData& data, const T& trajectory, const ChannelsAt& channe
     samples.offset.push_back(offset_index(data, place.offset));
     samples.kind.push_back(place.kind);
     samples.limited_by.push_back(limited[phase]);
-    const double within = here.along.position - trajectory.start_length(here.block);
-    const auto axes = cncplan::motion(channels_at(here.block, within), here.along);
+    const ChannelMotion axes = at(here);
+    if (last)
+      samples.gap = std::max(samples.gap,
+                             gap_between(*last, axes, samples.period,
+                                         at(trajectory.at(samples.period * (static_cast<double>(k) - 0.5)))));
+    last = axes;
     for (const Channels* values : {&axes.position, &axes.velocity, &axes.acceleration, &axes.jerk})
       for (const double value : *values) samples.axes.push_back(static_cast<float>(value));
   }

@@ -32,6 +32,7 @@ Json column(const std::vector<T>& values) {
 
 Json to_json(const SampleData& samples) {
   return {{"period", samples.period},
+          {"gap", samples.gap},
           {"velocity", column(samples.velocity)},
           {"acceleration", column(samples.acceleration)},
           {"jerk", column(samples.jerk)},

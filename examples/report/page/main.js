@@ -133,8 +133,8 @@ const cncplan = (() => {
   if (report.keptLines < report.lines)
     note('notes', `The program has ${report.lines} lines; the text is that of the first ${report.keptLines}.`);
   if (motion instanceof SampledMotion)
-    note('notes', `The program is too long to be kept whole: the motion is drawn from instant to instant, ` +
-         `${shortNumber(motion.period)} s apart; between them values are approximate.`);
+    note('notes', `The motion is too long to be kept whole: it is kept at instants ${shortNumber(motion.period)} s apart. ` +
+         `Between them positions are up to ${shortNumber(motion.gap)} mm (or degrees) off, and values change evenly.`);
   if (motion.count === 0 || !(motion.duration > 0)) note('notes', 'Nothing moves.');
   showPeaks(report);
   showPlans(motions);

@@ -215,6 +215,7 @@ class SampledMotion extends Motion {
     const samples = plan.samples, f32 = name => decode(Float32Array, samples[name]);
     const line = decode(Uint32Array, samples.line), n = line.length;
     this.period = samples.period;
+    this.gap = samples.gap;
     this.travelled = decode(Float64Array, samples.travelled);
     this.values = f32('axes');
     const v = f32('velocity'), a = f32('acceleration'), j = f32('jerk');
