@@ -91,6 +91,17 @@ TEST_CASE("a letter passes through with any number") {
   CHECK(test::read(many, dialect).error == "1:33: number of words to pass through is above the limit 16");
 }
 
+TEST_CASE("R of a machine that has such an axis is that axis, and no word of M19") {
+  Dialect dialect;
+  dialect.axes.push_back({'R', AxisKind::linear});
+  const auto homed = test::read("G0 R5\nG28 M19 R1\n", dialect);
+  CHECK(homed.error == "");
+  CHECK(homed.all<gcode::Word>() == std::vector<gcode::Word>{{'M', 19, 2, 5}});
+  CHECK(homed.motions().size() == 3);
+  CHECK(test::read("M19 R1\n", dialect).error == "1:5: G0, G1, G2 or G3: a required word is missing");
+  CHECK(test::read("M19 R1\n").all<gcode::Word>().size() == 2);
+}
+
 TEST_CASE("a reader or writer of an invalid dialect takes nothing") {
   for (const auto& [letters, error] : {std::pair{"XYZABCUVWR", "1:1: number of axes is above the limit 9"},
                                        std::pair{"x", "1:1: axis letter: unknown character"}}) {

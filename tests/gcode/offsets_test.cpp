@@ -57,12 +57,14 @@ TEST_CASE("G52 sets the shift that G92 makes") {
 TEST_CASE("G10 sets lengths and radii of tools from where the axes stand") {
   check_end("G10 L2 P1 Z3\nG0 Z10\nG10 L10 P1 Z4\nG43 H1\nG0 Z0", 0.0, 0.0, 9.0);  // 13 - 3 - 4 = 6
   check_end("G10 L2 P9 Z1\nG0 Z10\nG10 L11 P1 Z4\nG43 H1\nG0 Z0", 0.0, 0.0, 5.0);  // 10 - 1 - 4
+  check_end("G92 Z1\nG0 Z10\nG10 L10 P1 Z4\nG43 H1\nG0 Z0", 0.0, 0.0, 5.0);  // 9 + 1 - 4, less the 1 of G92
   check_end("G10 L1 P1 Z6\nG10 L1 P2 Z2\nG43 H1\nG43.2 H2\nG0 Z0", 0.0, 0.0, 8.0);
   check_end("G10 L1 P1 R2\nF1 G41 D1 G1 X10\nX20\nM2", 20.0, 2.0, 0.0);
 }
 
 TEST_CASE("G28.1 and G30.1 make homes of where the axes stand") {
   check_end("G0 X3 Y4\nG28.1\nG0 X9 Y9\nG28", 3.0, 4.0, 0.0);
+  check_end("G54 G10 L2 P1 X1\nG0 X3\nG28.1\nG0 X9\nG28", 4.0, 0.0, 0.0);
   check_end("G54 G10 L2 P1 X1\nG0 X3\nG30.1\nG0 X9\nG30", 4.0, 0.0, 0.0);
 }
 

@@ -1,6 +1,7 @@
 // Motions that follow the spindle: G33, G33.1, G76, and taps. Expected steps were written down from
 // LinuxCNC's documentation and from what its rs274 prints; linuxcnc_test.cpp runs it where it is installed.
 #include <string>
+#include <vector>
 
 #include "gcode/support.hpp"
 #include "support/catch.hpp"
@@ -78,6 +79,17 @@ TEST_CASE("a thread is cut pass by pass to its depth") {
         "r101,0 r87,0 f87,-8 r101,-8 "
         "r100,0 r86,0 f86,-8 r100,-8 "
         "r100,0 r86,0 f86,-8 r100,-8 ");
+}
+
+TEST_CASE("with R2 the passes of a thread deepen by the square root of their number") {
+  const auto reading = test::read("G18 S60 M3\nG0 X10 Z0\nG76 P1 Z-8 I-1 J.3 K.85 R2");
+  std::vector<double> depths;  // of the cuts
+  for (const auto& motion : reading.motions())
+    if (motion.kind == gcode::MotionKind::line) depths.push_back(9.0 - motion.end[0]);
+  REQUIRE(depths.size() == 9);
+  for (std::size_t pass = 1; pass < 9; ++pass)
+    CHECK(depths[pass - 1] == Approx(0.3 * std::sqrt(static_cast<double>(pass))));
+  CHECK(depths[8] == Approx(0.85));
 }
 
 TEST_CASE("tapers of a thread keep the turns of the spindle along their own length") {

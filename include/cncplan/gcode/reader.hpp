@@ -283,7 +283,7 @@ class Reader {
     if (!block_.has(group)) return;
     emit(Word{letter(group), block_.code(group) / 10.0, line_, block_.column(group)});
     for (const char letter : {'R', 'P', 'E', 'L', 'Q', 'D'})
-      if ((facts(group, block_.code(group)).may & bit(letter)) != 0 && block_.has(letter))
+      if ((detail::words_of(group, block_, alphabet_) & bit(letter)) != 0 && block_.has(letter))
         emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
   }
 

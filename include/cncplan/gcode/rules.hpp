@@ -246,6 +246,12 @@ using Check = Expected<void, Diagnostic>;
   return whole(block, 'L', 1, max_count);
 }
 
+/// The words that a line's code of a group may have. R is none where it names an axis.
+[[nodiscard]] inline Letters words_of(Group group, const Block& block, const Alphabet& alphabet) {
+  const Letters may = facts(group, block.code(group)).may;
+  return alphabet.has_radius ? may : may & ~bit('R');
+}
+
 /// The words that codes other than motions take: a word that one must have is there, and no word is taken
 /// twice. `used` gets them.
 [[nodiscard]] inline Check take_words(const Block& block, const Alphabet& alphabet, Letters taken_by_motion,
@@ -255,8 +261,8 @@ using Check = Expected<void, Diagnostic>;
        {Group::non_modal, Group::compensation, Group::tool_length, Group::path_control, Group::spindle_mode,
         Group::tool_change, Group::spindle, Group::override_control, Group::input_output}) {
     if (!block.has(group)) continue;
-    const auto& [own, may, must] = facts(group, block.code(group));
-    const Letters lacking = must & ~block.letters();
+    const Letters may = words_of(group, block, alphabet);
+    const Letters lacking = facts(group, block.code(group)).must & ~block.letters();
     const bool by_s = group == Group::non_modal && alphabet.lenient && dwells_by_s(block);
     if (lacking != 0 && !by_s) return missing(name(first_of(lacking)), block.column(group));
     if (const Letters twice = taken & may & block.letters(); twice != 0)
