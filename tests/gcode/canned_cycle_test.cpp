@@ -74,6 +74,24 @@ TEST_CASE("words of a cycle hold until another code of motion") {
         "r0,0,2 r1,0,2 f1,0,-1 d1 r1,0,2 r2,0,2 f2,0,-2 d1 r2,0,2 r0,0,2");
 }
 
+TEST_CASE("a stop on the line of a cycle or a spline is behind all of its motions") {
+  for (const std::string line : {"G81 X1 Y2 Z-3 R2 L2", "G5 X9 I1 J5 P-1 Q5", "G18 G76 P1 Z-8 I-1 J.3 K.4"})
+    for (const int code : {0, 1, 2, 30, 60}) {
+      CAPTURE(line, code);
+      const auto reading = test::read("F9 S60 M3\n" + line + " M" + std::to_string(code) + "\nG1 X50\n");
+      REQUIRE(reading.error == "");
+      const bool ends = code == 2 || code == 30;
+      std::size_t at = reading.items.size() - 1;  // of the stop
+      while (at > 0 && !std::holds_alternative<gcode::Stop>(reading.items[at])) --at;
+      REQUIRE(std::holds_alternative<gcode::Stop>(reading.items[at]));
+      CHECK(std::get<gcode::Stop>(reading.items[at]).code == code);
+      for (std::size_t i = 0; i < reading.items.size(); ++i)
+        if (const auto* motion = std::get_if<gcode::Motion>(&reading.items[i]))
+          CHECK((motion->line == 2) == (i < at));
+      if (ends) CHECK(at + 1 == reading.items.size());
+    }
+}
+
 TEST_CASE("a cycle is asked for step by step, and the next line waits for it") {
   gcode::Reader reader;
   std::array<gcode::Item, gcode::max_items_per_line> items;

@@ -59,8 +59,8 @@ class Reader {
 
   /// Reads one line (without its end; carriage returns there are passed over) and writes its items in the
   /// order in which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A
-  /// line in error writes nothing and changes nothing. After the end of the program (M2, M30, the second %)
-  /// lines are only counted.
+  /// line in error changes nothing. After the end of the program (M2, M30, the second %) lines are only
+  /// counted.
   template <std::output_iterator<Item> Out>
   Expected<Out, Diagnostic> read_line(std::string_view text, Out out) {
     if (busy())
@@ -86,24 +86,23 @@ class Reader {
       thread(thread_.next(), emit);
     else if (const auto step = cycles_.next())
       drill(*step, emit);
+    stop(emit);
     return out;
   }
 
-  /// Takes over what can be understood of a line that was in error, so that the lines behind it are read in
-  /// the state that they were written for: its modes, its end point, the end of the program. Motions that
-  /// begin at a place that is not known for sure do not come out.
+  /// Takes over what can be understood of a line in error, for the lines behind it: its modes, its end point,
+  /// the end of the program. Motions that begin at a place that is not known for sure do not come out.
   void recover(std::string_view text) {
     if (!readable_ || text.size() > max_line_length) return;
     block_.salvage(text, 0, dialect_.pass_through);
     splines_.forget();
-    const Letters axes = alphabet_.axes;
     modal_ = after(block_, modal_, dialect_);
     if (modal_.motion == code(5.3)) modal_.motion = no_code;
     if ((block_.lost() & bit('F')) != 0) modal_.needs_feed = false;
-    const bool bare = modal_.motion == no_code && (block_.letters() & axes) != 0;
+    const bool bare = modal_.motion == no_code && (block_.letters() & alphabet_.axes) != 0;
     if (bare || ((block_.lost() & bit('G')) != 0 && !block_.has(Group::motion))) modal_.motion = lost_code;
-    doubtful_ |= block_.lost() & axes;
-    if (block_.has(Group::non_modal) && block_.code(Group::non_modal) != code(4)) doubtful_ |= axes;
+    doubtful_ |= block_.lost() & alphabet_.axes;
+    if (block_.has(Group::non_modal) && block_.code(Group::non_modal) != code(4)) doubtful_ |= alphabet_.axes;
     follow();
     const Code stop = block_.code(Group::stop);
     finished_ = finished_ || stop == code(2) || stop == code(30);
@@ -245,7 +244,6 @@ class Reader {
   template <class Out>
   Out execute(Code motion, Out out) {
     const auto emit = emitter(out);
-    const Code non_modal = block_.code(Group::non_modal);
     warnings_.tell(block_, modal_, motion, alphabet_, [&](Diagnostic about) {
       about.line = line_;
       emit(Warning{about});
@@ -264,17 +262,21 @@ class Reader {
       thread_ = ThreadingCycle(ThreadWords::of(block_, modal_), position()[0], position()[2], to[0], to[2]);
     } else if (motion == code(33.1)) {
       tap(target(), emit);
-    } else if (motion == code(33)) {
-      straight(motion, target(), emit, pitch());
     } else if (motion != no_code) {
-      straight(motion, non_modal == code(53) ? machine_target() : target(), emit);
+      const bool machine = block_.code(Group::non_modal) == code(53);
+      straight(motion, machine ? machine_target() : target(), emit, motion == code(33) ? pitch() : 0.0);
     }
-    if (block_.has(Group::stop)) {
-      const int stop = block_.code(Group::stop) / 10;
-      finished_ = stop == 2 || stop == 30;
-      emit(Stop{stop, line_});
-    }
+    stop(emit);
     return out;
+  }
+
+  /// Behind the last step of a cycle or piece of a spline.
+  template <class Emit>
+  void stop(Emit& emit) {
+    const Code stop = block_.code(Group::stop);
+    if (stop == no_code || busy()) return;
+    finished_ = stop == code(2) || stop == code(30);
+    emit(Stop{stop / 10, line_});
   }
 
   /// A code comes out as a word, and behind it the words that it takes.
@@ -368,8 +370,7 @@ class Reader {
     return spindle_.feed(way, std::max(std::abs(motion.start[0]), std::abs(motion.end[0])));
   }
 
-  /// What the words alone do not tell: a feed per revolution needs a spindle that turns, a cycle its depth
-  /// below R.
+  /// What words alone do not tell: a feed per revolution needs a spindle that turns.
   [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion, Code before) {
     if (auto ok = spindle_.check(block_, modal, motion); !ok) return ok;
     if (block_.code(Group::non_modal) == code(10) && sets_tool() &&
