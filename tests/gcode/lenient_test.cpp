@@ -55,6 +55,7 @@ TEST_CASE("printers' words") {
   CHECK(read("G0 X5 Y5 Z5\nG28 X Y\nM117 Printing 50%\nG29").error.empty());
   CHECK(read("G0 X5 Y5 Z5\nG28 XY").motions().back().end == gcode::Position{0, 0, 5});
   CHECK_FALSE(read("G95 G4 S600 F0.2 G1 X3").error.empty());  // nor makes it a feed
+  CHECK(read("G4 G96 S60").error == "1:1: P: a required word is missing");
   CHECK_FALSE(test::read("G4 S2").error.empty());
   CHECK_FALSE(test::read("G0 X Y5").error.empty());
 }

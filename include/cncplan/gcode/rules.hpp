@@ -73,7 +73,8 @@ struct Alphabet {
 
 /// G4 S: seconds, where a dialect has them; S is no speed then.
 [[nodiscard]] inline bool dwells_by_s(const Block& block) {
-  return block.code(Group::non_modal) == code(4) && !block.has('P') && block.has('S');
+  return block.code(Group::non_modal) == code(4) && !block.has('P') && block.has('S') &&
+         !block.has(Group::spindle_mode);  // G96 and G97 have an S of their own
 }
 [[nodiscard]] inline double dwell_seconds(const Block& block, const Dialect& dialect) {
   return dwells_by_s(block) ? block.number('S') : block.number('P') * dialect.dwell_unit;
