@@ -60,6 +60,14 @@ TEST_CASE("printers' words") {
   CHECK_FALSE(test::read("G0 X Y5").error.empty());
 }
 
+TEST_CASE("G31 probes as G38.2 does") {
+  const auto reading = test::read("F60 G31 Z-5");
+  REQUIRE(reading.motions().size() == 1);
+  CHECK(reading.motions()[0].probe);
+  CHECK(reading.motions()[0].end[2] == -5.0);
+  CHECK(reading.all<gcode::Warning>().size() == 1);  // that nothing is touched
+}
+
 TEST_CASE("codes that nothing is known of are handed on") {
   const auto reading = test::read("M106 S255\nM106 S0\nM40\nG0 X1");
   CHECK(reading.error.empty());
