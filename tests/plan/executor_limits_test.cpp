@@ -1,4 +1,4 @@
-// Holds and raised feeds against what every axis bears.
+// Holds, quick stops and raised feeds against what every axis bears.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -69,22 +69,23 @@ void load(Runner& executor, const std::vector<ProgramBlock<Machine<6>>>& blocks)
   executor.end_of_program();
 }
 
-// Seconds to rest of a motion of six axes that is held at a random instant, over the least there are.
-double time_to_rest(test::Random& random) {
+// Seconds to rest of a motion of six axes that is stopped at a random instant, over the least there are.
+double time_to_rest(test::Random& random, double share) {
   const auto lines = long_move(random);
   CAPTURE(lines.front());
   const auto blocks = test::blocks_of(lines, test::six_axes);
-  const auto executor = std::make_unique<Runner>(test::six_axes);
+  const auto executor = std::make_unique<Runner>(test::six_axes, Runner::Options{.quick_stop_share = share});
   load(*executor, blocks);
   SetPoint<6> now;
   const int ticks = random.integer(20, 900);
   for (int tick = 0; tick < ticks; ++tick) now = executor->tick(period);
-  executor->feed_hold();
+  share > 1 ? executor->quick_stop() : executor->feed_hold();
   double time = 0;
   for (int tick = 0; tick < 20'000 && !(executor->rested() > 0); ++tick, time += period)
     executor->tick(period);
   const auto [acceleration, jerk] = line_limits(test::six_axes, blocks.front());
-  const auto least = least_time_to_rest(now.along.velocity, now.along.acceleration, acceleration, jerk);
+  const auto least =
+      least_time_to_rest(now.along.velocity, now.along.acceleration, share * acceleration, share * jerk);
   return static_cast<double>((time - executor->rested()) / least);
 }
 
@@ -92,7 +93,48 @@ double time_to_rest(test::Random& random) {
 
 TEST_CASE("a hold of six axes comes to rest in the least time, by search", "[executor]") {
   test::Random random;
-  for (int i = 0; i < 60; ++i) CHECK(time_to_rest(random) == Approx(1).epsilon(1e-3));
+  for (int i = 0; i < 60; ++i) CHECK(time_to_rest(random, 1) == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("a quick stop of six axes takes the least time with its share of the limits", "[executor]") {
+  test::Random random;
+  for (int i = 0; i < 30; ++i) CHECK(time_to_rest(random, random.uniform(1.5, 5)) == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("a quick stop keeps its share of every axis' limits on bends", "[executor]") {
+  constexpr double share = 3;
+  test::Random random;
+  Machine<3> strong = test::slow_axes<double>;
+  for (auto& axis : strong.axes) axis.acceleration *= share, axis.jerk *= share;
+  strong.limits.acceleration *= share, strong.limits.jerk *= share;
+  using Executor3 = Executor<Machine<3>, 32>;
+  bool harder = false;
+  for (int i = 0; i < 40; ++i) {
+    const auto lines = test::random_lines(random, 25, {0, 0, 0}, 20, "");
+    CAPTURE(test::literal(lines));
+    const auto blocks = test::blocks_of(lines, test::slow_axes<double>);
+    const auto executor =
+        std::make_unique<Executor3>(test::slow_axes<double>, Executor3::Options{.quick_stop_share = share});
+    test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(strong, blocks,
+                                                                             {1, 1, period, 1e-12});
+    for (const auto& block : blocks) REQUIRE(executor->push(block));
+    executor->end_of_program();
+    const int stop = random.integer(10, 600);
+    for (int tick = 0; tick < 100'000 && !executor->finished(); ++tick) {
+      if (tick == stop) executor->quick_stop();
+      if (tick == stop + 1000) executor->resume();
+      const auto point = executor->tick(period);
+      check.take(point);
+      for (int k = 0; k < 3; ++k)
+        harder = harder || std::abs(point.acceleration[k]) >
+                               1.5 * test::slow_axes<double>.axes[static_cast<std::size_t>(k)].acceleration;
+    }
+    CHECK(executor->finished());
+    CHECK(check.faults.acceleration < 1e-9);
+    CHECK(check.faults.jerk < 1e-9);
+    CHECK(check.faults.velocity < 1e-9);
+  }
+  CHECK(harder);
 }
 
 TEST_CASE("arcs at half the machine's speed keep their limits at twice the feed", "[executor]") {

@@ -51,8 +51,9 @@ void ask(Executor& executor, Random& random, int lines) {
   using S = typename Executor::Scalar;
   switch (random.integer(0, 15)) {
     case 0:
-    case 1:
       return executor.feed_hold();
+    case 1:
+      return executor.quick_stop();
     case 2:
       return executor.reverse(true);
     case 3:

@@ -32,7 +32,10 @@ struct BasicExecutorOptions {
   S junction_deviation = S(0.01);
   bool exact_between_rapids_and_feeds{};  ///< keeps the joints of rapids with feed moves exact
   S longest_wait = S(0.05);  ///< s at rest for which blocks are held back for the ones that follow them
-  bool background = false;   ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+  S quick_stop_share = S(1);  ///< >= 1: how many times its limits of acceleration and jerk the tool and each
+                              ///< axis may use in a quick stop; what drives and mechanics bear beyond the
+                              ///< limits that machining has
+  bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
 };
 
 using ExecutorOptions = BasicExecutorOptions<double>;
@@ -71,6 +74,7 @@ class Executor {
   explicit Executor(const M& machine, const Options& options = {})
       : machine_(machine),
         tool_(tool_axes(machine)),
+        quick_stop_share_(options.quick_stop_share),
         background_(options.background),
         longest_wait_(options.longest_wait),
         feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
@@ -132,9 +136,8 @@ class Executor {
   void rapid_override(Scalar share) { player_.rapid_override(share); }
   /// Comes to rest as `feed_hold` does, and the program ends there.
   void stop() { player_.stop(); }
-  /// Comes to rest with limits along the path of its own, not both infinite, at least those of the blocks on
-  /// the way; then it is held. Limits of axes do not act.
-  void quick_stop(Scalar acceleration, Scalar jerk) { player_.quick_stop(acceleration, jerk); }
+  /// Comes to rest as `feed_hold` does, with `quick_stop_share` times the limits of acceleration and jerk.
+  void quick_stop() { player_.quick_stop(quick_stop_share_); }
   /// Runs back along the path, as far as blocks are kept, or forwards again. It comes to rest in between.
   void reverse(bool wanted) { player_.backwards(wanted); }
   /// Rests behind every block until it is resumed.
@@ -328,6 +331,7 @@ class Executor {
 
   M machine_;
   std::array<int, 3> tool_;
+  Scalar quick_stop_share_;
   bool background_;
   Scalar longest_wait_;
   std::array<Cell, room> played_{};

@@ -28,7 +28,7 @@ template <std::floating_point S>
 [[nodiscard]] S fastest_ahead(const BasicPathAhead<S>& path, const BasicPlace<S>& at,
                               const BasicState<S>& now) {
   const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-  return std::max(now.velocity, profile::settled_speed(state, path.limits(at.block)));
+  return std::max(now.velocity, profile::settled_speed(state, path.braking_limits(at.block)));
 }
 
 /// The motion towards rest from a place, under the limits of each block, up to where they change. Nothing
@@ -63,7 +63,7 @@ template <std::floating_point S>
 [[nodiscard]] bool keeps_junctions(const BasicPathAhead<S>& path, const BasicRunningProfile<S>& profile,
                                    const BasicPlace<S>& from, const BasicState<S>& start) {
   const S rising = start.acceleration > S(0) ? start.acceleration : S(0);
-  const S fastest = start.velocity + rising * rising / (S(2) * path.limits(from.block).jerk);
+  const S fastest = start.velocity + rising * rising / (S(2) * path.braking_limits(from.block).jerk);
   S position = path.ring.length(from.block) - from.along;
   for (std::int64_t block = from.block; position < profile.length() - path_rounding<S>;) {
     if (!path.ring.holds(block + path.direction)) return true;

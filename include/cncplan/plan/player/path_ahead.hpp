@@ -50,12 +50,20 @@ class BasicPathAhead {
   BasicRequests<S> asked;
   int direction = 1;
   bool above = false;              ///< whether the limits above the feed hold, or those up to it
+  S brake_share = S(1);            ///< of acceleration and jerk limits, >= 1: what a brake may use
   std::int64_t passed_pause = -1;  ///< the block before which a pause has been made already
 
   /// The limits of a block.
   [[nodiscard]] const BasicLimits<S>& limits(std::int64_t block) const {
     const Block& b = ring[block];
     return above && b.above.velocity > S(0) ? b.above : b.caps.limits;
+  }
+
+  /// The same for a brake. Bends take no more of an axis' limits by that than before, so that with a share k
+  /// of the limits along the path each axis keeps k times its own.
+  [[nodiscard]] BasicLimits<S> braking_limits(std::int64_t block) const {
+    const BasicLimits<S>& own = limits(block);
+    return {own.velocity, brake_share * own.acceleration, brake_share * own.jerk};
   }
 
   /// Whether more than the programmed feed is asked for.
@@ -148,7 +156,11 @@ class BasicPathAhead {
   /// When `out` (room for one at least) is full, the last goes on under the lowest limits of all that follow.
   std::size_t zones(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     std::size_t count = 0;
-    to_rest(from, speed, [&](S length, BasicLimits<S> limits) {
+    Horizon<S> horizon;
+    for (Place at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
+      BasicLimits<S> limits = braking_limits(at.block);
+      const S length = std::max(ring.length(at.block) - at.along, S(0));
+      horizon.take({speed, limits.acceleration, limits.jerk}, length);
       limits.velocity = S(1);  // plays no part
       if (count == 0 || (out[count - 1].limits != limits && count < out.size()))
         out[count++] = {S(0), S(0), limits, S(0)};
@@ -156,32 +168,8 @@ class BasicPathAhead {
       zone.length += length;
       zone.limits.acceleration = std::min(zone.limits.acceleration, limits.acceleration);
       zone.limits.jerk = std::min(zone.limits.jerk, limits.jerk);
-    });
-    return count;
-  }
-
-  /// The highest limits of acceleration and jerk from a place on, likewise.
-  [[nodiscard]] BasicLimits<S> strongest(const Place& from, S speed) const {
-    BasicLimits<S> highest{S(0), S(0), S(0)};
-    to_rest(from, speed, [&](S, const BasicLimits<S>& limits) {
-      highest.acceleration = std::max(highest.acceleration, limits.acceleration);
-      highest.jerk = std::max(highest.jerk, limits.jerk);
-    });
-    return highest;
-  }
-
- private:
-  // Calls with the length and the limits of each block, from a place on, that coming to rest from `speed` may
-  // touch.
-  template <class Visit>
-  void to_rest(const Place& from, S speed, Visit&& visit) const {
-    Horizon<S> horizon;
-    for (Place at = from; ring.holds(at.block) && !horizon.reached(); at = {at.block + direction, S(0)}) {
-      const BasicLimits<S>& here = limits(at.block);
-      const S length = std::max(ring.length(at.block) - at.along, S(0));
-      horizon.take({speed, here.acceleration, here.jerk}, length);
-      visit(length, here);
     }
+    return count;
   }
 };
 

@@ -101,30 +101,19 @@ class BasicPlayer {
   void hold() { ask(path_.asked.held, true); }
   void resume() { ask(path_.asked.held, false); }
 
-  /// Comes to rest likewise, and does not go on: the program ends there.
+  /// Comes to rest as by `hold`, and does not go on: the program ends there.
   void stop() {
     wait_for(S(0));
     ask(path_.asked.stopped, true);
   }
 
-  /// Comes to rest with acceleration and jerk limits of its own, not both infinite; then it is held. Limits
-  /// below the highest of the blocks on the way to rest are raised to those: it is never slower than the
-  /// plan, which ends on the path there is.
-  void quick_stop(S acceleration, S jerk) {
+  /// Comes to rest as by `hold`, with so many times the limits of acceleration and jerk, at least once; then
+  /// it is held.
+  void quick_stop(S share) {
     hold();
     if (idle_) return;
-    const BasicState<S> now = running_.state();
-    const BasicPlace<S> at = locate();
-    const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    path_.above = running_above_;
-    BasicLimits<S> limits = path_.strongest(at, fastest_ahead(path_, at, now));
-    limits.velocity = S(1);  // plays no part
-    limits.acceleration = std::max({limits.acceleration, acceleration, std::abs(now.acceleration)});
-    limits.jerk = std::max(limits.jerk, jerk);
-    const auto ramp = profile::stop(state, limits);
-    if (!ramp) return;
-    follow(BasicRunningProfile<S>(*ramp), at, no_waypoint);
-    pending_ = false;
+    path_.brake_share = share > S(1) ? share : S(1);
+    pending_ = true;
   }
 
   /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is NaN. Values outside are cut.
@@ -429,6 +418,7 @@ class BasicPlayer {
 
   // Makes the plan in the spare waypoints the one that holds.
   void take_spare() {
+    path_.brake_share = S(1);
     std::swap(memory_.waypoints, memory_.spare_waypoints);
     waypoint_count_ = spare_count_;
     plan_above_ = path_.asks_above();
@@ -520,6 +510,7 @@ class BasicPlayer {
   }
 
   void rest() {
+    path_.brake_share = S(1);
     running_ = {};
     running_settled_ = true;
     idle_ = true;
