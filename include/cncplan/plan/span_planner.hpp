@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <span>
@@ -96,11 +97,15 @@ class WaypointPlanner {
 
   /// Finds the steady waypoints and their speeds.
   void solve() {
-    for (int round = 0;; ++round) {
-      pass_backward();
-      pass_forward();
-      if (!fix_violations(round)) return;
+    while (!work(waypoints_.size() + 1)) {
     }
+  }
+
+  /// The same bit by bit: looks at about so many waypoints, at a span to its end. Whether all is found.
+  bool work(std::size_t most) {
+    for (std::size_t done = 0; done < most && pass_ != Pass::none; done += step()) {
+    }
+    return pass_ == Pass::none;
   }
 
   /// The profile from one steady waypoint to the next.
@@ -133,63 +138,101 @@ class WaypointPlanner {
     limits.jerk = std::min(limits.jerk, gap.jerk);
   }
 
-  void pass_backward() {
+  enum class Pass : std::uint8_t { begin, backward, forward, check, none };
+
+  // One step of the pass that is on, over how many waypoints.
+  std::size_t step() {
+    switch (pass_) {
+      case Pass::begin:
+        begin_backward();
+        break;
+      case Pass::backward:
+        if (at_ == 0)
+          begin_forward();
+        else
+          go_backward(--at_);
+        break;
+      case Pass::forward:
+        if (++at_ == waypoints_.size())
+          begin_check();
+        else
+          go_forward(at_);
+        break;
+      case Pass::check:
+        return check();
+      case Pass::none:
+        break;
+    }
+    return 1;
+  }
+
+  void begin_at(std::size_t waypoint) {
+    steady_ = at_ = waypoint;
+    distance_ = S(0);
+    limits_ = {fastest_, infinity, infinity};
+  }
+
+  void begin_backward() {
     fastest_ = S(0);
     for (const Waypoint& waypoint : waypoints_)
       fastest_ = std::max({fastest_, waypoint.limits.velocity, waypoint.cap});
-    std::size_t right = waypoints_.size() - 1;
-    S distance = S(0);
-    BasicLimits<S> limits{fastest_, infinity, infinity};
-    waypoints_[right].speed = waypoints_[right].cap;
-    for (std::size_t i = right; i-- > 0;) {
-      Waypoint& waypoint = waypoints_[i];
-      distance += waypoint.gap;
-      share(limits, waypoint.limits);
-      const bool right_is_sure = waypoints_[right].speed <= waypoints_[right].sure;
-      const S reachable = solver_(limits).reachable_speed(waypoints_[right].speed, distance);
-      waypoint.sure = right_is_sure
-                          ? reachable
-                          : solver_(limits).reachable_speed(S(0), distance / static_cast<S>(longest_ramp));
-      waypoint.steady = waypoint.fixed || waypoint.cap <= reachable;
-      if (!waypoint.steady) continue;
-      waypoint.speed = std::min(waypoint.cap, reachable);
-      right = i;
-      distance = S(0);
-      limits = {fastest_, infinity, infinity};
-    }
+    begin_at(waypoints_.size() - 1);
+    waypoints_[steady_].speed = waypoints_[steady_].cap;
+    pass_ = Pass::backward;
   }
 
-  void pass_forward() {
-    std::size_t left = 0;
-    S distance = S(0);
-    BasicLimits<S> limits{fastest_, infinity, infinity};
-    for (std::size_t i = 1; i < waypoints_.size(); ++i) {
-      Waypoint& waypoint = waypoints_[i];
-      distance += waypoints_[i - 1].gap;
-      share(limits, waypoints_[i - 1].limits);
-      if (!waypoint.steady) continue;
-      const S reachable = solver_(limits).reachable_speed(waypoints_[left].speed, distance);
-      waypoint.steady = waypoint.fixed || waypoint.speed <= reachable;
-      if (!waypoint.steady) continue;
-      waypoint.speed = std::min(waypoint.speed, reachable);
-      waypoint.settled = waypoint.speed <= waypoint.sure;
-      left = i;
-      distance = S(0);
-      limits = {fastest_, infinity, infinity};
-    }
+  void go_backward(std::size_t i) {
+    Waypoint& waypoint = waypoints_[i];
+    const Waypoint& right = waypoints_[steady_];
+    distance_ += waypoint.gap;
+    share(limits_, waypoint.limits);
+    const S reachable = solver_(limits_).reachable_speed(right.speed, distance_);
+    waypoint.sure = right.speed <= right.sure
+                        ? reachable
+                        : solver_(limits_).reachable_speed(S(0), distance_ / static_cast<S>(longest_ramp));
+    waypoint.steady = waypoint.fixed || waypoint.cap <= reachable;
+    if (!waypoint.steady) return;
+    waypoint.speed = std::min(waypoint.cap, reachable);
+    begin_at(i);
   }
 
-  // Whether any waypoint is passed too fast; those become fixed.
-  bool fix_violations(int round) {
-    bool any = false;
-    for (std::size_t from = 0; from + 1 < waypoints_.size();) {
-      const std::size_t to = next_steady<S>(waypoints_, from);
-      if (to - from > 1) any = fix_violations(from, to, round) || any;
-      from = to;
+  void begin_forward() {
+    begin_at(0);
+    pass_ = Pass::forward;
+  }
+
+  void go_forward(std::size_t i) {
+    Waypoint& waypoint = waypoints_[i];
+    distance_ += waypoints_[i - 1].gap;
+    share(limits_, waypoints_[i - 1].limits);
+    if (!waypoint.steady) return;
+    const S reachable = solver_(limits_).reachable_speed(waypoints_[steady_].speed, distance_);
+    waypoint.steady = waypoint.fixed || waypoint.speed <= reachable;
+    if (!waypoint.steady) return;
+    waypoint.speed = std::min(waypoint.speed, reachable);
+    waypoint.settled = waypoint.speed <= waypoint.sure;
+    begin_at(i);
+  }
+
+  void begin_check() {
+    at_ = 0;
+    violated_ = false;
+    pass_ = Pass::check;
+  }
+
+  // Whether any waypoint of a span is passed too fast; those become fixed, and all begins anew.
+  std::size_t check() {
+    if (at_ + 1 < waypoints_.size()) {
+      const std::size_t from = at_;
+      at_ = next_steady<S>(waypoints_, from);
+      if (at_ - from > 1) violated_ = fix_violations(from, at_, round_) || violated_;
+      return at_ - from;
     }
-    if (any && round >= last_round)
+    if (violated_ && round_ >= last_round)
       for (Waypoint& waypoint : waypoints_) waypoint.fixed = true;
-    return any;
+    ++round_;
+    pass_ = violated_ ? Pass::begin : Pass::none;
+    return 1;
   }
 
   bool fix_violations(std::size_t from, std::size_t to, int round) {
@@ -239,6 +282,13 @@ class WaypointPlanner {
   std::span<Waypoint> waypoints_;
   SolverCache<S, Law> solver_;
   S fastest_{};
+  Pass pass_ = Pass::begin;
+  int round_ = 0;
+  std::size_t at_ = 0;       // the waypoint looked at
+  std::size_t steady_ = 0;   // the steady one before it, in the direction of the pass
+  S distance_{};             // from there
+  BasicLimits<S> limits_{};  // on the way
+  bool violated_ = false;
 };
 
 /// Plans whole spans: writes them, and the pauses, into `out`. `waypoints` is room for one waypoint more than
