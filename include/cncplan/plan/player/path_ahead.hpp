@@ -35,6 +35,7 @@ struct BasicRequests {
 struct Ahead {
   std::size_t blocks{};
   bool whole{};  ///< up to where the motion has to rest, or the blocks end
+  bool open{};   ///< up to where the blocks end: more would count
 };
 
 /// Blocks in memory, seen in the direction of travel.
@@ -134,10 +135,10 @@ class BasicPathAhead {
 
   /// The blocks from a place on that is passed at `speed`, as far as they matter.
   Ahead ahead(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {
-    Ahead ahead{0, true};
+    Ahead ahead{0, true, false};
     Horizon<S> horizon;
     for (Place at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
-      if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false};
+      if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false, true};
       const bool first = ahead.blocks == 0;
       BasicBlockCaps<S> caps = ring[at.block].caps;
       caps.limits = limits(at.block);
@@ -149,6 +150,7 @@ class BasicPathAhead {
       if (stops_behind(at.block)) return ahead;
       horizon.take(caps.limits, caps.length);
     }
+    ahead.open = true;
     return ahead;
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -12,51 +13,17 @@
 #include <utility>
 
 #include "cncplan/plan/player/brake_ahead.hpp"
+#include "cncplan/plan/player/drive.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/plan/player/path_ahead.hpp"
+#include "cncplan/plan/player/plan_ahead.hpp"
+#include "cncplan/plan/player/played.hpp"
 #include "cncplan/plan/player/ramp_ahead.hpp"
 #include "cncplan/plan/player/running_profile.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/from_state.hpp"
 
 namespace cncplan::plan {
-
-/// What a player works in; all of it belongs to the caller. `ahead` and the waypoints bound the look-ahead:
-/// `ahead` blocks, at least one, and one waypoint more than that in each buffer. Of what is more than its
-/// neighbours serve, nothing is used.
-template <std::floating_point S>
-struct BasicPlayerMemory {
-  std::span<BasicPlayedBlock<S>> blocks;
-  std::span<BasicBlockCaps<S>> ahead;
-  std::span<BasicWaypoint<S>> waypoints;
-  std::span<BasicWaypoint<S>> spare_waypoints;
-};
-
-using PlayerMemory = BasicPlayerMemory<double>;
-
-/// Where the machine is after a tick.
-template <std::floating_point S>
-struct BasicPlayed {
-  std::int64_t block{};  ///< number of the block; -1 while there is none
-  S along{};             ///< mm from the block's start
-  S velocity{};          ///< mm/s along the path, negative when it runs backwards
-  S acceleration{};      ///< mm/s^2, likewise
-  S jerk{};              ///< mm/s^3, likewise, from now on
-  bool at_rest{};
-
-  friend bool operator==(const BasicPlayed&, const BasicPlayed&) = default;
-};
-
-using Played = BasicPlayed<double>;
-
-/// A part of a tick: constant jerk within one block.
-template <std::floating_point S>
-struct BasicPlayedPart {
-  BasicPhase<S> phase;   ///< seconds into the tick; mm travelled from where it begins
-  std::int64_t block{};  ///< number of the block
-  S along{};             ///< mm from the block's start to where the part begins
-  int direction = 1;     ///< -1 towards the block's start
-};
 
 /// Runs along the blocks it is given, always on a plan that ends at rest on the path it has. A request (hold,
 /// override, new blocks) is met by a new plan from the state the machine is in: a ramp to a speed with zero
@@ -101,14 +68,14 @@ class BasicPlayer {
   void hold() { ask(path_.asked.held, true); }
   void resume() { ask(path_.asked.held, false); }
 
-  /// Comes to rest as by `hold`, and does not go on: the program ends there.
+  /// Comes to rest likewise, and does not go on: the program ends there.
   void stop() {
     wait_for(S(0));
     ask(path_.asked.stopped, true);
   }
 
-  /// Comes to rest as by `hold`, with so many times the limits of acceleration and jerk, at least once; then
-  /// it is held.
+  /// Comes to rest likewise, with so many times the limits of acceleration and jerk, at least once; then it
+  /// is held.
   void quick_stop(S share) {
     hold();
     if (idle_) return;
@@ -146,11 +113,13 @@ class BasicPlayer {
     at_ = {block, S(0)};
     wait_for(S(0));
     pending_ = false;
+    next_plan_.drop();
     return true;
   }
 
-  /// Moves on by `period` seconds. It plans at most 16 times on the way: enough for a tenth of a second and
-  /// more; over a longer one the machine may slow down for blocks that it has.
+  /// Moves on by `period` seconds. What it plans on the way is bounded, for each millisecond begun: a few
+  /// waypoints of the next plan, four plans to their end where that is too little, and an answer to requests,
+  /// over `short_blocks` to `most_short_blocks` blocks.
   BasicPlayed<S> tick(S period) {
     return tick(
         period, [](const BasicPlayedPart<S>&) {}, false);
@@ -160,28 +129,27 @@ class BasicPlayer {
   template <std::invocable<const BasicPlayedPart<S>&> Visit>
   BasicPlayed<S> tick(S period, Visit&& visit, bool tell = true) {
     const auto advance = [&](S seconds, S left) {
-      tell ? drive(seconds, period - left, visit) : running_.advance(seconds);
+      tell ? drive(path_, at_, running_, seconds, period - left, visit) : running_.advance(seconds);
     };
     look();
-    if (pending_ || (could_better() && running_.to_turn() <= S(0))) renew();
+    const auto begun_ms = static_cast<std::size_t>(std::clamp(std::ceil(period * S(1000)), S(1), S(1000)));
+    budget_ = work_in_ms() * begun_ms;
+    at_once_ = 4 * begun_ms;
+    const bool answers = !idle_ && answer(std::min(begun_ms, most_attempts));
+    if (idle_ && pending_ && !(waits() > S(0))) start();
     S left = period;
-    int plans = most_plans;
-    const std::size_t most_hops = 4 * memory_.blocks.size() + most_plans;  // never met: profiles end blocks
+    const std::size_t most_hops = 4 * memory_.blocks.size() + 16;  // never met: profiles end blocks
     for (std::size_t hops = 0; (left > S(0) || profile_over()) && hops < most_hops; ++hops) {
       if (const S wait = waits(); wait > S(0)) {
         const S waited = std::min(wait, left);
         dwell_.add(waited);
         left -= waited;
       } else if (idle_) {
-        if (!pending_ || plans-- == 0) break;
-        renew();
-      } else if (const S turn = running_.to_turn();
-                 plans > 0 && could_better() && turn > S(0) && turn <= left) {
+        if (!pending_ || !start()) break;
+      } else if (const S turn = running_.to_turn(); turn > S(0) && turn <= left && could_better()) {
         advance(turn, left);
         left -= turn;
-        --plans;
-        const BasicPlace<S> at = locate();
-        if (plan_from(at, running_.state().velocity)) adopt(at);
+        take_over(locate(), running_.state().velocity, at_turn);
       } else if (left < running_.left()) {
         advance(left, left);
         left = S(0);
@@ -189,9 +157,10 @@ class BasicPlayer {
         const S over = running_.left();
         advance(over, left);
         left -= over;
-        if (next_profile(plans > 0)) --plans;
+        next_profile();
       }
     }
+    if (!answers) prepare(period);
     rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
     const BasicPlayed<S> now = played();
     path_.ring.release(at_.block - keep_behind_);
@@ -228,7 +197,16 @@ class BasicPlayer {
 
  private:
   static constexpr std::size_t no_waypoint = static_cast<std::size_t>(-1);
-  static constexpr int most_plans = 16;  // in one tick
+  static constexpr std::size_t at_turn = no_waypoint - 1;
+  static constexpr std::size_t short_blocks = 4;
+  static constexpr std::size_t most_short_blocks = 16;
+  static constexpr std::size_t most_attempts = 4;
+
+  // How many waypoints a tick may look at for the next plan: each millisecond; where that is too little, as
+  // many as it takes to be ready in time; where it is due and not ready, so many.
+  [[nodiscard]] std::size_t work_in_ms() const { return 4 + memory_.ahead.size() / 32; }
+  [[nodiscard]] std::size_t work_at_once() const { return 78 * (memory_.ahead.size() + 1); }
+  static constexpr std::size_t usual_looks = 36;  // at a waypoint: twelve rounds of three passes
 
   [[nodiscard]] static S share_up_to(S most, S share) { return share > S(0) ? std::min(share, most) : S(0); }
 
@@ -236,40 +214,13 @@ class BasicPlayer {
   void ask(T& value, const T& wanted) {
     if (value == wanted) return;
     value = wanted;
-    pending_ = true;
-  }
-
-  // Goes on in the profile, part by part, `passed` seconds into the tick.
-  template <class Visit>
-  void drive(S seconds, S passed, Visit& visit) {
-    while (seconds > S(0)) {
-      const BasicPlace<S> at = path_.snapped(locate());
-      const BlockRing<S>& ring = path_.ring;
-      const BasicState<S> now = running_.state();
-      const S edge = running_.to_edge();
-      BasicPlayedPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
-                               now.acceleration, now.jerk},
-                              at.block,
-                              at.along,
-                              path_.direction};
-      if (ring.holds(at.block + path_.direction) && ring.holds(at.block)) {
-        const S until = part.phase.tau_at(ring.length(at.block) - at.along);
-        if (until > S(0)) part.phase.duration = std::min(part.phase.duration, until);
-      }
-      if (ring.holds(at.block)) {
-        if (path_.direction < 0) part.along = ring.length(at.block) - at.along;
-        visit(std::as_const(part));
-      }
-      running_.advance(part.phase.duration);
-      passed += part.phase.duration;
-      seconds -= part.phase.duration;
-    }
+    pending_ = asked_anew_ = true;
   }
 
   // Takes notice of blocks that were pushed.
   void look() {
     if (!path_.ring.take()) return;
-    more_ = true;
+    more_ = more_ || plan_open_;
     pending_ = pending_ || idle_;
   }
 
@@ -287,21 +238,15 @@ class BasicPlayer {
 
   [[nodiscard]] bool profile_over() const { return !idle_ && !(running_.left() > S(0)); }
 
-  // Where it is now. The block goes along, the profile's start then lies before it. At rest a block of no
-  // length is not passed by.
-  BasicPlace<S> locate() {
-    if (idle_) return at_;
-    const S position = running_.state().position;
-    const BasicPlace<S> at = path_.advance(at_, position);
-    if (at.block != at_.block) at_ = {at.block, at.along - position};
-    return at;
-  }
+  // Where it is now. At rest a block of no length is not passed by.
+  BasicPlace<S> locate() { return locate(running_.state().position); }
+  BasicPlace<S> locate(S position) { return idle_ ? at_ : plan::locate(path_, at_, position); }
 
   [[nodiscard]] BasicPlayed<S> played() {
     const BlockRing<S>& ring = path_.ring;
     if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = running_.state();
-    BasicPlace<S> at = locate();
+    BasicPlace<S> at = locate(now.position);
     if (!ring.holds(at.block) ||
         (waits() > S(0) && ring.holds(at.block - 1)))  // behind the last, or dwelling
       at = {at.block - path_.direction, ring.length(at.block - path_.direction)};
@@ -316,123 +261,229 @@ class BasicPlayer {
             idle_};
   }
 
-  // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
-  void renew() {
-    if (waits() > S(0)) return;
-    const bool asked = std::exchange(pending_, false);
-    path_.above = path_.asks_above();
-    if (idle_)
-      start();
-    else
-      pending_ = !replan(asked) && asked;
+  // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick. So is
+  // the way down that blocks could spare. Whether there was a request.
+  bool answer(std::size_t attempts) {
+    const bool requested = pending_;
+    for (; attempts > 0 && !idle_; --attempts) {
+      if (!pending_ && !(running_.to_turn() <= S(0) && could_better())) break;
+      const bool asked = std::exchange(pending_, false);
+      if (replan(asked)) break;
+      pending_ = asked;
+    }
+    return requested;
   }
 
-  void start() {
-    if (path_.asked.held || path_.asked.stopped || path_.ring.end() == path_.ring.oldest()) return;
+  // From rest, once the plan for it is made. Whether there is anything to go on with in this tick.
+  bool start() {
+    if (path_.asked.held || path_.asked.stopped || path_.ring.end() == path_.ring.oldest())
+      return pending_ = false;
     at_ = path_.turn_round(at_);
-    if (at_.along == S(0) && pauses_here()) return;
-    if (plan_from(at_, S(0)) && spare_count_ > 0) adopt(at_);
+    if (at_.along == S(0) && pauses_here()) return pending_ = false;
+    pending_ = false;
+    const bool prepared = next_plan_.begun() && !asked_anew_ && next_plan_.from() == at_ &&
+                          next_plan_.speed() == S(0) && !next_plan_.waypoints().empty();
+    if (!prepared) begin_plan(at_, S(0), no_waypoint, S(1));
+    budget_ = work_at_once();
+    if (next_plan_.waypoints().empty()) {
+      next_plan_.drop();
+    } else if (work_on_plan() && next_plan_.holds()) {
+      adopt(at_);
+    } else if (plan_short(at_, S(0))) {
+      take_short();
+      begin_span(0);
+    }
+    return !idle_;
   }
 
+  // What is tried differs from time to time, once a tick: planned speed, wanted speed, settled speed; the
+  // last two by a ramp under the limits above the feed or those up to it.
   bool replan(bool asked) {
     const BasicState<S> now = running_.state();
     const BasicPlace<S> at = locate();
     if (!path_.ring.holds(at.block)) return false;
+    path_.above = path_.asks_above();
     if (path_.must_rest(at.block)) {
       path_.above = running_above_;
       const auto braking = brake_ahead(path_, at, now, memory_.ahead);
       if (braking) follow(*braking, at, no_waypoint);
       return braking.has_value();
     }
-    if (now.acceleration == S(0) && now.velocity <= path_.wanted_speed(at.block) &&
-        plan_from(at, now.velocity)) {
-      adopt(at);
+    const int attempt = attempt_;
+    attempt_ = attempt < 15 ? attempt + 1 : 12;  // 12 is 0 to all that depends on it but the look-ahead
+    if (now.acceleration == S(0) && now.velocity <= path_.wanted_speed(at.block) && attempt % 2 == 0) {
+      if (!asked) return take_over(at, now.velocity, at_turn);
+      if (!plan_short(at, now.velocity)) return false;
+      take_short();
+      at_ = at;
+      begin_span(0);
       return true;
     }
     // From below the feed to above it, the lower acceleration limits there hold from the ramp on, or from its
     // end; from above, up to its end.
-    if (replan(asked, now, at, running_above_ || path_.asks_above())) return true;
-    return path_.asks_above() && !running_above_ && replan(asked, now, at, false);
+    const bool above = running_above_ || (path_.asks_above() && attempt % 4 < 2);
+    return replan(asked, now, at, above, attempt % 2 != 0);
   }
 
   // By a ramp under the limits above the feed, or those up to it.
-  bool replan(bool asked, const BasicState<S>& now, const BasicPlace<S>& at, bool ramp_above) {
-    const bool above = path_.asks_above();
+  bool replan(bool asked, const BasicState<S>& now, const BasicPlace<S>& at, bool ramp_above, bool settles) {
     const profile::BasicStartState<S> state{now.velocity, now.acceleration};
-    path_.above = above;
-    const S wanted = path_.wanted_speed(at.block);
-    path_.above = ramp_above;
-    const S settled = profile::settled_speed(state, path_.limits(at.block));
-    for (const S target : {wanted, settled > negligible_speed<S> ? std::min(settled, wanted) : S(0)}) {
-      path_.above = ramp_above;
-      const auto ramp = ramp_ahead(path_, at, now, target);
-      path_.above = above;
-      if (!ramp || !plan_from(path_.advance(at, ramp->length()), target)) continue;
-      if (!asked && !betters(*ramp)) continue;
-      take_spare();
-      follow(BasicRunningProfile<S>(*ramp), at, 0);
-      running_above_ = ramp_above;
-      return true;
-    }
-    return false;
-  }
-
-  // Plans from a place at a speed with zero acceleration, into the spare waypoints. False if the speed is too
-  // high there.
-  bool plan_from(const BasicPlace<S>& from, S speed) {
     path_.above = path_.asks_above();
-    const auto [blocks, whole] = path_.ahead(from, speed, memory_.ahead);
-    spare_whole_ = whole;
-    spare_count_ = 0;
-    if (blocks == 0) return speed == S(0);
-    const std::span<const BasicBlockCaps<S>> ahead = memory_.ahead.first(blocks);
-    spare_count_ = make_waypoints(ahead, speed, memory_.spare_waypoints);
-    WaypointPlanner planner(memory_.spare_waypoints.first(spare_count_));
-    planner.solve();
-    return !(memory_.spare_waypoints[0].speed < speed);
-  }
-
-  // Whether a ramp from here, with the plan in the spare waypoints behind it, is sooner where the profile
-  // ends, no slower there, and does not brake there. A way down that has begun is given up for nothing less:
-  // once the brake is released it has to begin anew.
-  [[nodiscard]] bool betters(const profile::BasicProfile<S>& ramp) const {
-    const BasicState<S> now = running_.state(), end = running_.end();
-    S left = running_.length() - now.position;
-    S time = ramp.time_at(left);
-    BasicState<S> there = ramp.at(time);
-    left -= ramp.length();
-    WaypointPlanner planner(memory_.spare_waypoints.first(spare_count_));
-    for (std::size_t waypoint = 0; waypoint + 1 < spare_count_ && left > S(0);) {
-      const std::size_t next = next_steady<S>(memory_.spare_waypoints, waypoint);
-      const auto profile = planner.profile(waypoint, next);
-      if (!profile) return false;
-      const S within = profile->time_at(left);
-      time += within;
-      there = profile->at(within);
-      left -= profile->length();
-      waypoint = next;
+    S target = path_.wanted_speed(at.block);
+    path_.above = ramp_above;
+    if (settles) {
+      const S settled = profile::settled_speed(state, path_.limits(at.block));
+      target = settled > negligible_speed<S> ? std::min(settled, target) : S(0);
     }
-    constexpr S but_for_rounding = S(1) - path_rounding<S>;
-    return time < running_.left() * but_for_rounding && there.velocity >= end.velocity * but_for_rounding;
+    const auto ramp = ramp_ahead(path_, at, now, target);
+    if (!ramp) return false;
+    const BasicPlace<S> end = path_.advance(at, ramp->length());
+    if (!(asked ? plan_short(end, target) : plan_better(*ramp, end, target))) return false;
+    asked ? take_short() : take_next();
+    follow(BasicRunningProfile<S>(*ramp), at, 0);
+    running_above_ = ramp_above;
+    return true;
   }
 
-  // Makes the plan in the spare waypoints the one that holds.
-  void take_spare() {
+  // Plans a few blocks from a place on at a speed with zero acceleration, at once: more of them where that
+  // has failed before, in one round; one where two rounds over few are too little. False if the speed is too
+  // high there.
+  bool plan_short(const BasicPlace<S>& from, S speed) {
+    const std::size_t wanted = std::min(short_blocks << std::min(attempt_ / 2, 2), most_short_blocks);
+    const std::size_t rounds = wanted > short_blocks ? 1 : 2;
+    for (const std::size_t most : {std::min(wanted, memory_.ahead.size()), std::size_t{1}}) {
+      short_plan_.begin(path_, from, speed, memory_.ahead.first(most), short_waypoints_);
+      if (short_plan_.work(rounds * 3 * (most + 1))) break;
+    }
+    return short_plan_.holds();
+  }
+
+  // Makes the next plan at once, behind a ramp; whether both are better than what is driven.
+  bool plan_better(const profile::BasicProfile<S>& ramp, const BasicPlace<S>& from, S speed) {
+    begin_plan(from, speed, no_waypoint, S(1));
+    budget_ = work_at_once();
+    const bool better =
+        work_on_plan() && next_plan_.holds() && betters(running_, ramp, next_plan_.waypoints());
+    if (!better) next_plan_.drop();
+    return better;
+  }
+
+  // Begins the next plan, which is to take over at a place that is passed at a speed, in so many ticks.
+  void begin_plan(const BasicPlace<S>& from, S speed, std::size_t waypoint, S ticks) {
+    next_plan_.begin(path_, from, speed, memory_.ahead, memory_.spare_waypoints);
+    next_plan_waypoint_ = waypoint;
+    asked_anew_ = false;
+    const S looks = static_cast<S>(usual_looks * next_plan_.waypoints().size());
+    rate_ = static_cast<std::size_t>(std::min(looks / std::max(ticks, S(1)), static_cast<S>(work_at_once())));
+    budget_ -= std::min(budget_, next_plan_.waypoints().size() / 4);
+  }
+  bool work_on_plan() {
+    const bool done = next_plan_.work(budget_);
+    if (!done) budget_ = 0;
+    return done;
+  }
+
+  // The next plan takes over at a place, if it was begun for this one; what is not made of it is made now, as
+  // far as that goes at once.
+  bool take_over(const BasicPlace<S>& at, S speed, std::size_t waypoint) {
+    if (!next_plan_.begun() && bears(at, speed)) begin_plan(at, speed, waypoint, S(1));
+    if (!next_plan_.begun() || next_plan_waypoint_ != waypoint) return false;
+    if (at_once_ > 0) budget_ = work_at_once(), --at_once_;
+    const bool good = work_on_plan() && next_plan_.holds();
+    good ? adopt(at) : next_plan_.drop();
+    return good;
+  }
+
+  // Goes on with the next plan, or begins it where one is due soon.
+  void prepare(S period) {
+    if (next_plan_.begun()) {
+      budget_ = std::max(budget_, rate_);
+      return void(work_on_plan());
+    }
+    if (idle_) {
+      if (waits() > S(0) && pending_ && path_.asked.direction == path_.direction && !path_.asked.stopped)
+        begin_plan(at_, S(0), no_waypoint, waits() / period);
+      return;
+    }
+    if (next_waypoint_ == no_waypoint || !(more_ || ends_at_stop())) return;
+    const auto cells = std::min(memory_.ahead.size(), static_cast<std::size_t>(cells_ahead()));
+    const S lead = period * static_cast<S>(8 + 6 * (cells + 1) / work_in_ms());
+    if (running_.to_turn() > S(0) && could_better()) {
+      if (running_.to_turn() > lead) return;
+      BasicRunningProfile<S> until = running_;
+      until.advance(until.to_turn());
+      const BasicState<S> turn = until.state();
+      const BasicPlace<S> from = path_.advance(at_, turn.position);
+      if (bears(from, turn.velocity)) begin_plan(from, turn.velocity, at_turn, running_.to_turn() / period);
+      return;
+    }
+    const auto start =
+        waypoint_to_plan_from(std::span<const Waypoint>(memory_.waypoints.first(waypoint_count_)),
+                              next_waypoint_, running_.left(), lead, ends_at_stop());
+    if (!start) return;
+    const std::size_t waypoint = start->waypoint;
+    BasicPlace<S> from = plan_from_;
+    if (waypoint > 0)
+      from = {
+          plan_from_.block + path_.direction * static_cast<std::int64_t>(memory_.waypoints[waypoint].block),
+          S(0)};
+    const S speed = memory_.waypoints[waypoint].speed;
+    if (path_.ring.holds(from.block) && bears(from, speed))
+      begin_plan(from, speed, waypoint, start->time / period);
+  }
+
+  // Cells from here on, in the direction of travel.
+  [[nodiscard]] std::int64_t cells_ahead() const {
+    return path_.direction > 0 ? path_.ring.end() - at_.block : at_.block + 1 - path_.ring.oldest();
+  }
+
+  // Whether the plan ends where the motion has to rest.
+  [[nodiscard]] bool ends_at_stop() const { return !more_ && !plan_open_; }
+
+  // Whether a plan may begin with a speed at a place: the limits up to the feed hold no farther than that.
+  [[nodiscard]] bool bears(const BasicPlace<S>& from, S speed) {
+    path_.above = path_.asks_above();
+    return path_.above || !plan_above_ || !path_.ring.holds(from.block) ||
+           speed <= path_.wanted_speed(from.block);
+  }
+
+  // Whether blocks that the plan does not know could better the span behind a steady waypoint.
+  [[nodiscard]] bool improves_behind(std::size_t waypoint) const {
+    return more_ && waypoint + 1 < waypoint_count_ &&
+           !memory_.waypoints[next_steady<S>(memory_.waypoints, waypoint)].settled;
+  }
+
+  // Makes a plan the one that holds.
+  void take(const BasicPlanAhead<S>& plan) {
     path_.brake_share = S(1);
-    std::swap(memory_.waypoints, memory_.spare_waypoints);
-    waypoint_count_ = spare_count_;
-    plan_above_ = path_.asks_above();
-    more_ = !spare_whole_;
+    waypoint_count_ = plan.waypoints().size();
+    plan_from_ = plan.from();
+    plan_above_ = plan.above();
+    plan_open_ = plan.open();
+    more_ = plan.lacks_blocks(path_.ring.end());
+    next_plan_.drop();
+  }
+  void take_short() {
+    std::copy(short_plan_.waypoints().begin(), short_plan_.waypoints().end(), memory_.waypoints.begin());
+    take(short_plan_);
+    attempt_ = 0;
   }
 
-  // The same, and follows it from a place.
+  void take_next() {
+    std::swap(memory_.waypoints, memory_.spare_waypoints);
+    take(next_plan_);
+  }
+
+  // Makes the next plan the one that holds, and follows it from a place.
   void adopt(const BasicPlace<S>& from) {
+    take_next();
     at_ = from;
-    take_spare();
-    if (waypoint_count_ == 0)
-      rest();
-    else
-      begin_span(0);
+    if (waypoint_count_ == 0) return rest();
+    path_.above = plan_above_;
+    if (!asked_anew_ && !path_.must_rest(from.block) &&
+        memory_.waypoints[0].speed <= path_.wanted_speed(from.block))
+      pending_ = false;
+    begin_span(0);
   }
 
   // Drives a profile; behind it the plan goes on at a waypoint, or the machine comes to rest.
@@ -440,6 +491,7 @@ class BasicPlayer {
     at_ = from;
     running_ = profile;
     next_waypoint_ = waypoint;
+    if (waypoint == no_waypoint || next_plan_waypoint_ == at_turn) next_plan_.drop();
     if (waypoint != no_waypoint) running_above_ = plan_above_;
     running_settled_ = waypoint == no_waypoint || waypoint == 0 || memory_.waypoints[waypoint].settled;
     idle_ = false;
@@ -459,8 +511,8 @@ class BasicPlayer {
     follow(BasicRunningProfile<S>(*stop), at_, no_waypoint);
   }
 
-  // The profile is over: the next one, or rest. True if it has planned, where that is allowed.
-  bool next_profile(bool may_plan) {
+  // The profile is over: the next one, or rest.
+  void next_profile() {
     const BasicState<S> end = running_.state();
     const BasicPlace<S> from = at_;
     at_ = path_.snapped(path_.advance(at_, running_.length()));
@@ -469,22 +521,20 @@ class BasicPlayer {
     if (next_waypoint_ == no_waypoint) {
       path_.above = running_above_;
       if (!rests && path_.ring.holds(at_.block))
-        return follow(braking_on(path_, at_, end, memory_.ahead), at_, no_waypoint), false;
-      return at_junction && !path_.asked.stopped ? rest_as_planned() : rest(), false;
+        return follow(braking_on(path_, at_, end, memory_.ahead), at_, no_waypoint);
+      return at_junction && !path_.asked.stopped ? rest_as_planned() : rest();
     }
-    if (next_waypoint_ + 1 >= waypoint_count_) return rest_as_planned(), false;
+    if (next_waypoint_ + 1 >= waypoint_count_) return rest_as_planned();
     // a ramp that began on the way to a stop, and ends there
     const std::int64_t done = at_.block - path_.direction;
-    if (rests && at_junction && path_.ring.holds(done) && path_.stops_behind(done))
-      return rest_as_planned(), false;
+    if (rests && at_junction && path_.ring.holds(done) && path_.stops_behind(done)) return rest_as_planned();
+    if (next_plan_.begun() && next_plan_waypoint_ == at_turn) next_plan_.drop();
     // nothing that comes can change where a span ends that is settled
-    const bool plans =
-        may_plan && more_ && !memory_.waypoints[next_steady<S>(memory_.waypoints, next_waypoint_)].settled;
-    if (plans && plan_from(at_, memory_.waypoints[next_waypoint_].speed))
-      adopt(at_);
-    else
-      begin_span(next_waypoint_);
-    return plans;
+    const std::size_t waypoint = next_waypoint_;
+    if ((next_plan_.begun() || improves_behind(waypoint)) &&
+        take_over(at_, memory_.waypoints[waypoint].speed, waypoint))
+      return;
+    begin_span(waypoint);
   }
 
   // The plan ends here, at a junction; or a brake does, which may be the plan's own.
@@ -520,19 +570,27 @@ class BasicPlayer {
   BasicPlayerMemory<S> memory_;
   BasicPathAhead<S> path_;
   std::int64_t keep_behind_ = 0;
-  BasicPlace<S>
-      at_;  // where the profile started, seen from the block the machine is in; at rest, where that is
+  BasicPlace<S> at_;  // where the profile started, seen from the block it is in; at rest, where that is
   BasicRunningProfile<S> running_;
   std::size_t waypoint_count_ = 0;
-  std::size_t spare_count_ = 0;
   std::size_t next_waypoint_ = no_waypoint;
+  BasicPlace<S> plan_from_;                       // where the plan begins
+  BasicPlanAhead<S> next_plan_;                   // in the spare waypoints
+  std::size_t next_plan_waypoint_ = no_waypoint;  // of the plan that holds, where the next one takes over
+  BasicPlanAhead<S> short_plan_;                  // an answer to a request
+  std::array<Waypoint, most_short_blocks + 1> short_waypoints_{};
+  std::size_t rate_ = 0;          // waypoints a tick that make the next plan in time
+  std::size_t at_once_ = 0;       // plans that this tick may make to their end yet
+  std::size_t budget_ = 0;        // waypoints that this tick may look at yet
+  int attempt_ = 0;               // to answer a request
   BasicElapsed<S> dwell_;         // s to its end, below 0
   S rested_{};                    // s
   bool plan_above_ = false;       // the plan is made for more than the feed
   bool running_above_ = false;    // the profile is
   bool pending_ = false;          // a request has not been met yet
+  bool asked_anew_ = false;       // since the next plan was begun
   bool more_ = false;             // there are blocks that the plan does not know
-  bool spare_whole_ = false;      // the plan in the spare waypoints knows all
+  bool plan_open_ = true;         // blocks that come count for the plan
   bool running_settled_ = false;  // what comes cannot change where the profile ends
   bool idle_ = true;
 };

@@ -1,0 +1,52 @@
+// What a player works in, and what it says of each tick.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+#include "cncplan/core/phase.hpp"
+#include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/player/block_ring.hpp"
+#include "cncplan/plan/span_planner.hpp"
+
+namespace cncplan::plan {
+
+/// What a player works in; all of it belongs to the caller. `ahead` and the waypoints bound the look-ahead:
+/// `ahead` blocks, at least one, and one waypoint more than that in each buffer. Of what is more than its
+/// neighbours serve, nothing is used.
+template <std::floating_point S>
+struct BasicPlayerMemory {
+  std::span<BasicPlayedBlock<S>> blocks;
+  std::span<BasicBlockCaps<S>> ahead;
+  std::span<BasicWaypoint<S>> waypoints;
+  std::span<BasicWaypoint<S>> spare_waypoints;
+};
+
+using PlayerMemory = BasicPlayerMemory<double>;
+
+/// Where the machine is after a tick.
+template <std::floating_point S>
+struct BasicPlayed {
+  std::int64_t block{};  ///< number of the block; -1 while there is none
+  S along{};             ///< mm from the block's start
+  S velocity{};          ///< mm/s along the path, negative when it runs backwards
+  S acceleration{};      ///< mm/s^2, likewise
+  S jerk{};              ///< mm/s^3, likewise, from now on
+  bool at_rest{};
+
+  friend bool operator==(const BasicPlayed&, const BasicPlayed&) = default;
+};
+
+using Played = BasicPlayed<double>;
+
+/// A part of a tick: constant jerk within one block.
+template <std::floating_point S>
+struct BasicPlayedPart {
+  BasicPhase<S> phase;   ///< seconds into the tick; mm travelled from where it begins
+  std::int64_t block{};  ///< number of the block
+  S along{};             ///< mm from the block's start to where the part begins
+  int direction = 1;     ///< -1 towards the block's start
+};
+
+}  // namespace cncplan::plan
