@@ -47,7 +47,10 @@ TEST_CASE("places go on across junctions, in both directions") {
   CHECK(path.advance(Place{0, 0.5}, 0.25) == Place{0, 0.75});
   CHECK(path.advance(Place{0, 0.5}, 0.5) == Place{1, 0.0});
   CHECK(path.advance(Place{0, 0.5}, 3.0) == Place{2, 0.5});
-  CHECK(path.advance(Place{3, 3.0}, 5.0) == Place{3, 8.0});  // behind the end
+  CHECK(path.advance(Place{3, 3.0}, 5.0) == Place{3, 8.0});         // behind the end
+  CHECK(path.advance(Place{0, 0.5}, 0.5, 1e-10) == Place{0, 1.0});  // the end of a profile is in block 0
+  CHECK(path.advance(Place{0, 0.5}, 0.5, 1.0) == Place{1, 0.0});
+  CHECK(path.advance(Place{0, 0.5}, 2.5, 0.0) == Place{1, 2.0});
   CHECK(path.snapped(Place{1, 2.0 - 1e-12}) == Place{2, 0.0});
   CHECK(path.snapped(Place{1, 1e-12}) == Place{1, 0.0});
   CHECK(path.snapped(Place{1, 1.0}) == Place{1, 1.0});

@@ -36,7 +36,7 @@ class BasicBrake {
 
   /// Whether there is a way out of a state, to within rounding.
   [[nodiscard]] bool safe(const BasicState<S>& now) const {
-    constexpr S rounding = std::max(S(1e-9), S(8) * exact);
+    constexpr S rounding = std::max(S(1e-9), S(64) * exact);
     return -now.acceleration <= zones_[0].limits.acceleration * (S(1) + rounding) && safe(now, 0, rounding);
   }
 
@@ -69,7 +69,8 @@ class BasicBrake {
 
  private:
   static constexpr S infinity = std::numeric_limits<S>::infinity();
-  static constexpr S exact = S(64) * std::numeric_limits<S>::epsilon();  // but for rounding
+  // But for rounding. What speed is missing at rest leaves the root of that in acceleration.
+  static constexpr S exact = S(8) * std::numeric_limits<S>::epsilon();
   // A brake that is gone when the speed is but for this is gone: half the digits, as its last bit of speed
   // costs the root of that in acceleration.
   static constexpr S root_exact =

@@ -12,11 +12,13 @@
 
 namespace cncplan::plan {
 
-/// Where a profile is at a position along it. `start` is where it began, seen from the block that the machine
-/// was in, and goes along with the block: it then lies before it.
+/// Where a profile is. `start` is where it began, seen from the block that the machine was in, and goes along
+/// with the block: it then lies before it.
 template <std::floating_point S>
-[[nodiscard]] BasicPlace<S> locate(const BasicPathAhead<S>& path, BasicPlace<S>& start, S position) {
-  const BasicPlace<S> at = path.advance(start, position);
+[[nodiscard]] BasicPlace<S> locate(const BasicPathAhead<S>& path, BasicPlace<S>& start,
+                                   const BasicRunningProfile<S>& running) {
+  const S position = running.state().position;
+  const BasicPlace<S> at = path.advance(start, position, running.length() - position);
   if (at.block != start.block) start = {at.block, at.along - position};
   return at;
 }
@@ -28,7 +30,7 @@ void drive(const BasicPathAhead<S>& path, BasicPlace<S>& start, BasicRunningProf
   const BlockRing<S>& ring = path.ring;
   while (seconds > S(0)) {
     const BasicState<S> now = running.state();
-    const BasicPlace<S> at = path.snapped(locate(path, start, now.position));
+    const BasicPlace<S> at = path.snapped(locate(path, start, running));
     const S edge = running.to_edge();
     BasicPlayedPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
                              now.acceleration, now.jerk},

@@ -105,14 +105,15 @@ class BasicPathAhead {
   }
 
   /// A place so much farther on; `along` is below the block's length but where no block follows. A block
-  /// behind which the motion rests is not left by rounding: that is for `snapped`, once it rests.
-  [[nodiscard]] Place advance(Place from, S distance) const {
+  /// behind which the motion rests is not left by rounding, nor is one at whose end a profile ends that has
+  /// `left` mm to go: the limits behind it are others. That is for `snapped`, once the profile is over.
+  [[nodiscard]] Place advance(Place from, S distance, S left = std::numeric_limits<S>::infinity()) const {
     from.along += distance;
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
-      const S length = ring.length(from.block);
+      const S over = from.along - ring.length(from.block);
       const bool stops = stops_behind(from.block) || !(junction_cap(from.block + direction) > S(0));
-      if (from.along < (stops ? length + path_rounding<S> : length)) break;
-      from.along -= length;
+      if (over < (stops ? path_rounding<S> : S(0)) || over + left <= path_rounding<S>) break;
+      from.along = over;
       from.block += direction;
     }
     return from;

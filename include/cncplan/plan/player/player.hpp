@@ -239,14 +239,13 @@ class BasicPlayer {
   [[nodiscard]] bool profile_over() const { return !idle_ && !(running_.left() > S(0)); }
 
   // Where it is now. At rest a block of no length is not passed by.
-  BasicPlace<S> locate() { return locate(running_.state().position); }
-  BasicPlace<S> locate(S position) { return idle_ ? at_ : plan::locate(path_, at_, position); }
+  BasicPlace<S> locate() { return idle_ ? at_ : plan::locate(path_, at_, running_); }
 
   [[nodiscard]] BasicPlayed<S> played() {
     const BlockRing<S>& ring = path_.ring;
     if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = running_.state();
-    BasicPlace<S> at = locate(now.position);
+    BasicPlace<S> at = locate();
     if (!ring.holds(at.block) ||
         (waits() > S(0) && ring.holds(at.block - 1)))  // behind the last, or dwelling
       at = {at.block - path_.direction, ring.length(at.block - path_.direction)};
@@ -337,7 +336,7 @@ class BasicPlayer {
     }
     const auto ramp = ramp_ahead(path_, at, now, target);
     if (!ramp) return false;
-    const BasicPlace<S> end = path_.advance(at, ramp->length());
+    const BasicPlace<S> end = path_.snapped(path_.advance(at, ramp->length()));  // as `next_profile` sees it
     if (!(asked ? plan_short(end, target) : plan_better(*ramp, end, target))) return false;
     asked ? take_short() : take_next();
     follow(BasicRunningProfile<S>(*ramp), at, 0);
