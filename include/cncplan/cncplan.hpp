@@ -158,6 +158,7 @@
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/reversal.hpp"
 #include "cncplan/plan/set_point.hpp"
+#include "cncplan/plan/shared_limits.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/smooth_junction.hpp"
 #include "cncplan/plan/smoothing.hpp"

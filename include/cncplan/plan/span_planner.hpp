@@ -11,6 +11,7 @@
 
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/shared_limits.hpp"
 #include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"
 #include "cncplan/profile/solver.hpp"
@@ -34,10 +35,6 @@ struct BasicWaypoint {
 
 using Waypoint = BasicWaypoint<double>;
 
-/// A span keeps the lowest acceleration and jerk limits of its blocks. Where they differ by more than this, a
-/// steady waypoint divides them.
-inline constexpr double shared_limits_ratio = 1.3;
-
 /// A ramp from a speed v to a lower one can be this much longer than that to rest: to v/3, where the jerk
 /// limit alone binds, by the highest value of (1 + x) sqrt(1 - x), rounded up.
 inline constexpr double longest_ramp = 1.09;
@@ -50,17 +47,13 @@ std::size_t make_waypoints(std::span<const BasicBlockCaps<S>> blocks, S start_sp
                            std::span<BasicWaypoint<S>> waypoints, std::size_t divide = 0) {
   if (blocks.empty()) return 0;
   std::size_t count = 0;
-  BasicLimits<S> low = blocks.front().limits, high = low;  // since the last one that is steady by force
+  BasicSharedLimits<S> shared(blocks.front().limits);  // since the last one that is steady by force
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicLimits<S>& limits = blocks[i].limits;
     const BasicLimits<S>& before = i == 0 ? limits : blocks[i - 1].limits;
     const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before.velocity, limits.velocity});
-    low = {S(0), std::min(low.acceleration, limits.acceleration), std::min(low.jerk, limits.jerk)};
-    high = {S(0), std::max(high.acceleration, limits.acceleration), std::max(high.jerk, limits.jerk)};
-    constexpr S ratio = static_cast<S>(shared_limits_ratio);
-    const bool fixed =
-        i == 0 || i == divide || high.acceleration > ratio * low.acceleration || high.jerk > ratio * low.jerk;
-    if (fixed) low = high = limits;
+    const bool fixed = !shared.take(limits) || i == 0 || i == divide;
+    if (fixed) shared = BasicSharedLimits<S>(limits);
     if (fixed || limits != before || cap < limits.velocity)
       waypoints[count++] = {i, cap, cap, S(0), limits, true, fixed, false, S(0)};
     waypoints[count - 1].gap += blocks[i].length;

@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/plan/player/horizon.hpp"
+#include "cncplan/plan/shared_limits.hpp"
 
 namespace cncplan::plan {
 
@@ -138,6 +140,7 @@ class BasicPathAhead {
   Ahead ahead(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     Ahead ahead{0, true, false};
     Horizon<S> horizon;
+    std::optional<BasicSharedLimits<S>> shared;
     for (Place at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
       if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false, true};
       const bool first = ahead.blocks == 0;
@@ -149,7 +152,9 @@ class BasicPathAhead {
       caps.entry = first ? speed : junction_cap(at.block);
       out[ahead.blocks++] = caps;
       if (stops_behind(at.block)) return ahead;
-      horizon.take(caps.limits, caps.length);
+      const bool steady = !shared || !shared->take(caps.limits);
+      if (steady) shared.emplace(caps.limits);
+      horizon.take(caps.limits, caps.length, steady && !first);
     }
     ahead.open = true;
     return ahead;

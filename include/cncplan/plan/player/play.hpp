@@ -107,7 +107,7 @@ template <BlockModel B, std::invocable<const B&> Feed>
                                                                   double period, Feed&& feed_of,
                                                                   double most_ticks = 1e10) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr std::size_t window = 256;
+  constexpr std::size_t most_ahead = 8192;                         // within a tolerance cells are short
   if (!cells.pauses.empty() && cells.pauses.front().cells == 0) {  // rests before anything moves
     double rest = 0.0;
     for (const auto& pause : cells.pauses)
@@ -125,6 +125,7 @@ template <BlockModel B, std::invocable<const B&> Feed>
                       .line = block.line,
                       .goes_on = more && (cells.blocks[i + 1] == cells.blocks[i] || block.goes_on)});
   }
+  const std::size_t window = std::clamp<std::size_t>(played.size(), 1, most_ahead);
   std::vector<PlayedBlock> memory(window + 1);
   std::vector<BlockCaps> ahead(window);
   std::vector<Waypoint> waypoints(window + 1), spare_waypoints(window + 1);
