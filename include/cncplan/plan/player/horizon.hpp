@@ -32,6 +32,8 @@ class Horizon {
   }
 
   [[nodiscard]] bool reached() const { return travelled_ + ramp_ > enough_; }
+  /// Whether it is as far as it takes to come to rest from the highest speed.
+  [[nodiscard]] bool halfway() const { return travelled_ + ramp_ > enough_ / S(2); }
 
  private:
   // At full speed it begins anew: a way down is as long as one up.

@@ -160,6 +160,18 @@ class BasicPathAhead {
     return ahead;
   }
 
+  /// How many blocks coming to rest from a speed at a place may touch, in two ramps; `most` at most.
+  [[nodiscard]] std::size_t blocks_to_rest(const Place& from, S speed, std::size_t most) const {
+    std::size_t count = 0;
+    Horizon<S> horizon;
+    for (Place at = from; ring.holds(at.block) && count < most && !horizon.halfway();
+         at = {at.block + direction, S(0)}, ++count) {
+      const BasicLimits<S>& own = limits(at.block);
+      horizon.take({speed, own.acceleration, own.jerk}, std::max(ring.length(at.block) - at.along, S(0)));
+    }
+    return count;
+  }
+
   /// The zones of equal limits from a place on, as far as it takes to come to rest from `speed`; how many.
   /// When `out` (room for one at least) is full, the last goes on under the lowest limits of all that follow.
   std::size_t zones(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {

@@ -119,7 +119,7 @@ class BasicPlayer {
 
   /// Moves on by `period` seconds. What it plans on the way is bounded, for each millisecond begun: a few
   /// waypoints of the next plan, four plans to their end where that is too little, and an answer to requests,
-  /// over `short_blocks` to `most_short_blocks` blocks.
+  /// over the blocks that coming to rest takes, no more than `most_short_blocks`.
   BasicPlayed<S> tick(S period) {
     return tick(
         period, [](const BasicPlayedPart<S>&) {}, false);
@@ -198,8 +198,9 @@ class BasicPlayer {
  private:
   static constexpr std::size_t no_waypoint = static_cast<std::size_t>(-1);
   static constexpr std::size_t at_turn = no_waypoint - 1;
-  static constexpr std::size_t short_blocks = 4;
-  static constexpr std::size_t most_short_blocks = 16;
+  static constexpr std::size_t more_short_blocks = 3;
+  static constexpr std::size_t most_short_blocks = 128;
+  static constexpr std::size_t short_rounds = 4;  // of three passes
   static constexpr std::size_t most_attempts = 4;
 
   // How many waypoints a tick may look at for the next plan: each millisecond; where that is too little, as
@@ -308,8 +309,7 @@ class BasicPlayer {
       if (braking) follow(*braking, at, no_waypoint);
       return braking.has_value();
     }
-    const int attempt = attempt_;
-    attempt_ = attempt < 15 ? attempt + 1 : 12;  // 12 is 0 to all that depends on it but the look-ahead
+    const int attempt = std::exchange(attempt_, (attempt_ + 1) % 4);
     if (now.acceleration == S(0) && now.velocity <= path_.wanted_speed(at.block) && attempt % 2 == 0) {
       if (!asked) return take_over(at, now.velocity, at_turn);
       if (!plan_short(at, now.velocity)) return false;
@@ -326,15 +326,16 @@ class BasicPlayer {
 
   // By a ramp under the limits above the feed, or those up to it.
   bool replan(bool asked, const BasicState<S>& now, const BasicPlace<S>& at, bool ramp_above, bool settles) {
-    const profile::BasicStartState<S> state{now.velocity, now.acceleration};
     path_.above = path_.asks_above();
     S target = path_.wanted_speed(at.block);
     path_.above = ramp_above;
-    if (settles) {
-      const S settled = profile::settled_speed(state, path_.limits(at.block));
-      target = settled > negligible_speed<S> ? std::min(settled, target) : S(0);
-    }
-    const auto ramp = ramp_ahead(path_, at, now, target);
+    const S settled = profile::settled_speed(profile::BasicStartState<S>{now.velocity, now.acceleration},
+                                             path_.limits(at.block));
+    const S lower = settled > negligible_speed<S> ? std::min(settled, target) : S(0);
+    auto ramp = ramp_ahead(path_, at, now, settles ? lower : target);
+    settles = settles || (!ramp && asked);
+    if (settles) target = lower;
+    if (settles && !ramp) ramp = ramp_ahead(path_, at, now, target);
     if (!ramp) return false;
     const BasicPlace<S> end = path_.snapped(path_.advance(at, ramp->length()));  // as `next_profile` sees it
     if (!(asked ? plan_short(end, target) : plan_better(*ramp, end, target))) return false;
@@ -344,16 +345,13 @@ class BasicPlayer {
     return true;
   }
 
-  // Plans a few blocks from a place on at a speed with zero acceleration, at once: more of them where that
-  // has failed before, in one round; one where two rounds over few are too little. False if the speed is too
-  // high there.
+  // Plans the blocks from a place on that coming to rest takes, and a few more, at once. False if the speed
+  // is too high there, or `short_rounds` are too few.
   bool plan_short(const BasicPlace<S>& from, S speed) {
-    const std::size_t wanted = std::min(short_blocks << std::min(attempt_ / 2, 2), most_short_blocks);
-    const std::size_t rounds = wanted > short_blocks ? 1 : 2;
-    for (const std::size_t most : {std::min(wanted, memory_.ahead.size()), std::size_t{1}}) {
-      short_plan_.begin(path_, from, speed, memory_.ahead.first(most), short_waypoints_);
-      if (short_plan_.work(rounds * 3 * (most + 1))) break;
-    }
+    const std::size_t most = std::min(memory_.ahead.size(), most_short_blocks);
+    const std::size_t blocks = std::min(path_.blocks_to_rest(from, speed, most) + more_short_blocks, most);
+    short_plan_.begin(path_, from, speed, memory_.ahead.first(blocks), short_waypoints_);
+    short_plan_.work(short_rounds * 3 * (short_plan_.waypoints().size() + 1));
     return short_plan_.holds();
   }
 
