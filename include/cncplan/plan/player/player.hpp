@@ -136,6 +136,7 @@ class BasicPlayer {
     budget_ = work_in_ms() * begun_ms;
     at_once_ = 4 * begun_ms;
     const bool answers = !idle_ && answer(std::min(begun_ms, most_attempts));
+    if (answers) at_once_ = 0;  // that was a plan
     if (idle_ && pending_ && !(waits() > S(0))) start();
     S left = period;
     const std::size_t most_hops = 4 * memory_.blocks.size() + 16;  // never met: profiles end blocks
