@@ -16,7 +16,7 @@ using Exact = boost::multiprecision::cpp_bin_float_50;
 
 struct Errors {
   double center = 0;  ///< in units of what one rounding of every input does to it
-  double angle = 0;   ///< likewise
+  double angle = 0;   ///< in the same units
   double center_mm = 0;
   int snapped = 0;
   std::string worst;

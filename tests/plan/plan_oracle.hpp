@@ -18,7 +18,7 @@ struct PlanErrors {
   double cap{};           ///< speed at a junction above its cap
   double velocity{};      ///< speed within a block above its feed
   double acceleration{};  ///< above the limit of the block
-  double jerk{};          ///< likewise
+  double jerk{};          ///< above the limit of the block
   double length{};        ///< of a span against its blocks, relative
   double speed_jump{};    ///< between spans
   double rest{};          ///< speed at the two ends, mm/s

@@ -27,7 +27,7 @@ struct VcdAxis {
   std::int64_t shortest_high = INT64_MAX;
   std::int64_t longest_high = 0;
   int direction = 1;  ///< as it stands
-  bool high = false;  ///< the step signal, likewise
+  bool high = false;  ///< the step signal, as it stands
 
   [[nodiscard]] std::int64_t net() const {
     std::int64_t sum = 0;

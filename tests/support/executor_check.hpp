@@ -20,8 +20,8 @@ namespace cncplan::test {
 /// The worst of what was seen. Relative ones: what a limit was exceeded by, as a share of it.
 struct ExecutorFaults {
   double velocity{};      ///< of an axis or of the tool, relative
-  double acceleration{};  ///< likewise
-  double jerk{};          ///< likewise
+  double acceleration{};  ///< of an axis or of the tool, relative
+  double jerk{};          ///< of an axis or of the tool, relative
   double way{};           ///< of an axis over a tick above what its velocity limit allows, mm or rad
   double rate{};    ///< of an axis, velocity against the difference of positions, over its bound by jerk
   double change{};  ///< of an axis, difference of accelerations over a tick above the jerk limit, relative

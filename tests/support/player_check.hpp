@@ -24,9 +24,9 @@ struct PlayerFaults {
   double travel{};  ///< mm between travelled distance and the integral of the speed, beyond a tick's rounding
   double sum_acceleration{};  ///< of the point in space, by its velocity at both ends of a tick, above the
                               ///< limit, relative
-  double sum_jerk{};          ///< of the point in space, by its acceleration at both ends of a tick, likewise
-  double dwell{};             ///< s of a dwell that were not waited for, beyond two ticks
-  double end{};               ///< mm from the end of the last block
+  double sum_jerk{};  ///< of the point in space, by its acceleration at both ends of a tick, above the limit
+  double dwell{};     ///< s of a dwell that were not waited for, beyond two ticks
+  double end{};       ///< mm from the end of the last block
   bool finished{};
   long ticks{};
   long requests{};

@@ -35,7 +35,7 @@ void positions_in_phase(const BasicPhase<S>& phase, S start, S origin, S period,
   }
 }
 
-/// The whole states, likewise.
+/// The whole states in place of the positions.
 template <std::floating_point S>
 void states_in_phase(const BasicPhase<S>& phase, S period, std::int64_t first, std::span<BasicState<S>> out) {
   const S from = static_cast<S>(first);

@@ -209,7 +209,7 @@ class BasicArc {
         });
   }
 
-  /// The frames at up to Frames::capacity lengths, which ascend; likewise.
+  /// The frames at up to Frames::capacity lengths, which ascend, from the same anchors.
   void frames_at(std::span<const S> lengths, Frames<S, 3>& out) const {
     for_each_portion(
         lengths, [&](std::size_t i) { out.set(i, frame_at(lengths[i])); },

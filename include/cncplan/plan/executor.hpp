@@ -31,7 +31,7 @@ struct BasicExecutorOptions {
   /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
   S junction_deviation = S(0.01);
   bool exact_between_rapids_and_feeds{};  ///< keeps the joints of rapids with feed moves exact
-  S longest_wait = S(0.05);  ///< s at rest for which blocks are held back for the ones that follow them
+  S longest_wait = S(0.05);   ///< s at rest for which blocks are held back for the ones that follow them
   S quick_stop_share = S(1);  ///< >= 1: how many times its limits of acceleration and jerk the tool and each
                               ///< axis may use in a quick stop; what drives and mechanics bear beyond the
                               ///< limits that machining has

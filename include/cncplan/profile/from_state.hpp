@@ -161,7 +161,7 @@ template <std::floating_point S>
 ///
 /// This holds for profiles up to 10^4 times (`float`: 10 times) as long as that way in mm and as A / J in s.
 /// For the length left of a longer one add 4 eps of the whole length. Any motion that reaches a speed v with
-/// hardly any acceleration left may step likewise by up to 4 v sqrt(eps v / J): what it takes to make up for
+/// hardly any acceleration left may also step, by up to 4 v sqrt(eps v / J): what it takes to make up for
 /// the rounding of v.
 ///
 /// Closed forms: see `BasicExtremals`. Errors: as `stop`, but for an acceleration beyond its limit; as the

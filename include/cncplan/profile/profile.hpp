@@ -143,7 +143,7 @@ class BasicProfile {
     return {previous.time + previous.duration, duration, start.position, start.velocity, acceleration, jerk};
   }
 
-  // The phase that comes before another, likewise.
+  // The phase that comes before another, with acceleration and jerk as given.
   static constexpr Phase before(const Phase& next, S duration, S acceleration, S jerk) {
     const S velocity = next.velocity - duration * (acceleration + duration * jerk / S(2));
     const S distance =

@@ -82,7 +82,7 @@ class BasicVelocityChange {
   S sign_{};
   S most_{};    // acceleration
   S change_{};  // of the velocity, in the direction of `sign_`
-  S push_{};    // acceleration behind the return, likewise
+  S push_{};    // acceleration behind the return, in the same direction
 };
 
 }  // namespace cncplan::state

@@ -26,7 +26,7 @@ struct BasicTireMoldRow {
   Joints start = Joints::Zero();
   Joints way = Joints::Zero();
   S tool_length{};  ///< mm, as all of `BasicTireMold`
-  S side_offset{};  ///< mm, likewise
+  S side_offset{};  ///< mm, as all of `BasicTireMold`
   S even_length{};  ///< mm, > 0 if each part of the row counts the same
 
   [[nodiscard]] S reach(const std::array<S, 3>&) const {

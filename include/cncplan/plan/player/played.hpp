@@ -31,8 +31,8 @@ struct BasicPlayed {
   std::int64_t block{};  ///< number of the block; -1 while there is none
   S along{};             ///< mm from the block's start
   S velocity{};          ///< mm/s along the path, negative when it runs backwards
-  S acceleration{};      ///< mm/s^2, likewise
-  S jerk{};              ///< mm/s^3, likewise, from now on
+  S acceleration{};      ///< mm/s^2, along the path
+  S jerk{};              ///< mm/s^3, along the path, from now on
   bool at_rest{};
 
   friend bool operator==(const BasicPlayed&, const BasicPlayed&) = default;

@@ -68,14 +68,14 @@ class BasicPlayer {
   void hold() { ask(path_.asked.held, true); }
   void resume() { ask(path_.asked.held, false); }
 
-  /// Comes to rest likewise, and does not go on: the program ends there.
+  /// Comes to rest as by a hold, and does not go on: the program ends there.
   void stop() {
     wait_for(S(0));
     ask(path_.asked.stopped, true);
   }
 
-  /// Comes to rest likewise, with so many times the limits of acceleration and jerk, at least once; then it
-  /// is held.
+  /// Comes to rest as by a hold, with so many times the limits of acceleration and jerk, at least once; then
+  /// it is held.
   void quick_stop(S share) {
     hold();
     if (idle_) return;
@@ -85,7 +85,7 @@ class BasicPlayer {
 
   /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is NaN. Values outside are cut.
   void feed_override(S share) { ask(path_.asked.feed_share, share_up_to(S(2), share)); }
-  /// Share of the rapid rate, 0 to 1, likewise.
+  /// Share of the rapid rate, 0 to 1, as for the feed.
   void rapid_override(S share) { ask(path_.asked.rapid_share, share_up_to(S(1), share)); }
 
   /// Runs backwards along the path, as far as blocks are kept, or forwards again. It comes to rest in
