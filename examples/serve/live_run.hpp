@@ -106,7 +106,7 @@ class LiveRun {
   }
 
  private:
-  using Executor = cncplan::Executor<M, 64, B>;
+  using Executor = cncplan::Executor<M, 256, B>;
   using Row = std::vector<double>;
   static constexpr std::size_t most_requests = 100, most_rows = 20000;
   static constexpr long long most_rows_told = 2000;

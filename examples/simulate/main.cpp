@@ -1,7 +1,6 @@
 // The reference integration, G-code in, step and direction out: reads a program, plans it, samples it, turns
 // it into step edges, and says what it measured. Its options and outputs are the contract of
 // docs/simulate.md.
-#include <fmt/format.h>
 
 #include "execute.hpp"
 #include "machine.hpp"
@@ -18,15 +17,11 @@ namespace {
 using support::Exit;
 using support::Failure;
 
-// An executor keeps the exact path; its corners are as fast as ones rounded within the tolerance.
+// An executor smooths in closed form.
 void settle_for_executor(Options& options) {
   if (options.corner_tolerance < 0.0)
     throw Failure(Exit::bad_input, "--serve passes corners by --tolerance: it goes without --junction");
-  if (options.tolerance > 0.0) {
-    options.corner_tolerance = options.tolerance;
-    options.junction = junction_choice(fmt::format("deviation={}", options.tolerance));
-  }
-  options.tolerance = 0.0;
+  if (options.tolerance > 0.0) options.smooth = Smooth::fast;
 }
 
 // Refuses what the options ask for and the machine cannot do.

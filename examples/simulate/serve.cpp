@@ -18,7 +18,9 @@ int serve_program(const Options& options, const support::Machine& file, const M&
   using Block = typename M::Block;
   serve::LiveRun<M, Block> run(
       machine, program.blocks,
-      {options.corner_tolerance, options.rotary_tolerance * cncplan::gcode::radians_per_degree},
+      {.tolerance = options.tolerance,
+       .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
+       .junction_deviation = options.corner_tolerance},
       options.period, [&](const auto& point, std::vector<double>& row) {
         const cncplan::Vector3 tool = tool_at(machine, point);
         row.insert(row.end(), tool.begin(), tool.end());
