@@ -183,6 +183,7 @@ class Executor {
     end_.store(not_ended, std::memory_order_relaxed);
     stand_at(position);
     last_.along = {};
+    last_.block = 0;
     return true;
   }
 
