@@ -118,3 +118,30 @@ TEST_CASE("a hold on a smoothed corner: stop there, begin anew there", "[executo
   CHECK_FALSE(executor->error());
   CHECK(point.position == Vector3(0, 20, 0));
 }
+
+TEST_CASE("held at a new beginning, the axes wait for resume, jogged or not", "[executor]") {
+  const auto blocks = test::blocks_of({"F1200", "G1 X10", "Y10"}, test::slow_axes<double>);
+  using Runner = Executor<Machine<3>, 64>;
+  const bool jogs = GENERATE(false, true);
+  const auto executor = std::make_unique<Runner>(test::slow_axes<double>, Runner::Options{.tolerance = 0.05});
+  executor->feed_hold();
+  const Vector3 beside(5, 0.03, 0);
+  REQUIRE(executor->restart(2, beside));
+  for (const auto& block : blocks) REQUIRE(executor->push(block));
+  executor->end_of_program();
+  SetPoint<3> point;
+  const auto wait = [&] {
+    for (int tick = 0; tick < 1500; ++tick) point = executor->tick(period);
+  };
+  wait();
+  CHECK(point.position == beside);
+  if (jogs) {
+    REQUIRE(executor->jog_to({5, 3, 2}));
+    wait();
+    CHECK(point.position == Vector3(5, 3, 2));
+  }
+  executor->resume();
+  while (!executor->finished()) point = executor->tick(period);
+  CHECK_FALSE(executor->error());
+  CHECK(point.position == Vector3(10, 10, 0));
+}

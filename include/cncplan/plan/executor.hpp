@@ -157,17 +157,17 @@ class Executor {
   /// line, while a program moves the axes.
   Expected<void> jog(const Vector& velocities) {
     if (auto ok = begin_jog(); !ok) return ok;
-    return jogged(jog_.to_velocities(last_.position, velocities, machine_));
+    return jogged(jog_.to_velocities(last_.position, velocities, machine_), false);
   }
   /// The axes go to positions. Errors: those of `move_to`, and as for `jog`.
   Expected<void> jog_to(const Vector& positions) {
     if (auto ok = begin_jog(); !ok) return ok;
-    return jogged(jog_.to_positions(last_.position, positions, machine_));
+    return jogged(jog_.to_positions(last_.position, positions, machine_), false);
   }
   /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
   Expected<void> return_to_path() {
     if (!away_ || !find_path()) return {};
-    return jog_to(path_place_);
+    return jogged(jog_.to_positions(last_.position, path_place_, machine_), returns_);
   }
 
   /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
@@ -255,8 +255,9 @@ class Executor {
     if (away_ || player_.rests()) return {};
     return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
   }
-  Expected<void> jogged(const Expected<void>& done) {
+  Expected<void> jogged(const Expected<void>& done, bool returns) {
     away_ = away_ || done.has_value();
+    if (done) returns_ = returns;
     return done;
   }
 
@@ -272,7 +273,7 @@ class Executor {
 
   template <class Visit>
   SetPoint tick_of_jog(Scalar period, Visit& visit) {
-    if (returns_ && !jog_.moves() && !return_to_path()) returns_ = false;
+    if (returns_ && !player_.held() && !jog_.moves() && !return_to_path()) returns_ = false;
     if (jog_.moves()) {
       const bool rests = jog_.advance(period);
       const AxisMotion<Vector> axes = jog_.at(Scalar(0));

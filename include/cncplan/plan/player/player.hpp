@@ -67,6 +67,7 @@ class BasicPlayer {
   /// Comes to rest as soon as the limits allow; `resume` goes on from there.
   void hold() { ask(path_.asked.held, true); }
   void resume() { ask(path_.asked.held, false); }
+  [[nodiscard]] bool held() const { return path_.asked.held; }
 
   /// Comes to rest as by a hold, and does not go on: the program ends there.
   void stop() {
