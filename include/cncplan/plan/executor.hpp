@@ -49,10 +49,11 @@ using ExecutorOptions = BasicExecutorOptions<double>;
 /// Within a tolerance the path is smoothed, as by `plan_blocks`; no request changes it. What a block's path
 /// is depends on the blocks that follow: half of `capacity`, 66 at most, hold it back until they
 /// come, until a rest is known, or until the machine has rested for `longest_wait` (then the part ends at
-/// rest). From a capacity of 16 on that loses nothing; under a map paths stay exact.
+/// rest). Under a map paths stay exact.
 ///
-/// Look-ahead reaches over `capacity` blocks, and as many are kept behind to run backwards. All memory is
-/// inside. `Block` is that of `BlockReader`, or one with curves of one's own.
+/// Look-ahead reaches over `capacity` cells: one for a line on the exact path, several for a smoothed corner,
+/// where a larger capacity is faster (docs/real-time.md has figures). As many blocks are kept behind to run
+/// backwards. All memory is inside. `Block` is that of `BlockReader`, or one with curves of one's own.
 ///
 /// Two threads: one calls `push`, `end_of_program` and `plan`, the other one `tick` and all requests; neither
 /// waits. `restart` is for a machine at rest while nothing else is called.

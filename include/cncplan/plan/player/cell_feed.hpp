@@ -71,7 +71,7 @@ class CellFeed {
     pushed_.store(number + 1, std::memory_order_release);
     return true;
   }
-  /// Nothing follows without a rest what has been pushed.
+  /// Behind what has been pushed the motion rests.
   void end_part() { smoothing_.end_part(); }
 
   /// Hands at most so many cells to `take`, which says false when there is no room; whether there are more.
@@ -196,7 +196,8 @@ class CellFeed {
     return joined(std::optional<Vector>(place), there, machine_);
   }
 
-  // Whether a place may be one on the path before it was cut anew: it is smoothed with the blocks before.
+  // Whether a place is within the tolerance of the path: the axes may have stopped on a corner with the block
+  // before, which is not smoothed now.
   [[nodiscard]] bool near(const Vector& place, const Vector& there) const {
     for (int i = 0; i < M::axis_count; ++i) {
       const bool rotary = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;

@@ -13,8 +13,8 @@
 namespace cncplan::plan {
 
 /// What a player works in; all of it belongs to the caller. `ahead` and the waypoints bound the look-ahead:
-/// `ahead` blocks, at least one, and one waypoint more than that in each buffer. Of what is more than its
-/// neighbours serve, nothing is used.
+/// `ahead` blocks, at least one, and one waypoint more than that in each buffer. Where one
+/// of them is shorter, the others are used only as far as it reaches.
 template <std::floating_point S>
 struct BasicPlayerMemory {
   std::span<BasicPlayedBlock<S>> blocks;

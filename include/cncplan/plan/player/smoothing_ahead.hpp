@@ -47,7 +47,7 @@ class SmoothingAhead {
     }
     of_block(number) = {};
   }
-  /// Nothing follows what has been pushed without a rest.
+  /// Behind what has been pushed the motion rests.
   void end_part() {
     if (begin_ == end_) return;
     if constexpr (possible) advance(true);
