@@ -145,3 +145,13 @@ TEST_CASE("held at a new beginning, the axes wait for resume, jogged or not", "[
   CHECK_FALSE(executor->error());
   CHECK(point.position == Vector3(10, 10, 0));
 }
+
+TEST_CASE("a new beginning with words alone tells them and is over", "[executor]") {
+  using Runner = Executor<Machine<3>, 64>;
+  const auto executor = std::make_unique<Runner>(test::slow_axes<double>);
+  REQUIRE(executor->restart(0, {0, 0, 0}));
+  for (const auto& block : test::blocks_of({"M8"}, test::slow_axes<double>)) REQUIRE(executor->push(block));
+  executor->end_of_program();
+  CHECK(executor->tick(period).words.size() == 1);
+  CHECK(executor->finished());
+}

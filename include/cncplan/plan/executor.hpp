@@ -205,7 +205,10 @@ class Executor {
     time_.add(period);
     last_.time = time();
     last_.words.clear();
-    if (away_) return tick_of_jog(period, visit);
+    if (away_) {
+      if (returns_ && !find_path()) tell_words(ready - 1);  // of blocks that do not move
+      return tick_of_jog(period, visit);
+    }
     const plan::BasicPlayed<Scalar> now = player_.tick(
         period,
         [&](const plan::BasicPlayedPart<Scalar>& part) {
