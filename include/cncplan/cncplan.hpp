@@ -124,6 +124,7 @@
 #include "cncplan/plan/homing.hpp"
 #include "cncplan/plan/joint_speed.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/level_limits.hpp"
 #include "cncplan/plan/limits_along.hpp"
 #include "cncplan/plan/live_steps.hpp"
 #include "cncplan/plan/machine.hpp"

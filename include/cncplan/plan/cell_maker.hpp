@@ -14,6 +14,7 @@
 #include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/plan/block_checks.hpp"
 #include "cncplan/plan/joint_speed.hpp"
+#include "cncplan/plan/level_limits.hpp"
 #include "cncplan/plan/limits_along.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/passing.hpp"
@@ -32,7 +33,7 @@ struct BasicPartLimits {
 };
 
 /// Cuts a piece of a block where that makes it faster: it is halved as long as the halves at their own speeds
-/// would take 2 % less time than the whole at its one, to 1/256 of it at most.
+/// would take 5 % less time than the whole at its one, to 1/256 of it at most.
 template <MachineModel M, BlockModel B>
 class CutByLimits {
  public:
@@ -89,7 +90,7 @@ class CutByLimits {
 
  private:
   static constexpr int deepest = 8;
-  static constexpr Scalar worth_it = Scalar(0.98);
+  static constexpr Scalar worth_it = Scalar(0.95);
 
   struct Open {
     Part part;
@@ -108,13 +109,15 @@ class CutByLimits {
 template <std::floating_point S>
 struct BasicCell {
   BasicPartLimits<S> part;
-  S entry{};  ///< mm/s, the highest speed; infinite between cells of one motion
-  S rest{};   ///< s, which motors with backlash need there where the motion stops, beyond the block's pause
+  BasicLimits<S> above;  ///< limits at twice the block's feed, where the maker is asked for them
+  S entry{};             ///< mm/s, the highest speed; infinite between cells of one motion
+  S rest{};  ///< s, which motors with backlash need there where the motion stops, beyond the block's pause
 };
 
 /// Makes the cells of one block after another: of a whole program, or of blocks as they come in. A joint
 /// within one motion has no rules of its own; where an axis with backlash turns round, the speed leaves its
-/// motors time for that.
+/// motors time for that. Limits within a motion are made alike (`BasicLevelLimits`), and what has the same
+/// limits within a block is one cell.
 template <MachineModel M, BlockModel B, class Policy, class Cut = CutByLimits<M, B>>
 class CellMaker {
  public:
@@ -124,8 +127,9 @@ class CellMaker {
   using Driven = smooth::Smoothed<typename B::Path>;
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
 
-  CellMaker(const M& machine, const JointRules<Scalar, Policy>& rules)
-      : machine_(machine), rules_(rules), tool_(tool_axes(machine)), turnings_(machine) {
+  /// `above`: whether the limits above the feed are wanted.
+  CellMaker(const M& machine, const JointRules<Scalar, Policy>& rules, bool above = false)
+      : machine_(machine), rules_(rules), tool_(tool_axes(machine)), above_(above), turnings_(machine) {
     for (const auto& axis : machine.axes) axes_limited_ = axes_limited_ || has_limits(axis);
   }
 
@@ -141,37 +145,34 @@ class CellMaker {
   }
 
   /// Whether all cells of the block have been made.
-  [[nodiscard]] bool done() const { return cut_.done(); }
+  [[nodiscard]] bool done() const { return !has_ahead_ && !(cut_until_ < length_); }
 
   /// The next cell of the block. Errors: those of `validate` for its limits.
   [[nodiscard]] Expected<Cell> next() {
-    Expected<Cell> made(Cell{cut_.next(driven_, machine_), entry_, Scalar(0)});
+    if (auto ok = cut_ahead(); !ok) return tl::unexpected(ok.error());
+    Expected<Cell> made(Cell{ahead_, ahead_above_, std::exchange(entry_, infinity), Scalar(0)});
     Cell& cell = *made;
-    const auto& [from, to, limits] = cell.part;
-    if (auto ok = validate(limits); !ok) return tl::unexpected(ok.error());
+    has_ahead_ = false;
     for (; turning_count_ > 0; --turning_count_) {
       const auto& turning = turning_[turning_count_ - 1];
-      cell.entry = std::min(cell.entry, turning.speed(limits));
+      cell.entry = std::min(cell.entry, turning.speed(cell.part.limits));
       if (moved_ && !(cell.entry > Scalar(0)))
-        cell.rest = std::max(cell.rest, turning.pause(limits) - paused_);
+        cell.rest = std::max(cell.rest, turning.pause(cell.part.limits) - paused_);
     }
-    entry_ = infinity;
     paused_ = Scalar(0);
     moved_ = true;
-    if (cut_.done() && to < block_->path.length()) cut_on(to);
+    for (int parts = 1; parts < most_parts && !done(); ++parts) {
+      if (auto ok = cut_ahead(); !ok) return tl::unexpected(ok.error());
+      if (turning_count_ > 0 || ahead_.limits != cell.part.limits) break;
+      cell.part.to = ahead_.to;
+      if (above_) cell.above = lowest(cell.above, ahead_above_);
+      has_ahead_ = false;
+    }
     return made;
   }
 
   /// What the program asks of the block, mm/s; infinite for as fast as may be.
   [[nodiscard]] Scalar wanted_speed() const { return wanted_; }
-  /// What a share of its feed would be.
-  [[nodiscard]] Scalar wanted_speed(const B& block, Scalar share) const {
-    return plan::wanted_speed(block, machine_, counted_, share);
-  }
-  /// The limits of a part of the block at another speed than that.
-  [[nodiscard]] BasicLimits<Scalar> limits(const BasicPartLimits<Scalar>& part, Scalar speed) const {
-    return cut_.limits(driven_, machine_, part.from, part.to, speed);
-  }
 
   /// Where the last block ended: the next one has to begin there. Nothing before the first.
   [[nodiscard]] const std::optional<Vector>& end() const { return end_; }
@@ -180,6 +181,8 @@ class CellMaker {
     end_ = place;
     before_.reset();
     cut_ = {};
+    has_ahead_ = false;
+    length_ = cut_until_ = Scalar(0);
     turnings_ = Turnings<M>(machine_);
     turning_count_ = 0;
     moved_ = false;
@@ -188,6 +191,7 @@ class CellMaker {
 
  private:
   static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  static constexpr int most_parts = 8;  // of a cell: bounds the work for one
 
   // The block before a joint.
   struct Before {
@@ -227,7 +231,8 @@ class CellMaker {
       block_ = &block;
       driven_ = driven;
       turnings_.begin(block.path);
-      cut_on(Scalar(0));
+      length_ = length;
+      cut_until_ = Scalar(0);
     } else {
       pause_ = paused_;
     }
@@ -248,7 +253,29 @@ class CellMaker {
     return std::min(speed, axis_corner_speed(joint_, machine_, rules_.tolerance, rules_.rotary_tolerance));
   }
 
-  // Cuts the piece from a length to the next place within the block where an axis turns round.
+  // Cuts the next part, unless that has been done, and makes its limits like those before.
+  [[nodiscard]] Expected<void> cut_ahead() {
+    if (has_ahead_) return {};
+    if (cut_.done()) cut_on(cut_until_);
+    ahead_ = cut_.next(driven_, machine_);
+    if (auto ok = validate(ahead_.limits); !ok) return tl::unexpected(ok.error());
+    cut_until_ = ahead_.to;
+    has_ahead_ = true;
+    const bool begins = entry_ < infinity;
+    const Scalar length = ahead_.to - ahead_.from;
+    if (above_) ahead_above_ = level_above_.next(limits_above(ahead_), length, begins);
+    ahead_.limits = level_.next(ahead_.limits, length, begins);
+    return {};
+  }
+
+  // What holds where a block with a feed of its own may go at twice of it.
+  [[nodiscard]] BasicLimits<Scalar> limits_above(const BasicPartLimits<Scalar>& part) const {
+    const Scalar twice = plan::wanted_speed(*block_, machine_, counted_, Scalar(2));
+    if (block_->rapid || !(twice > wanted_)) return part.limits;
+    return cut_.limits(driven_, machine_, part.from, part.to, twice);
+  }
+
+  // Begins with the piece from a length to the next place within the block where an axis turns round.
   void cut_on(Scalar from) {
     while (!(turnings_.next() > from)) {
       const auto turning = turnings_.take(block_->path);
@@ -262,11 +289,18 @@ class CellMaker {
   M machine_;
   JointRules<Scalar, Policy> rules_;
   std::array<int, 3> tool_;
+  bool above_;
   bool axes_limited_ = false;  // any of them
   Turnings<M> turnings_;
   std::array<BasicTurning<Scalar>, static_cast<std::size_t>(M::axis_count)> turning_{};  // at the next cell
   std::size_t turning_count_ = 0;
   Cut cut_;
+  BasicLevelLimits<Scalar> level_, level_above_;
+  BasicPartLimits<Scalar> ahead_;    // the next part that is not in a cell yet
+  BasicLimits<Scalar> ahead_above_;  // its limits above the feed
+  bool has_ahead_ = false;
+  Scalar cut_until_{};  // mm of the block that has been cut
+  Scalar length_{};     // mm of the block
   const B* block_ = nullptr;
   Driven driven_;
   Scalar wanted_{};

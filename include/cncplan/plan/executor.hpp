@@ -238,7 +238,7 @@ class Executor {
  private:
   using Cell = plan::BasicPlayedBlock<Scalar>;
   static constexpr std::size_t room = 2 * capacity;
-  static constexpr std::size_t cells_in_tick = 8;
+  static constexpr std::size_t cells_in_tick = 3;
   static constexpr std::int64_t not_ended = -1;
 
   void stand_at(const Vector& position) {

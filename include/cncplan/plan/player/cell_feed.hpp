@@ -52,7 +52,7 @@ class CellFeed {
   using Driven = smooth::Smoothed<typename B::Path>;
 
   CellFeed(const M& machine, const Rules& rules, const SmoothingRules<Scalar>& smoothing)
-      : machine_(machine), tool_(tool_axes(machine)), maker_(machine, rules), smoothing_(smoothing) {
+      : machine_(machine), tool_(tool_axes(machine)), maker_(machine, rules, true), smoothing_(smoothing) {
     if (const auto ok = validate(machine); !ok) fail({ok.error(), 0, 0, {}});
   }
 
@@ -215,11 +215,10 @@ class CellFeed {
     result.caps = {to - from, cell.entry, finite_limits(limits), last ? block.pause : Scalar(0)};
     result.goes_on = !last || block.goes_on;
     result.from = from;
-    const Scalar wanted = maker_.wanted_speed();
-    result.feed = !block.rapid && std::isfinite(block.feed) ? block.feed : std::min(wanted, limits.velocity);
-    const Scalar twice = maker_.wanted_speed(block, Scalar(2));
-    if (block.rapid || !(twice > wanted)) return result;
-    const BasicLimits<Scalar> above = finite_limits(maker_.limits(cell.part, twice));
+    result.feed = !block.rapid && std::isfinite(block.feed)
+                      ? block.feed
+                      : std::min(maker_.wanted_speed(), limits.velocity);
+    const BasicLimits<Scalar> above = finite_limits(cell.above);
     result.above = {std::max(above.velocity, limits.velocity),
                     std::min(above.acceleration, result.caps.limits.acceleration),
                     std::min(above.jerk, result.caps.limits.jerk)};
