@@ -65,7 +65,7 @@ class CutByLimits {
     for (;;) {
       const Part& top = open_[--count_].part;
       const int depth = open_[count_].depth;
-      if (straight_ || depth == deepest || !(top.limits.velocity < speed_)) return top;
+      if (straight_ || depth == deepest || !(top.limits.velocity < worth_it * speed_)) return top;
       const Part part = top;
       const Scalar middle = part.from + (part.to - part.from) / Scalar(2);
       const Part first{part.from, middle, limits(driven, machine, part.from, middle, speed_)};
@@ -281,7 +281,8 @@ class CellMaker {
       const auto turning = turnings_.take(block_->path);
       if (turning_count_ < turning_.size()) turning_[turning_count_++] = turning;
     }
-    const Scalar to = std::min(driven_.next_change(from), turnings_.next());
+    constexpr Scalar apart = Scalar(0.5);  // shorter pieces would gain little
+    const Scalar to = std::min(driven_.next_change(from, apart), turnings_.next());
     cut_.begin(*block_, driven_, machine_, from, to, wanted_,
                block_->rapid ? rapid_speed(machine_) : machine_.limits.velocity);
   }

@@ -85,23 +85,17 @@ class Smoothed {
     return {in_space(at.position), in_space(at.first), in_space(at.second), in_space(at.third)};
   }
 
-  /// The path's own where no correction acts. Else each derivative is enclosed, with the corrections' ranges
-  /// along their own directions: the excess falls with the width.
+  /// The path's own where no correction acts. Else each derivative is enclosed in a few parts, with the
+  /// corrections' ranges along their own directions: the excess falls with the width of a part.
   [[nodiscard]] BasicPathBounds<Scalar, axis_count> bounds(Scalar from, Scalar to) const {
     if (!acts(from, to)) return path_->bounds(from, to);
-    const Enclosed programmed = enclose_programmed(from, to);
-    Enclosed all = programmed;
-    for_each_range(from, to, [&](const Correction& c, const KernelValues<Interval>& range) {
-      for (std::size_t k = 1; k < 4; ++k) {
-        all[k].middle += middle(range[k]) * c.step;
-        all[k].radius += radius(range[k]) * c.step.cwiseAbs();
-      }
-    });
-    BasicPathBounds<Scalar, axis_count> result;
-    result.first = all[1].middle.cwiseAbs() + all[1].radius;
-    result.second = all[2].middle.cwiseAbs() + all[2].radius;
-    result.third = all[3].middle.cwiseAbs() + all[3].radius;
-    result.tool = tool_bounds(programmed, all, from, to);
+    constexpr int parts = 4;
+    const Scalar width = (to - from) / Scalar(parts);
+    auto result = bounds_of_part(from, from + width);
+    for (int i = 1; i < parts; ++i) {
+      const Scalar end = i + 1 < parts ? from + static_cast<Scalar>(i + 1) * width : to;
+      result = result.joined(bounds_of_part(from + static_cast<Scalar>(i) * width, end));
+    }
     return result;
   }
   /// Position and derivatives by length between two lengths, each as an interval.
@@ -132,13 +126,15 @@ class Smoothed {
   }
 
   /// The next length beyond s at which a correction begins or ends or changes its form; the end if there is
-  /// none. Between two of them all derivatives are smooth.
-  [[nodiscard]] Scalar next_change(Scalar s) const {
+  /// none. Between two of them all derivatives are smooth. On a path that is shorter than a correction's
+  /// reach, its changes nearer to s or to the end than `apart` of its sizes are passed over.
+  [[nodiscard]] Scalar next_change(Scalar s, Scalar apart = Scalar(0)) const {
     Scalar next = length();
     for (const Correction& c : corrections_)
       for (const Scalar u : {Scalar(1), reach<Scalar>(c.jump)}) {
         const Scalar place = from_start(c) + (before(c) ? -u : u) * c.size;
-        if (place > s && place < next) next = place;
+        const Scalar room = length() < c.support() ? apart * c.size : Scalar(0);
+        if (place > s + room && place < std::min(next, length() - room)) next = place;
       }
     return next;
   }
@@ -190,6 +186,25 @@ class Smoothed {
       for (std::size_t k = 0; k < range.size(); ++k) range[k] = Interval(scale[k]) * range[k];
       visit(c, range);
     }
+  }
+
+  // The bounds of so short a part that enclosures of it are close.
+  [[nodiscard]] BasicPathBounds<Scalar, axis_count> bounds_of_part(Scalar from, Scalar to) const {
+    if (!acts(from, to)) return path_->bounds(from, to);
+    const Enclosed programmed = enclose_programmed(from, to);
+    Enclosed all = programmed;
+    for_each_range(from, to, [&](const Correction& c, const KernelValues<Interval>& range) {
+      for (std::size_t k = 1; k < 4; ++k) {
+        all[k].middle += middle(range[k]) * c.step;
+        all[k].radius += radius(range[k]) * c.step.cwiseAbs();
+      }
+    });
+    BasicPathBounds<Scalar, axis_count> result;
+    result.first = all[1].middle.cwiseAbs() + all[1].radius;
+    result.second = all[2].middle.cwiseAbs() + all[2].radius;
+    result.third = all[3].middle.cwiseAbs() + all[3].radius;
+    result.tool = tool_bounds(programmed, all, from, to);
+    return result;
   }
 
   [[nodiscard]] Enclosed enclose_programmed(Scalar from, Scalar to) const {
