@@ -11,6 +11,7 @@
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/path_bounds.hpp"
 #include "cncplan/plan/machine.hpp"
+#include "cncplan/plan/shared_limits.hpp"
 
 namespace cncplan::plan {
 
@@ -69,7 +70,9 @@ template <std::floating_point S>
 /// limit A, (f a + p v^2)^2 + (q v^2)^2 <= A^2. By the jerk limit J, where the path bends: a ramp at jerk j
 /// up to speed v peaks at no more than sqrt(j v), so no more acceleration than that is of use; with j = a^2 /
 /// v, (f a^2/v + 3 p v a + t v^3)^2 + (3 q v a + w v^3)^2 <= J^2, whose left side is convex and grows with a:
-/// Newton's method from above. What it leaves above the root only lowers the jerk that is chosen from it.
+/// Newton's method from above. What it leaves above the root only lowers the jerk that is chosen from it; so
+/// does a square that is too large or too small for a number, of a jerk beyond 1e19 or below 1e-19 as a
+/// float.
 template <std::floating_point S>
 [[nodiscard]] S acceleration_of(const Limited<S>& row, S v) {
   const auto& [b, limits] = row;
@@ -90,14 +93,17 @@ template <std::floating_point S>
     return slope > S(0) ? std::min(a, left / slope) : a;
   }
   constexpr int rounds = 6;
-  S root = std::sqrt(left * v / b.first);
+  constexpr S last = S(1) + S(1e-5);  // one more step leaves its square
+  const S square = b.first / v;
+  S root = std::sqrt(left / square);
   for (int round = 0; round < rounds; ++round) {
-    const S along = b.first * root * root / v + along_slope * root + along_rest;
+    const S along = (square * root + along_slope) * root + along_rest;
     const S across = across_slope * root + across_rest;
-    const S jerk = std::hypot(along, across);
-    const S slope = (along * (S(2) * b.first * root / v + along_slope) + across * across_slope) / jerk;
+    const S jerk = std::sqrt(along * along + across * across);
+    const S slope = along * (S(2) * square * root + along_slope) + across * across_slope;
     if (!(jerk > limits.jerk) || !(slope > S(0))) break;
-    root = std::max(root - (jerk - limits.jerk) / slope, S(0));
+    root = std::max(root - (jerk - limits.jerk) * jerk / slope, S(0));
+    if (jerk < last * limits.jerk) break;
   }
   return std::min(a, root);
 }
@@ -186,8 +192,10 @@ template <MachineModel M>
   BasicLimits<S> best = at(least, acceleration_at(least));
   const bool bends = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.bends(); });
   if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
-  constexpr int speeds = 4;
-  const S rise = (fastest(S(1), S(1)) - least) / S(speeds);
+  const S rise = (fastest(S(1), S(1)) - least) / S(4);
+  const int speeds = rise > S(1e-3) * least ? 4 : 0;  // that are higher
+  // Ramps go on over the blocks next to a short one.
+  length = std::max(length, S(2) * room_for_ramp(best));
   const S alone = time_with_ramps(best, length, S(1));
   S shortest = time_with_ramps(best, length, S(2));
   for (int i = 0; i <= speeds; ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 
 #include "cncplan/core/limits.hpp"
@@ -9,25 +10,37 @@
 namespace cncplan::plan {
 
 /// A span keeps the lowest acceleration and jerk limits of its blocks. Where they differ by more than this, a
-/// steady waypoint divides them.
-inline constexpr double shared_limits_ratio = 1.3;
+/// steady waypoint divides them. A steady waypoint in a ramp over short blocks costs more than lower limits
+/// do; on a block with room for a whole ramp it costs nothing.
+inline constexpr double shared_limits_ratio = 2.5;
+inline constexpr double shared_limits_ratio_of_long_blocks = 1.3;
+
+/// mm, at least what a ramp between rest and the velocity limit takes; 0 where there are no other limits.
+template <std::floating_point S>
+[[nodiscard]] S room_for_ramp(const BasicLimits<S>& limits) {
+  const auto& [v, a, j] = limits;
+  return v * std::max(std::sqrt(v / j), v / a);
+}
 
 /// The limits of acceleration and jerk of consecutive blocks, from lowest to highest.
 template <std::floating_point S>
 class BasicSharedLimits {
  public:
-  explicit BasicSharedLimits(const BasicLimits<S>& limits) : low_(limits), high_(limits) {}
+  BasicSharedLimits(const BasicLimits<S>& limits, S length)
+      : low_(limits), high_(limits), long_(length > room_for_ramp(limits)) {}
 
   /// Takes in the limits of the next block; whether they still differ by no more than the ratio.
-  bool take(const BasicLimits<S>& limits) {
+  bool take(const BasicLimits<S>& limits, S length) {
     low_ = {S(0), std::min(low_.acceleration, limits.acceleration), std::min(low_.jerk, limits.jerk)};
     high_ = {S(0), std::max(high_.acceleration, limits.acceleration), std::max(high_.jerk, limits.jerk)};
-    constexpr S ratio = static_cast<S>(shared_limits_ratio);
+    long_ = long_ || length > room_for_ramp(limits);
+    const S ratio = static_cast<S>(long_ ? shared_limits_ratio_of_long_blocks : shared_limits_ratio);
     return !(high_.acceleration > ratio * low_.acceleration || high_.jerk > ratio * low_.jerk);
   }
 
  private:
   BasicLimits<S> low_, high_;
+  bool long_;  // one of them has room for a whole ramp
 };
 
 }  // namespace cncplan::plan

@@ -47,13 +47,14 @@ std::size_t make_waypoints(std::span<const BasicBlockCaps<S>> blocks, S start_sp
                            std::span<BasicWaypoint<S>> waypoints, std::size_t divide = 0) {
   if (blocks.empty()) return 0;
   std::size_t count = 0;
-  BasicSharedLimits<S> shared(blocks.front().limits);  // since the last one that is steady by force
+  BasicSharedLimits<S> shared(blocks.front().limits,
+                              blocks.front().length);  // since the last one that is steady by force
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicLimits<S>& limits = blocks[i].limits;
     const BasicLimits<S>& before = i == 0 ? limits : blocks[i - 1].limits;
     const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before.velocity, limits.velocity});
-    const bool fixed = !shared.take(limits) || i == 0 || i == divide;
-    if (fixed) shared = BasicSharedLimits<S>(limits);
+    const bool fixed = !shared.take(limits, blocks[i].length) || i == 0 || i == divide;
+    if (fixed) shared = BasicSharedLimits<S>(limits, blocks[i].length);
     if (fixed || limits != before || cap < limits.velocity)
       waypoints[count++] = {i, cap, cap, S(0), limits, true, fixed, false, S(0)};
     waypoints[count - 1].gap += blocks[i].length;

@@ -152,8 +152,8 @@ class BasicPathAhead {
       caps.entry = first ? speed : junction_cap(at.block);
       out[ahead.blocks++] = caps;
       if (stops_behind(at.block)) return ahead;
-      const bool steady = !shared || !shared->take(caps.limits);
-      if (steady) shared.emplace(caps.limits);
+      const bool steady = !shared || !shared->take(caps.limits, caps.length);
+      if (steady) shared.emplace(caps.limits, caps.length);
       horizon.take(caps.limits, caps.length, steady && !first);
     }
     ahead.open = true;
