@@ -145,19 +145,23 @@ struct BasicBeside {
 };
 
 /// Whether coming to rest at a corner takes less time than going round it: at the speed u at which its kernel
-/// of length 4 w takes half of the jerk J, with a ramp down to that and one up again. From V to u and back at
-/// J, ramps lose 2 sqrt((V - u) / J) (V - u) / V. V is what the shorter neighbour has room for.
+/// of length 4 w takes half of the jerk J, with a ramp down to that and one up again. On each side, from V to
+/// u at J a ramp loses sqrt((V - u) / J) (V - u) / V. V is what the block there has room for.
 template <std::floating_point S, int N>
 [[nodiscard]] bool faster_at_rest(const BasicJump<S, N>& jump, const BasicBeside<S>& before,
                                   const BasicBeside<S>& behind) {
   const smooth::BasicSizing<S>& sizing = jump.sizing;
   if (sizing.jump != smooth::Jump::direction || !(sizing.size < sizing.wanted)) return false;
-  const S J = std::min(before.limits.jerk, behind.limits.jerk), L = std::min(before.length, behind.length);
-  const S V = std::min({before.limits.velocity, behind.limits.velocity, std::cbrt(J * L * L / S(4))});
-  const S w = sizing.size;
-  const S u = std::min(V, std::cbrt(S(0.75) * J * w * w / jump.step.norm()));
-  const S round = S(2) * std::sqrt((V - u) / J) * (V - u) / V + S(4) * w * (S(1) / u - S(1) / V);
-  return S(2) * std::sqrt(V / J) < round;
+  const S J = std::min(before.limits.jerk, behind.limits.jerk), w = sizing.size;
+  const S highest = std::cbrt(S(0.75) * J * w * w / jump.step.norm());
+  S rest = S(0), round = S(0);
+  for (const auto& [length, limits] : {before, behind}) {
+    const S V = std::min(limits.velocity, std::cbrt(J * length * length / S(4)));
+    const S u = std::min(V, highest);
+    rest += std::sqrt(V / J);
+    round += std::sqrt((V - u) / J) * (V - u) / V + S(2) * w * (S(1) / u - S(1) / V);
+  }
+  return rest < round;
 }
 
 }  // namespace cncplan::plan
