@@ -56,29 +56,24 @@ Json to_json(const Plan& plan) {
              {{"period", plan.deviation.period},
               {"tolerance", plan.deviation.tolerance},
               {"vectors", column(plan.deviation.vectors)}}}};
-  if (m.samples)
+  if (m.samples) {
     json["samples"] = to_json(*m.samples);
-  else
-    json.update({{"time", column(m.time)},
-                 {"within", column(m.within)},
-                 {"velocity", column(m.velocity)},
-                 {"acceleration", column(m.acceleration)},
-                 {"jerk", column(m.jerk)},
-                 {"block", column(m.block)},
-                 {"limitedBy", column(m.limited_by)},
-                 {"blockStart", column(m.start)},
-                 {"blockWanted", column(m.wanted)},
-                 {"blockFirstPiece", column(m.first_piece)},
-                 {"blockLine", column(m.line)},
-                 {"blockKind", column(m.kind)},
-                 {"blockOffset", column(m.offset)},
-                 {"pieceLength", column(m.length)},
-                 {"pieceCurved", column(m.curved)},
-                 {"points", column(m.points)}});
+    return json;
+  }
+  json["grid"] = {{"time", m.grid.time},
+                  {"jerk", m.grid.jerk},
+                  {"length", PathGrid::length},
+                  {"second", PathGrid::second},
+                  {"shape", PathGrid::shape}};
+  json["pathError"] = m.path_error;
+  json["wantedSpeeds"] = m.wanted;  // an infinite one becomes null
+  json["phaseStarts"] = column(m.phase_starts);
+  json["pieceStarts"] = column(m.piece_starts);
+  for (const Column& packed : m.columns) json["columns"][packed.name] = base64(packed.bytes);
   return json;
 }
 
-Json to_json(const cncplan::Limits& limits) {  // an infinite one becomes null
+Json to_json(const cncplan::Limits& limits) {  // here too
   return Json::array({limits.velocity, limits.acceleration, limits.jerk});
 }
 

@@ -77,6 +77,19 @@ class Run:
     def some_samples(self, count=60):
         return random.Random(1).sample(self.samples, min(count, len(self.samples))) + [self.samples[0], self.samples[-1]]
 
+    def check_whole(self):
+        """The plan itself is in the page: it agrees with every sample, of which there are few enough."""
+        check(self.value("cncplan.motions[0] instanceof SampledMotion") is False, "the page has instants only")
+        columns = ["t", "x", "y", "z", "s", "v", "a", "j"]
+        for first in range(0, len(self.samples), 5000):
+            rows = self.samples[first:first + 5000]
+            found = self.value(f"""{json.dumps([row["t"] for row in rows])}.map(t => {{ const m = cncplan.motions[0], s = m.at(t);
+                return [t, ...m.programmed(s), s.s, s.v, s.a, s.j]; }})""")
+            for row, values in zip(rows, found):
+                for name, value in zip(columns, values):
+                    check(abs(value - row[name]) <= NEAR * max(1.0, abs(row[name])),
+                          f"t={row['t']!r}: {name} is {row[name]!r}, and {value!r} on the page")
+
     def check_samples(self):
         for row in self.some_samples():
             self.value(f"cncplan.setTime({row['t']!r})")
@@ -110,6 +123,7 @@ def example(name):
         check_keys_and_play(run)
         check_charts(run)
         check_decoding(run)
+        run.check_whole()
         run.check_opened()
 
 
@@ -216,9 +230,9 @@ def check_keys_and_play(run):
 
 def check_decoding(run):
     """Browsers without Uint8Array.fromBase64 read the same numbers."""
-    check(run.value("""(() => { const of = Uint8Array.fromBase64; Uint8Array.fromBase64 = undefined;
-        const others = decode(Float64Array, cncplan.report.plans[0].time); Uint8Array.fromBase64 = of;
-        return others.length > 1 && others.join() === cncplan.motions[0].phase.time.join(); })()"""), "columns are read otherwise")
+    check(run.value("""(() => { const of = Uint8Array.fromBase64, read = () => unpack(cncplan.report.plans[0].columns.jerk).join();
+        const numbers = read(); Uint8Array.fromBase64 = undefined; const others = read(); Uint8Array.fromBase64 = of;
+        return numbers.length > 1 && numbers === others; })()"""), "columns are read otherwise")
 
 
 def check_charts(run):
@@ -316,6 +330,30 @@ def long_program():
             check(gap < 1.0, f"t={row['t']!r}: {gap} mm from the sample")
 
 
+def ball():
+    """LinuxCNC's ball.nc as it is smoothed if nothing is said: all of the plan, in a file that can be sent."""
+    shared = os.environ.get("CNCPLAN_SHARED")
+    if not shared:
+        print("SKIPPED: CNCPLAN_SHARED names no folder with data/ball.nc")
+        return
+    with Run(os.path.join(shared, "data", "ball.nc"), "--period", "0.0311") as run:
+        run.check_opened()
+        check(os.path.getsize(run.page) <= 15e6, f"the page has {os.path.getsize(run.page)} bytes")
+        check(run.seconds < 15, f"the page took {run.seconds:.1f} s to open")
+        run.check_whole()
+        run.check_samples()
+
+
+def levels():
+    """A program smoothed in closed form, beside it as it is: polynomials of all degrees, with rests and stops between."""
+    program = (b"G21 G64\nG0 X1 Z2\nG1 X10 F1500\nY7.77\nG2 X20 I5 J1 F900\nG3 X21.5 Y3 R30\nG61\nG1 X0.1 Y0.1\nX0.3\nG4 P0.25\n"
+               b"G64\nG5 X8 Y9 I1 J3 P-3 Q0.5\nG20\nG1 X1 Y.123456 Z.01 F3\nG21\nG0 Z30.00007\nX0.0001 Y0.0002\n")
+    for options in (["--smooth", "fast"], ["--tolerance", "0"], []):
+        with Run(program, *options) as run:
+            check_page(run, program)
+            run.check_whole()
+
+
 def nothing():
     program = b"G21\n(nothing moves)\nM2\n"
     with Run(program) as run:
@@ -410,7 +448,7 @@ def mold():
 
 CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_figure7"),
          "short lines": lambda: example("short_lines"), "nothing": nothing, "one motion": one_motion,
-         "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
+         "levels": levels, "ball": ball, "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
 
 for case in sys.argv[4:]:
     name, _, browser = case.partition(" in ")

@@ -1,14 +1,6 @@
 'use strict';
 // Where everything is at any instant: phases of constant jerk along blocks, whose paths are pieces.
 
-function decode(Type, text) { return new Type((Uint8Array.fromBase64?.(text) ?? bytesOf(atob(text))).buffer); }
-// For browsers without `fromBase64`. `Uint8Array.from` takes twenty times as long as a loop.
-function bytesOf(characters) {
-  const bytes = new Uint8Array(characters.length);
-  for (let i = 0; i < bytes.length; ++i) bytes[i] = characters.charCodeAt(i);
-  return bytes;
-}
-
 // The index of the last value that is not above x, in values that do not fall; 0 where all are above.
 function lastNotAbove(values, x, from = 0, to = values.length) {
   let low = from, high = to;
@@ -35,33 +27,10 @@ class Motion {
   }
 
   take(plan) {
-    const f64 = name => decode(Float64Array, plan[name]);
-    const u32 = name => decode(Uint32Array, plan[name]);
-    const u8 = name => decode(Uint8Array, plan[name]);
-    this.phase = {time: f64('time'), within: f64('within'), v: f64('velocity'), a: f64('acceleration'),
-                  j: f64('jerk'), block: u32('block'), limitedBy: u8('limitedBy')};
-    this.block = {start: f64('blockStart'), wanted: f64('blockWanted'), firstPiece: u32('blockFirstPiece'),
-                  line: u32('blockLine'), kind: u8('blockKind'), offset: u32('blockOffset')};
-    this.piece = {length: f64('pieceLength'), curved: u8('pieceCurved')};
-    this.points = f64('points');
-    this.placePieces();
-  }
-
-  // Where each piece begins in its block, and in the points.
-  placePieces() {
-    const n = this.piece.length.length;
-    this.piece.from = new Float64Array(n);
-    this.piece.at = new Uint32Array(n);
-    let at = 0;
-    for (let b = 0; b + 1 < this.block.firstPiece.length; ++b) {
-      let from = 0;
-      for (let i = this.block.firstPiece[b]; i < this.block.firstPiece[b + 1]; ++i) {
-        this.piece.from[i] = from;
-        this.piece.at[i] = at;
-        from += this.piece.length[i];
-        at += (this.piece.curved[i] ? 6 : 2) * this.channels;
-      }
-    }
+    this.phase = readPhases(plan);
+    Object.assign(this, readBlocks(plan));
+    this.kept = `the plan: ${this.phase.time.length} phases along ${this.pieces.at.length} pieces of path, ` +
+      `which are up to ${shortNumber(plan.pathError)} mm (or degrees) off`;
   }
 
   // s that a phase takes.
@@ -70,35 +39,28 @@ class Motion {
   }
   phaseAt(t) { return lastNotAbove(this.phase.time, t); }
 
-  // X, Y and Z of places on the path, all ends of pieces among them.
+  // X, Y and Z of places on the path, the starts of all pieces among them.
   forPlaces(visit) {
-    for (const at of this.piece.at) visit(this.points, at);
+    for (const at of this.pieces.at) visit(this.pieces.factors, at);
   }
 
   // Position and three derivatives by length, of every channel, at a place of a block; into `out`.
   path(block, within, out) {
-    const first = this.block.firstPiece[block], end = this.block.firstPiece[block + 1];
-    const i = lastNotAbove(this.piece.from, within, first, end);
-    const n = this.channels, p = this.points, at = this.piece.at[i], length = this.piece.length[i];
-    const x = length > 0 ? Math.min(Math.max((within - this.piece.from[i]) / length, 0), 1) : 0;
+    const {from, length, at, degree, factors} = this.pieces, n = this.channels;
+    const i = lastNotAbove(from, within, this.block.firstPiece[block], this.block.firstPiece[block + 1]);
+    const s = Math.min(Math.max(within - from[i], 0), length[i]), last = at[i] + degree[i] * n;
     for (let k = 0; k < n; ++k) {
-      const q = at + k;
-      if (!this.piece.curved[i]) {
-        const d = p[q + n] - p[q];
-        out.position[k] = p[q] + x * d;
-        out.first[k] = length > 0 ? d / length : 0;
-        out.second[k] = out.third[k] = 0;
-        continue;
+      let position = 0, first = 0, half = 0, sixth = 0;  // by Horner's rule, the second and third derivative as shares
+      for (let f = last + k; f >= at[i]; f -= n) {
+        sixth = half + s * sixth;
+        half = first + s * half;
+        first = position + s * first;
+        position = factors[f] + s * position;
       }
-      const d = p[q + 3 * n] - p[q], v0 = p[q + n] * length, v1 = p[q + 4 * n] * length;
-      const a0 = p[q + 2 * n] * length * length, a1 = p[q + 5 * n] * length * length;
-      const c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1;
-      const c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
-      const c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1;
-      out.position[k] = p[q] + x * (v0 + x * (a0 / 2 + x * (c3 + x * (c4 + x * c5))));
-      out.first[k] = (v0 + x * (a0 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))) / length;
-      out.second[k] = (a0 + x * (6 * c3 + x * (12 * c4 + x * 20 * c5))) / length ** 2;
-      out.third[k] = (6 * c3 + x * (24 * c4 + x * 60 * c5)) / length ** 3;
+      out.position[k] = position;
+      out.first[k] = first;
+      out.second[k] = 2 * half;
+      out.third[k] = 6 * sixth;
     }
   }
 
@@ -133,10 +95,7 @@ class Motion {
     return out;
   }
   // The length of what only rotary axes do does not count.
-  counted(block, within) {
-    const next = block + 1 < this.block.start.length ? this.block.start[block + 1] : this.length;
-    return Math.min(within, Math.max(next - this.block.start[block], 0));
-  }
+  counted(block, within) { return this.block.counted[block] ? within : 0; }
 
   at(t, out = this.room()) {
     const time = Math.min(Math.max(t, 0), this.duration);
@@ -222,6 +181,7 @@ class SampledMotion extends Motion {
     this.phase = {time: new Float64Array(n).map((_, i) => i * this.period), v, a, j,
                   block: new Uint32Array(n).map((_, i) => i), limitedBy: decode(Uint8Array, samples.limitedBy)};
     this.phase.time[n - 1] = this.duration;
+    this.kept = `instants ${shortNumber(this.period)} s apart`;
     this.block = {line, wanted: f32('wanted'), kind: decode(Uint8Array, samples.kind), offset: decode(Uint32Array, samples.offset)};
   }
   forPlaces(visit) {

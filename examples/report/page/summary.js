@@ -36,7 +36,8 @@ function bar(share) {
 
 function showSummary(report, motion) {
   const rows = [...report.summary,
-                ['mean speed', `${shortNumber(motion.duration > 0 ? motion.length / motion.duration : 0)} mm/s`]];
+                ['mean speed', `${shortNumber(motion.duration > 0 ? motion.length / motion.duration : 0)} mm/s`],
+                ['in this file', motion.kept]];
   fillTable(document.getElementById('summary'), rows);
 }
 
