@@ -118,6 +118,10 @@ class Firefox:
         value = text or KEYS.get(key, key)
         self._act("key", [{"type": "keyDown", "value": value}, {"type": "keyUp", "value": value}])
 
+    def paper(self):
+        """The page as it is printed on A4: a PDF."""
+        return base64.b64decode(self.call("WebDriver:Print", background=True, page={"width": 21.0, "height": 29.7})["value"])
+
     def picture(self, path):
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("WebDriver:TakeScreenshot", full=False)["value"]))

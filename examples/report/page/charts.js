@@ -5,17 +5,17 @@ const seriesColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#5
 // A chart is a title and series, each with a name, a value of a state, and a limit if there is one.
 function chartsOf(motion) {
   const limit = x => (isFinite(x ?? Infinity) ? x : undefined);
-  const perAxis = (what, order) => motion.axes.map(axis => ({
-    name: axis.name, value: s => s[what][axis.channel], limit: limit(axis.limits[order])}));
+  const perAxis = (valueOf, order) => motion.axes.map(axis => ({
+    name: axis.name, value: valueOf(axis.channel), limit: limit(axis.limits[order])}));
   const along = (value, order) => ({name: 'along the path', value, limit: limit(motion.limits[order])});
   const unit = motion.axes.some(axis => axis.unit === 'deg') ? 'mm or degrees' : 'mm';
   return [
     {title: 'speed along the path, mm/s', series: [
       {name: 'speed', value: s => s.v, limit: limit(motion.limits[0])},
       ...(motion.wanted ? [{name: 'programmed', value: (s, m) => m.wanted(s)}] : [])]},
-    {title: `velocity, ${unit}/s`, series: perAxis('velocity', 0)},
-    {title: `acceleration, ${unit}/s²`, series: [...perAxis('acceleration', 1), along(s => s.a, 1)]},
-    {title: `jerk, ${unit}/s³`, series: [...perAxis('jerk', 2), along(s => s.j, 2)]},
+    {title: `velocity, ${unit}/s`, series: perAxis(k => s => s.velocity[k], 0)},
+    {title: `acceleration, ${unit}/s²`, series: [...perAxis(k => s => s.acceleration[k], 1), along(s => s.a, 1)]},
+    {title: `jerk, ${unit}/s³`, series: [...perAxis(k => s => s.jerk[k], 2), along(s => s.j, 2)]},
     {title: 'step rate, 1/s', series: motion.axes.map(axis => ({
       name: axis.name, value: s => Math.abs(s.velocity[axis.channel]) * axis.stepsPerUnit}))},
     ...(motion.deviates ? [{title: 'deviation from the programmed path, mm', series: [

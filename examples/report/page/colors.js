@@ -14,22 +14,26 @@ function scaleColor(x) {
 }
 function distinctColor(index) { return distinct[index % distinct.length].map(c => c / 255); }
 function cssColor(rgb) { return `rgb(${rgb.map(c => Math.round(255 * c)).join(',')})`; }
-
+// Many colours are taken from a table: r, g, b of each.
+const scaleSteps = 1000;
+const scaleTable = new Float32Array(Array.from({length: scaleSteps + 1}, (_, i) => scaleColor(i / scaleSteps)).flat());
+const distinctTable = new Float32Array(distinct.flatMap((_, i) => distinctColor(i)));
 const kindNames = ['rapid', 'line', 'arc'];
 
-// Each way to colour: a value at a state, from 0 to `top(motion)` or to the largest that is there; or a kind.
+// Each way to colour: a value at a state, from 0 to `top(motion)` or to the largest that is there; or a kind. `along`: the
+// motion along the path tells it.
 function colorModes(limitNames) {
   const limit = k => motion => motion.limits[k];
   return [
-    {name: 'speed', unit: 'mm/s', value: s => s.v},
+    {name: 'speed', unit: 'mm/s', along: true, value: s => s.v},
     {name: 'share of limit', unit: '', value: (s, m) => m.share(s), top: () => 1},
     {name: 'acceleration', unit: 'mm/s²', value: s => norm(s.acceleration), top: limit(1)},
     {name: 'jerk', unit: 'mm/s³', value: s => norm(s.jerk), top: limit(2)},
     {name: 'curvature', unit: '1/mm', value: s => norm(s.second)},
-    {name: 'speed against programmed feed', unit: '',
+    {name: 'speed against programmed feed', unit: '', along: true,
      value: (s, m) => { const w = m.wanted(s); return w > 0 ? s.v / w : 1; }, top: () => 1},
-    {name: 'deviation', unit: 'mm', value: (s, m) => m.deviation(s)},
-    {name: 'what limits the speed', names: limitNames, kind: (s, m) => m.phase.limitedBy[s.phase] ?? 0},
-    {name: 'rapid, line, arc', names: kindNames, kind: (s, m) => [5, 1, 3][m.kindOf(s)], colors: [5, 1, 3]},
+    {name: 'deviation', unit: 'mm', along: true, value: (s, m) => m.deviation(s)},
+    {name: 'what limits the speed', along: true, names: limitNames, kind: (s, m) => m.phase.limitedBy[s.phase] ?? 0},
+    {name: 'rapid, line, arc', along: true, names: kindNames, kind: (s, m) => [5, 1, 3][m.kindOf(s)], colors: [5, 1, 3]},
   ];
 }

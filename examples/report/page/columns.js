@@ -47,7 +47,7 @@ function sums(values) {
 function readPhases(plan) {
   const form = unpack(plan.columns.form), durations = unpack(plan.columns.duration), starts = decode(Float64Array, plan.phaseStarts), n = form.length;
   const [time, within, v, a] = [0, 1, 2, 3].map(() => new Float64Array(n)), j = unpack(plan.columns.jerk).map(x => x / plan.grid.jerk);
-  const block = Uint32Array.from(sums(unpack(plan.columns.block))), ownStart = 1, sameDuration = 2;
+  const block = new Uint32Array(sums(unpack(plan.columns.block))), ownStart = 1, sameDuration = 2;
   let now = 0, duration = 0, d = 0, s = 0, speed = 0, rise = 0;  // `now` and `duration` as whole numbers
   for (let i = 0, own = 0, told = 0; i < n; ++i) {
     if (i > 0 && block[i] !== block[i - 1]) s = 0;
@@ -68,13 +68,13 @@ function readPhases(plan) {
     speed += d * (rise + d * (j[i] / 2));
     rise += d * j[i];
   }
-  return {time, within, v, a, j, block, limitedBy: Uint8Array.from(sums(unpack(plan.columns.limitedBy)))};
+  return {time, within, v, a, j, block, limitedBy: new Uint8Array(sums(unpack(plan.columns.limitedBy)))};
 }
 
 // The path: pieces, each with its length, where it begins in its block, its degree, and where the factors of its
 // powers of the length begin: a vector of the channels for each power from 0 to the degree.
 function readPieces(plan, firstPiece) {
-  const degree = Uint8Array.from(sums(unpack(plan.columns.degree))), length = sums(unpack(plan.columns.length)).map(x => x / plan.grid.length);
+  const degree = new Uint8Array(sums(unpack(plan.columns.degree))), length = sums(unpack(plan.columns.length)).map(x => x / plan.grid.length);
   const n = degree.length, channels = plan.channels, starts = decode(Float64Array, plan.pieceStarts), ownStart = 8;
   const columns = (name, count) => Array.from({length: count}, (_, k) => unpack(plan.columns[name + k]));
   const ends = columns('end', channels).map(sums), seconds = columns('second', channels).map(sums), shapes = columns('shape', 3 * channels);
@@ -139,6 +139,6 @@ function readBlocks(plan) {
     start[b + 1] = start[b] + (counted[b] ? pieces.from[last] + pieces.length[last] : 0);
   }
   const of = name => sums(unpack(plan.columns[name])), wanted = plan.wantedSpeeds.map(x => x ?? Infinity);
-  return {pieces, block: {start, firstPiece, counted, line: Uint32Array.from(of('line')), kind: Uint8Array.from(of('kind')),
-                          offset: Uint32Array.from(of('offset')), wanted: of('wanted').map(k => wanted[k])}};
+  return {pieces, block: {start, firstPiece, counted, line: new Uint32Array(of('line')), kind: new Uint8Array(of('kind')),
+                          offset: new Uint32Array(of('offset')), wanted: of('wanted').map(k => wanted[k])}};
 }

@@ -46,21 +46,21 @@ class Motion {
 
   // Position and three derivatives by length, of every channel, at a place of a block; into `out`.
   path(block, within, out) {
-    const {from, length, at, degree, factors} = this.pieces, n = this.channels;
-    const i = lastNotAbove(from, within, this.block.firstPiece[block], this.block.firstPiece[block + 1]);
-    const s = Math.min(Math.max(within - from[i], 0), length[i]), last = at[i] + degree[i] * n;
-    for (let k = 0; k < n; ++k) {
-      let position = 0, first = 0, half = 0, sixth = 0;  // by Horner's rule, the second and third derivative as shares
-      for (let f = last + k; f >= at[i]; f -= n) {
+    const {from, length, at, degree, factors} = this.pieces, {position, first, second, third} = out;
+    const i = lastNotAbove(from, within, this.block.firstPiece[block], this.block.firstPiece[block + 1]), n = this.channels;
+    const s = Math.min(Math.max(within - from[i], 0), length[i]), start = at[i], last = start + degree[i] * n;
+    for (let k = 0; k < n; ++k) {  // by Horner's rule; of the second and third derivative the half and the sixth
+      let value = 0, slope = 0, half = 0, sixth = 0;
+      for (let f = last + k; f >= start; f -= n) {
         sixth = half + s * sixth;
-        half = first + s * half;
-        first = position + s * first;
-        position = factors[f] + s * position;
+        half = slope + s * half;
+        slope = value + s * slope;
+        value = factors[f] + s * value;
       }
-      out.position[k] = position;
-      out.first[k] = first;
-      out.second[k] = 2 * half;
-      out.third[k] = 6 * sixth;
+      position[k] = value;
+      first[k] = slope;
+      second[k] = 2 * half;
+      third[k] = 6 * sixth;
     }
   }
 
@@ -68,30 +68,34 @@ class Motion {
   room() {
     const vector = () => new Float64Array(this.channels);
     return {position: vector(), first: vector(), second: vector(), third: vector(),
-            velocity: vector(), acceleration: vector(), jerk: vector()};
+            velocity: vector(), acceleration: vector(), jerk: vector(), time: 0, phase: 0, block: 0, within: 0, s: 0, v: 0, a: 0, j: 0};
   }
 
-  // The state at an instant of a phase: q' v, q'' v^2 + q' a, q''' v^3 + 3 q'' v a + q' j.
-  inPhase(i, t, out) {
-    const ph = this.phase, block = ph.block[i], j = ph.j[i];
+  // The motion along the path at an instant of a phase.
+  along(i, t, out) {
+    const ph = this.phase, block = ph.block[i], a = ph.a[i], j = ph.j[i], ended = t >= this.duration;
     const tau = Math.min(Math.max(t - ph.time[i], 0), this.durationOf(i));
-    const within = ph.within[i] + tau * (ph.v[i] + tau * (ph.a[i] / 2 + tau * j / 6));
-    let v = ph.v[i] + tau * (ph.a[i] + tau * j / 2), a = ph.a[i] + tau * j, jerk = j;
-    const ended = t >= this.duration;
-    if (ended) v = a = jerk = 0;
-    this.path(block, within, out);
-    for (let k = 0; k < this.channels; ++k) {
-      out.velocity[k] = out.first[k] * v;
-      out.acceleration[k] = out.second[k] * v * v + out.first[k] * a;
-      out.jerk[k] = out.third[k] * v * v * v + 3 * out.second[k] * v * a + out.first[k] * jerk;
-    }
+    const within = ph.within[i] + tau * (ph.v[i] + tau * (a / 2 + tau * j / 6));
     out.time = t;
     out.phase = i;
     out.block = block;
+    out.within = within;
     out.s = ended ? this.length : this.block.start[block] + this.counted(block, within);
-    out.v = v;
-    out.a = a;
-    out.j = jerk;
+    out.v = ended ? 0 : ph.v[i] + tau * (a + tau * j / 2);
+    out.a = ended ? 0 : a + tau * j;
+    out.j = ended ? 0 : j;
+    return out;
+  }
+  // The state there: q' v, q'' v^2 + q' a, q''' v^3 + 3 q'' v a + q' j.
+  inPhase(i, t, out) {
+    const {block, within, v, a, j} = this.along(i, t, out);
+    this.path(block, within, out);
+    const n = this.channels, {first, second, third, velocity, acceleration, jerk} = out;
+    for (let k = 0; k < n; ++k) {
+      velocity[k] = first[k] * v;
+      acceleration[k] = second[k] * v * v + first[k] * a;
+      jerk[k] = third[k] * v * v * v + 3 * second[k] * v * a + first[k] * j;
+    }
     return out;
   }
   // The length of what only rotary axes do does not count.
@@ -188,6 +192,7 @@ class SampledMotion extends Motion {
     for (let i = 0; i < this.count; ++i) visit(this.values, 4 * this.channels * i);
   }
   turning() { return undefined; }
+  along(i, t, out) { return this.inPhase(i, t, out); }
   durationOf(i) { return i + 1 < this.count ? this.phase.time[i + 1] - this.phase.time[i] : 0; }
   inPhase(i, t, out) {
     const n = this.channels, next = Math.min(i + 1, this.count - 1), seconds = this.durationOf(i);

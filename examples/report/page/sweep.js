@@ -14,7 +14,8 @@ function sweep(motion, lineCount, limitCount) {
       byLine[line] += seconds;
       lengthByLine[line] += seconds * (ph.v[i] + seconds * (ph.a[i] / 2 + seconds * ph.j[i] / 6));
     }
-    const parts = ph.a[i] === 0 && ph.j[i] === 0 ? 1 : 8;
+    const change = seconds * (Math.abs(ph.a[i]) + seconds * Math.abs(ph.j[i]) / 2);  // of the speed, at most
+    const parts = change * bins < 0.1 * top ? 1 : 8;
     for (let k = 0; k < parts && top > 0; ++k) {
       const bin = Math.floor(bins * speedAt(seconds * (k + 0.5) / parts) / (top * 1.000001));
       bySpeed[Math.min(Math.max(bin, 0), bins - 1)] += seconds / parts;

@@ -21,11 +21,11 @@ class View {
     geometry.setAttribute('position', new THREE.BufferAttribute(decode(Float32Array, drawing.points), 3));
     this.scene.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0xbbbbbb})));
   }
-  // How many lines a phase is drawn as: by how much it turns, and how long it is.
-  linesOf(motion, i, diagonal, room) {
+  // How many lines a phase is drawn as: by how much it turns, and how long it is. `state`: at its start.
+  linesOf(motion, i, diagonal, state, room) {
     const seconds = motion.durationOf(i), start = motion.phase.time[i];
     const length = seconds * (motion.phase.v[i] + seconds * (motion.phase.a[i] / 2 + seconds * motion.phase.j[i] / 6));
-    const bend = norm(motion.inPhase(i, start + seconds / 2, room).second);
+    const bend = Math.max(norm(state.second), length > diagonal / 1000 ? norm(motion.inPhase(i, start + seconds / 2, room).second) : 0);
     return Math.max(1, Math.min(200, Math.ceil(Math.max(bend * length / 0.1, 60 * length / diagonal))));
   }
 
@@ -35,30 +35,48 @@ class View {
     const room = motion.room(), box = new THREE.Box3(), point = new THREE.Vector3();
     motion.forPlaces((values, at) => box.expandByPoint(point.fromArray(values, at)));
     const diagonal = Math.max(box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length(), 1e-9);
-    const times = [], phases = [];
+    // Where each phase begins, and the end: X, Y, Z, length of the path. One phase ends where the next one begins.
+    const starts = new Float64Array(4 * (motion.count + 1)), counts = new Uint8Array(motion.count), middle = motion.room();
+    const keep = (i, state) => {
+      for (let axis = 0; axis < 3; ++axis) starts[4 * i + axis] = state.position[axis];
+      starts[4 * i + 3] = state.s;
+    };
+    let count = 0;
     for (let i = 0; i < motion.count; ++i) {
-      const parts = this.linesOf(motion, i, diagonal, room), seconds = motion.durationOf(i);
-      for (let k = 0; k < parts; ++k) {
-        times.push(motion.phase.time[i] + seconds * k / parts, motion.phase.time[i] + seconds * (k + 1) / parts);
-        phases.push(i);
+      keep(i, motion.inPhase(i, motion.phase.time[i], room));
+      count += counts[i] = this.linesOf(motion, i, diagonal, room, middle);
+    }
+    keep(motion.count, motion.at(motion.duration, room));
+    this.times = new Float64Array(2 * count);
+    this.phases = new Uint32Array(count);
+    const driven = new Float32Array(6 * count), distances = new Float32Array(2 * count);
+    const solid = new Uint32Array(2 * count), dashed = new Uint32Array(2 * count);
+    let next = 0, solids = 0, dashes = 0;
+    const put = (i, t, x, y, z, s) => {
+      driven[3 * next] = x;
+      driven[3 * next + 1] = y;
+      driven[3 * next + 2] = z;
+      distances[next] = s;
+      this.times[next] = t;
+      this.phases[next >> 1] = i;
+      if (motion.block.kind[motion.phase.block[i]] === 0) dashed[dashes++] = next; else solid[solids++] = next;
+      ++next;
+    };
+    for (let i = 0; i < motion.count; ++i) {
+      const from = motion.phase.time[i], seconds = motion.durationOf(i), at = 4 * i;
+      put(i, from, starts[at], starts[at + 1], starts[at + 2], starts[at + 3]);
+      for (let k = 1; k < counts[i]; ++k) {
+        const {time, position, s} = motion.inPhase(i, from + seconds * k / counts[i], room);
+        for (let end = 0; end < 2; ++end) put(i, time, position[0], position[1], position[2], s);
       }
+      put(i, from + seconds, starts[at + 4], starts[at + 5], starts[at + 6], starts[at + 7]);
     }
-    this.times = Float64Array.from(times);
-    this.phases = Uint32Array.from(phases);
-    const driven = new Float32Array(3 * times.length), distances = new Float32Array(times.length);
-    const solid = [], dashed = [];
-    for (let k = 0; k < times.length; ++k) {
-      const state = motion.inPhase(phases[k >> 1], times[k], room);
-      driven.set(state.position.subarray(0, 3), 3 * k);
-      box.expandByPoint(point.fromArray(driven, 3 * k));
-      distances[k] = state.s;
-      (motion.kindOf(state) === 0 ? dashed : solid).push(k);
-    }
+    box.union(new THREE.Box3().setFromArray(driven));
     this.box = box;
     this.driven = driven;
     this.positions = driven.slice();
     const attribute = (values, n) => new THREE.BufferAttribute(values, n);
-    this.colors = attribute(new Float32Array(3 * times.length), 3);
+    this.colors = attribute(new Float32Array(6 * count), 3);
     this.place = attribute(this.positions, 3);
     const distance = attribute(distances, 1);
     const lines = (position, indices, material) => {
@@ -66,19 +84,20 @@ class View {
       geometry.setAttribute('position', position);
       if (material.vertexColors) geometry.setAttribute('color', this.colors);
       if (material.isLineDashedMaterial) geometry.setAttribute('lineDistance', distance);
-      if (indices) geometry.setIndex(attribute(Uint32Array.from(indices), 1));
+      geometry.setIndex(attribute(indices, 1));
       return new THREE.LineSegments(geometry, material);
     };
+    const drawn = solid.subarray(0, solids);
     this.forget();
     this.path = new THREE.Group();
     const colored = {vertexColors: THREE.VertexColors}, dash = diagonal / 150;
-    this.fine = [lines(this.place, solid, new THREE.LineBasicMaterial(colored)),
-                 lines(this.place, dashed, new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
-    this.coarse = lines(this.place, this.fewer(times.length), new THREE.LineBasicMaterial(colored));
+    this.fine = [lines(this.place, drawn, new THREE.LineBasicMaterial(colored)),
+                 lines(this.place, dashed.subarray(0, dashes), new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
+    this.coarse = lines(this.place, this.fewer(2 * count), new THREE.LineBasicMaterial(colored));
     this.path.add(...this.fine, this.coarse);
     if (motion.deviates) {
       const programmed = attribute(this.moved(-1), 3);
-      const line = lines(programmed, solid, new THREE.LineBasicMaterial({color: 0x999999, depthWrite: false}));
+      const line = lines(programmed, drawn, new THREE.LineBasicMaterial({color: 0x999999, depthWrite: false}));
       line.renderOrder = -1;
       this.fine.push(line);
       this.path.add(line);
@@ -128,7 +147,7 @@ class View {
   fewer(count) {
     const most = 6000, step = 2 * Math.ceil(count / 2 / most), indices = [];
     for (let k = 0; k < count; k += step) indices.push(k, Math.min(k + step, count) - 1);
-    return indices;
+    return new Uint32Array(indices);
   }
   // The view has been turned, moved or zoomed.
   turn() {
@@ -158,17 +177,26 @@ class View {
   color(mode) {
     const motion = this.motion, room = motion.room(), n = this.times.length, colors = this.colors.array;
     const each = visit => {
-      for (let k = 0; k < n; ++k) visit(k, motion.inPhase(this.phases[k >> 1], this.times[k], room));
+      for (let k = 0; k < n; ++k) {
+        const i = this.phases[k >> 1], t = this.times[k];
+        visit(k, mode.along ? motion.along(i, t, room) : motion.inPhase(i, t, room));
+      }
     };
+    const put = (k, table, entry) => { for (let c = 0; c < 3; ++c) colors[3 * k + c] = table[3 * entry + c]; };
     let top = 0;
     if (mode.kind) {
-      each((k, state) => colors.set(distinctColor(mode.kind(state, motion)), 3 * k));
+      each((k, state) => put(k, distinctTable, mode.kind(state, motion) % distinct.length));
     } else {
       const values = new Float64Array(n);
-      each((k, state) => { values[k] = mode.value(state, motion); });
+      let most = 0;
+      each((k, state) => {
+        values[k] = mode.value(state, motion);
+        most = Math.max(most, values[k]);
+      });
       top = mode.top ? mode.top(motion) : Infinity;
-      if (!isFinite(top)) top = values.reduce((a, b) => Math.max(a, b), 0);
-      for (let k = 0; k < n; ++k) colors.set(scaleColor(top > 0 ? values[k] / top : 0), 3 * k);
+      if (!isFinite(top)) top = most;
+      for (let k = 0; k < n; ++k)
+        put(k, scaleTable, top > 0 ? Math.round(scaleSteps * Math.min(Math.max(values[k] / top, 0), 1)) : 0);
     }
     this.colors.needsUpdate = true;
     this.render();
