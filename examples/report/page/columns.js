@@ -71,59 +71,53 @@ function readPhases(plan) {
   return {time, within, v, a, j, block, limitedBy: new Uint8Array(sums(unpack(plan.columns.limitedBy)))};
 }
 
-// The path: pieces, each with its length, where it begins in its block, its degree, and where the factors of its
-// powers of the length begin: a vector of the channels for each power from 0 to the degree.
+// The path: pieces, each with its degree, its length, where it begins in its block, and where the factors of its powers of
+// the length begin: a vector of the channels for each power from 0 to the degree.
 function readPieces(plan, firstPiece) {
-  const degree = new Uint8Array(sums(unpack(plan.columns.degree))), length = sums(unpack(plan.columns.length)).map(x => x / plan.grid.length);
-  const n = degree.length, channels = plan.channels, starts = decode(Float64Array, plan.pieceStarts), ownStart = 8;
-  const columns = (name, count) => Array.from({length: count}, (_, k) => unpack(plan.columns[name + k]));
-  const ends = columns('end', channels).map(sums), seconds = columns('second', channels).map(sums), shapes = columns('shape', 3 * channels);
-  const from = new Float64Array(n), at = new Uint32Array(n);
-  let size = 0, own = 0;
-  for (let i = 0; i < n; ++i) {
-    at[i] = size;
-    size += ((degree[i] & 7) + 1) * channels;
-  }
-  const factors = new Float64Array(size), here = new Float64Array(3 * channels), read = [0, 0, 0, 0, 0, 0];
-  for (let b = 0; b + 1 < firstPiece.length; ++b) {
-    let travelled = 0;
-    for (let i = firstPiece[b]; i < firstPiece[b + 1]; ++i) {
-      from[i] = travelled;
-      travelled += length[i];
-    }
-  }
-  for (let i = 0; i < n; ++i) {
+  const {grid, channels: n, columns} = plan, ownStart = 8;
+  const degree = new Uint8Array(sums(unpack(columns.degree))), length = sums(unpack(columns.length)).map(x => x / grid.length);
+  const all = (name, count) => Array.from({length: count}, (_, k) => unpack(columns[name + k]));
+  const ends = all('end', n).map(sums), seconds = all('second', n).map(sums), shapes = all('shape', 3 * n);
+  const from = new Float64Array(degree.length), at = new Uint32Array(degree.length + 1);
+  for (let i = 0; i < degree.length; ++i) at[i + 1] = at[i] + ((degree[i] & ~ownStart) + 1) * n;
+  for (let b = 0; b + 1 < firstPiece.length; ++b)
+    for (let i = firstPiece[b] + 1; i < firstPiece[b + 1]; ++i) from[i] = from[i - 1] + length[i - 1];
+
+  const starts = decode(Float64Array, plan.pieceStarts), factors = new Float64Array(at[degree.length]);
+  const here = new Float64Array(3 * n), read = [0, 0, 0, 0, 0, 0];  // where the last piece ends; how many there were of each degree
+  for (let i = 0, own = 0; i < degree.length; ++i) {
     if (degree[i] & ownStart) {
-      here.set(starts.subarray(own, own += 3 * channels));
+      here.set(starts.subarray(own, own += 3 * n));
       degree[i] -= ownStart;
     }
     const h = length[i], d = degree[i], which = read[d]++;
-    for (let k = 0; k < channels; ++k) {
-      const f = at[i] + k, p = here[k], first = here[channels + k], second = here[2 * channels + k];
-      factors[f] = p;
+    for (let k = 0; k < n; ++k) {
+      const f = at[i] + k, p0 = here[k];
+      let p1 = here[n + k], p2 = here[2 * n + k] / 2, p3 = 0, p4 = 0, p5 = 0;
+      factors[f] = p0;
       if (d === 0) continue;
       if (d === 1) {
-        const slope = factors[f + channels] = (ends[k][which] / plan.grid.length - p) / h;
-        here[k] = p + h * slope;
-        here[channels + k] = slope;
-        here[2 * channels + k] = 0;
-        continue;
-      }
-      factors[f + channels] = first;
-      const p2 = factors[f + 2 * channels] = second / 2;
-      let p3, p4 = 0, p5 = 0;
-      if (d === 3) {
-        p3 = (seconds[k][which] / plan.grid.second - second) / (6 * h);
+        p1 = (ends[k][which] / grid.length - p0) / h;
+        p2 = 0;
+      } else if (d === 3) {
+        p3 = (seconds[k][which] / grid.second - 2 * p2) / (6 * h);
       } else {
-        const shape = power => shapes[3 * k + power][which] / plan.grid.shape;
-        p3 = shape(0) / (h * h * h);
-        p4 = factors[f + 4 * channels] = shape(1) / (h * h * h * h);
-        p5 = factors[f + 5 * channels] = shape(2) / (h * h * h * h * h);
+        p3 = shapes[3 * k][which] / grid.shape / h ** 3;
+        p4 = shapes[3 * k + 1][which] / grid.shape / h ** 4;
+        p5 = shapes[3 * k + 2][which] / grid.shape / h ** 5;
       }
-      factors[f + 3 * channels] = p3;
-      here[k] = p + h * (first + h * (p2 + h * (p3 + h * (p4 + h * p5))));
-      here[channels + k] = first + h * (2 * p2 + h * (3 * p3 + h * (4 * p4 + h * 5 * p5)));
-      here[2 * channels + k] = 2 * p2 + h * (6 * p3 + h * (12 * p4 + h * 20 * p5));
+      factors[f + n] = p1;
+      if (d > 1) {
+        factors[f + 2 * n] = p2;
+        factors[f + 3 * n] = p3;
+      }
+      if (d > 3) {
+        factors[f + 4 * n] = p4;
+        factors[f + 5 * n] = p5;
+      }
+      here[k] = p0 + h * (p1 + h * (p2 + h * (p3 + h * (p4 + h * p5))));
+      here[n + k] = p1 + h * (2 * p2 + h * (3 * p3 + h * (4 * p4 + h * 5 * p5)));
+      here[2 * n + k] = 2 * p2 + h * (6 * p3 + h * (12 * p4 + h * 20 * p5));
     }
   }
   return {degree, length, from, at, factors};

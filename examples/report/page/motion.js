@@ -29,7 +29,7 @@ class Motion {
   take(plan) {
     this.phase = readPhases(plan);
     Object.assign(this, readBlocks(plan));
-    this.kept = `the plan: ${this.phase.time.length} phases along ${this.pieces.at.length} pieces of path, ` +
+    this.kept = `the plan: ${this.phase.time.length} phases along ${this.pieces.degree.length} pieces of path, ` +
       `which are up to ${shortNumber(plan.pathError)} mm (or degrees) off`;
   }
 
@@ -41,7 +41,7 @@ class Motion {
 
   // X, Y and Z of places on the path, the starts of all pieces among them.
   forPlaces(visit) {
-    for (const at of this.pieces.at) visit(this.pieces.factors, at);
+    for (let i = 0; i < this.pieces.degree.length; ++i) visit(this.pieces.factors, this.pieces.at[i]);
   }
 
   // Position and three derivatives by length, of every channel, at a place of a block; into `out`.
