@@ -342,6 +342,9 @@ def ball():
         check(run.seconds < 15, f"the page took {run.seconds:.1f} s to open")
         run.check_whole()
         run.check_samples()
+        check_drawn_speed(run)
+        drawn = run.value("cncplan.charts.charts.map(c => c.graph.numRows())")
+        check(min(drawn) > 1000, f"the charts have {drawn} rows")
 
 
 def levels():

@@ -14,10 +14,11 @@ function scaleColor(x) {
 }
 function distinctColor(index) { return distinct[index % distinct.length].map(c => c / 255); }
 function cssColor(rgb) { return `rgb(${rgb.map(c => Math.round(255 * c)).join(',')})`; }
-// Many colours are taken from a table: r, g, b of each.
-const scaleSteps = 1000;
-const scaleTable = new Float32Array(Array.from({length: scaleSteps + 1}, (_, i) => scaleColor(i / scaleSteps)).flat());
-const distinctTable = new Float32Array(distinct.flatMap((_, i) => distinctColor(i)));
+// For many places colours are taken from tables, r, g and b in bytes.
+const scaleSteps = 1000, inBytes = colors => new Uint8Array(colors.flat().map(c => Math.round(255 * c)));
+const scaleTable = inBytes(Array.from({length: scaleSteps + 1}, (_, i) => scaleColor(i / scaleSteps)));
+const distinctTable = inBytes(distinct.map((_, i) => distinctColor(i)));
+
 const kindNames = ['rapid', 'line', 'arc'];
 
 // Each way to colour: a value at a state, from 0 to `top(motion)` or to the largest that is there; or a kind. `along`: the

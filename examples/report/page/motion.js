@@ -29,8 +29,7 @@ class Motion {
   take(plan) {
     this.phase = readPhases(plan);
     Object.assign(this, readBlocks(plan));
-    this.kept = `the plan: ${this.phase.time.length} phases along ${this.pieces.degree.length} pieces of path, ` +
-      `which are up to ${shortNumber(plan.pathError)} mm (or degrees) off`;
+    this.kept = `all ${this.phase.time.length} phases, the path to ${shortNumber(plan.pathError)} mm or °`;
   }
 
   // s that a phase takes.

@@ -76,7 +76,7 @@ class View {
     this.driven = driven;
     this.positions = driven.slice();
     const attribute = (values, n) => new THREE.BufferAttribute(values, n);
-    this.colors = attribute(new Float32Array(6 * count), 3);
+    this.colors = new THREE.BufferAttribute(new Uint8Array(6 * count), 3, true);
     this.place = attribute(this.positions, 3);
     const distance = attribute(distances, 1);
     const lines = (position, indices, material) => {
@@ -84,16 +84,16 @@ class View {
       geometry.setAttribute('position', position);
       if (material.vertexColors) geometry.setAttribute('color', this.colors);
       if (material.isLineDashedMaterial) geometry.setAttribute('lineDistance', distance);
-      geometry.setIndex(attribute(indices, 1));
+      geometry.setIndex(indices);
       return new THREE.LineSegments(geometry, material);
     };
-    const drawn = solid.subarray(0, solids);
+    const drawn = attribute(solid.subarray(0, solids), 1);
     this.forget();
     this.path = new THREE.Group();
     const colored = {vertexColors: THREE.VertexColors}, dash = diagonal / 150;
     this.fine = [lines(this.place, drawn, new THREE.LineBasicMaterial(colored)),
-                 lines(this.place, dashed.subarray(0, dashes), new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
-    this.coarse = lines(this.place, this.fewer(2 * count), new THREE.LineBasicMaterial(colored));
+                 lines(this.place, attribute(dashed.subarray(0, dashes), 1), new THREE.LineDashedMaterial({...colored, dashSize: dash, gapSize: dash}))];
+    this.coarse = lines(this.place, attribute(this.fewer(2 * count), 1), new THREE.LineBasicMaterial(colored));
     this.path.add(...this.fine, this.coarse);
     if (motion.deviates) {
       const programmed = attribute(this.moved(-1), 3);
@@ -107,7 +107,7 @@ class View {
       other.forPlaces((values, at) => places.push(values[at], values[at + 1], values[at + 2]));
       const line = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0xcc79a7, depthWrite: false}));
       line.renderOrder = -1;
-      line.geometry.setAttribute('position', attribute(Float32Array.from(places), 3));
+      line.geometry.setAttribute('position', attribute(new Float32Array(places), 3));
       this.fine.push(line);
       this.path.add(line);
     }
