@@ -343,7 +343,8 @@ def ball():
         run.check_whole()
         run.check_samples()
         check_drawn_speed(run)
-        drawn = run.value("cncplan.charts.charts.map(c => c.graph.numRows())")
+        drawn = run.value("""new Promise(done => { document.getElementById('charts').scrollIntoView();
+            const look = () => (cncplan.charts.waits ? setTimeout(look, 50) : done(cncplan.charts.charts.map(c => c.graph.numRows()))); look(); })""")
         check(min(drawn) > 1000, f"the charts have {drawn} rows")
 
 

@@ -90,6 +90,11 @@ class Charts {
     this.hovered = () => {};
     this.axis = chartAxes.time;
     this.state = null;
+    this.waits = false;  // to be seen before it is filled
+    new IntersectionObserver(([entry]) => {
+      this.seen = entry.isIntersecting;
+      if (this.seen) this.fillIfWaiting();
+    }).observe(element);
   }
 
   // `other`: a motion to compare with, or nothing.
@@ -104,8 +109,10 @@ class Charts {
     this.window = this.all = [0, end > 0 ? end : 1];
     this.state ??= motion.at(0);
     this.charts = chartsOf(motion).map(chart => this.add(chart));
-    this.fill();
+    this.waits = motion.count > 100000 && !this.seen;
+    if (!this.waits) this.fill();
   }
+  fillIfWaiting() { if (this.waits) this.fill(); }
 
   add(chart) {
     const box = document.createElement('div'), heading = document.createElement('h3'), plot = document.createElement('div');
@@ -188,6 +195,7 @@ class Charts {
   }
 
   fill() {
+    this.waits = false;
     const series = this.charts.flatMap(chart => chart.series);
     const rows = this.motion.rows?.(series, ...this.window) ?? chartRows(this.motion, series, ...this.window, this.axis);
     const others = this.other ? chartRows(this.other, series, ...this.window, this.axis) : [];
@@ -233,7 +241,10 @@ class Charts {
     }
   }
   // Fits the pictures to the room that they have.
-  resize() { for (const chart of this.charts) chart.graph.resize(); }
+  resize() {
+    this.fillIfWaiting();
+    for (const chart of this.charts) chart.graph.resize();
+  }
   tell(chart, state) {
     chart.heading.replaceChildren(chart.title, ...chart.series.map((one, k) => {
       const entry = document.createElement('span');

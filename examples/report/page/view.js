@@ -76,7 +76,7 @@ class View {
     this.driven = driven;
     this.positions = driven.slice();
     const attribute = (values, n) => new THREE.BufferAttribute(values, n);
-    this.colors = new THREE.BufferAttribute(new Uint8Array(6 * count), 3, true);
+    this.colors = new THREE.BufferAttribute(new Uint8Array(8 * count), 4, true);  // the fourth byte is not used
     this.place = attribute(this.positions, 3);
     const distance = attribute(distances, 1);
     const lines = (position, indices, material) => {
@@ -182,7 +182,7 @@ class View {
         visit(k, mode.along ? motion.along(i, t, room) : motion.inPhase(i, t, room));
       }
     };
-    const put = (k, table, entry) => { for (let c = 0; c < 3; ++c) colors[3 * k + c] = table[3 * entry + c]; };
+    const put = (k, table, entry) => { for (let c = 0; c < 3; ++c) colors[4 * k + c] = table[3 * entry + c]; };
     let top = 0;
     if (mode.kind) {
       each((k, state) => put(k, distinctTable, mode.kind(state, motion) % distinct.length));
