@@ -145,7 +145,7 @@ class View {
 
   // Indices of fewer lines, for while the view turns: each in place of some that follow each other.
   fewer(count) {
-    const most = 6000, step = 2 * Math.ceil(count / 2 / most), indices = [];
+    const most = 4000, step = 2 * Math.ceil(count / 2 / most), indices = [];
     for (let k = 0; k < count; k += step) indices.push(k, Math.min(k + step, count) - 1);
     return new Uint32Array(indices);
   }
