@@ -152,9 +152,9 @@ class Reader {
           Warning{{{ErrorCode::handed_on, name(text[from]), 0.0, 0.0}, line_, static_cast<int>(from) + 1}});
       return ++out;
     }
-    if (const auto number = program_number(text, from)) {
+    if (const auto number = program_number(text, from, percent_seen_ && !words_seen_)) {
       words_seen_ = true;
-      *out = Item(*number);
+      *out = Item(at_line(*number));
       return ++out;
     }
     if (auto ok = block_.parse(text, from, dialect_.pass_through); !ok) return tl::unexpected(ok.error());
@@ -188,19 +188,6 @@ class Reader {
     finished_ = percent_seen_ || words_seen_;
     percent_seen_ = true;
     return out;
-  }
-
-  /// A program's number, alone on its line: O1234, or 01234 before all words but % as some tapes have it.
-  [[nodiscard]] std::optional<Word> program_number(std::string_view text, std::size_t from) const {
-    const char first = from < text.size() ? text[from] : '\0';
-    const bool bare = percent_seen_ && !words_seen_ && first >= '0' && first <= '9';
-    if (!bare && first != 'O' && first != 'o') return std::nullopt;
-    Scanner scanner(text, bare ? from : from + 1);
-    const int column = static_cast<int>(from) + 1;
-    const auto number = scanner.read_number('O', column);
-    if (!number || *number != std::floor(*number)) return std::nullopt;
-    if (!scanner.skip_blanks_and_comments() || scanner.peek() != '\0') return std::nullopt;
-    return Word{'O', *number, line_, column};
   }
 
   template <class Out>

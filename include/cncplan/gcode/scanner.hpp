@@ -2,6 +2,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -181,6 +182,20 @@ class Scanner {
   const char* at_;
   const char* end_;
 };
+
+/// A program's number, alone on its line from a byte on: O1234, or 01234 where it may be `bare`, before all
+/// words but %, as some tapes have it. The line is the caller's.
+[[nodiscard]] inline std::optional<Word> program_number(std::string_view line, std::size_t from, bool bare) {
+  const char first = from < line.size() ? line[from] : '\0';
+  bare = bare && first >= '0' && first <= '9';
+  if (!bare && first != 'O' && first != 'o') return std::nullopt;
+  Scanner scanner(line, bare ? from : from + 1);
+  const int column = static_cast<int>(from) + 1;
+  const auto number = scanner.read_number('O', column);
+  if (!number || *number != std::floor(*number)) return std::nullopt;
+  if (!scanner.skip_blanks_and_comments() || scanner.peek() != '\0') return std::nullopt;
+  return Word{'O', *number, 0, column};
+}
 
 /// Whether a line is for grbl's sender, not for the program: $H, $$, $100=250, and ? alone (comments apart).
 [[nodiscard]] inline bool is_sender_command(std::string_view line) {
