@@ -59,6 +59,7 @@
 #include "cncplan/gcode/rules.hpp"
 #include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/spindle.hpp"
+#include "cncplan/gcode/spline_pieces.hpp"
 #include "cncplan/gcode/splines.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
 #include "cncplan/gcode/threading.hpp"

@@ -198,6 +198,7 @@ TEST_CASE("splines stand where LinuxCNC's interpreter has them") {
            "G5 I1 J2 P-1 Q2 X10 Y10\nG5 P1 Q2 X20 Y5\nG1 X1\n",
            "G5.1 I1 J1 X20 Y20\nG1 X1\nG5.1 I3 J1 X0 Y9\nG0 Z1\n",
            "G5.2 P1 L3\nX1 Y1 P1\nX2 Y2 P1\nX3 Y3 P2\nX5 Y9 P1\nG5.3\nG1 X1\n",
+           "G5.2 P1 L6\nX0 Y0 P1\nX2 Y2 P1\nX3 Y3 P2\nX5 Y9 P1\nX9 Y9 P1\nG5.3\nG1 X1\n",
        })
     compare(program);
 }

@@ -470,6 +470,7 @@ class Reader {
   }
 
   /// A piece of a spline, from where the program stands; a feed move to its start where that is elsewhere.
+  /// A control that came several times makes no piece.
   template <class Emit>
   void bend(const SplinePiece& piece, Emit& emit) {
     const auto [first, second, third] = axes(modal_.plane);
@@ -482,6 +483,7 @@ class Reader {
     };
     const auto& [from, one, two, to] = piece.controls;
     constexpr double rounding = 1e-9;  // mm; from piece to piece
+    if (detail::reach(piece.controls) <= rounding) return;
     const double gap = std::hypot(from.first - position()[static_cast<std::size_t>(first)],
                                   from.second - position()[static_cast<std::size_t>(second)]);
     if (gap > rounding) straight(code(1), at(from), emit);

@@ -11,6 +11,7 @@
 #include "cncplan/gcode/modal.hpp"
 #include "cncplan/gcode/nurbs.hpp"
 #include "cncplan/gcode/rules.hpp"
+#include "cncplan/gcode/spline_pieces.hpp"
 
 namespace cncplan::gcode {
 
@@ -64,7 +65,7 @@ class Splines {
   /// the motion code goes on to hold.
   bool run(const Block& block, const Modal& modal, Code motion, const Position& here,
            const Position& target) {
-    Pieces done;
+    Curves done;
     const bool holds = take(block, modal, motion, here, target, done);
     for (std::size_t i = done.size(); i > 0; --i) pieces_.put_first(done[i - 1]);
     return holds;
@@ -77,10 +78,10 @@ class Splines {
   }
 
  private:
-  using Pieces = FixedList<SplinePiece, EvenPieces::most_waiting>;
+  using Curves = FixedList<BezierCurve, SplinePieces::most_waiting>;
 
   bool take(const Block& block, const Modal& modal, Code motion, const Position& here, const Position& target,
-            Pieces& done) {
+            Curves& done) {
     const auto [first, second, third] = axes(modal.plane);
     const auto at = [first = static_cast<std::size_t>(first), second = static_cast<std::size_t>(second)](
                         const Position& place, double weight) {
@@ -90,8 +91,8 @@ class Splines {
       done.push_back(of_line(block, modal, motion, at(here, 1.0), at(target, 1.0)));
       return true;
     }
-    const auto give = [&done](const std::optional<SplinePiece>& piece) {
-      if (piece) done.push_back(*piece);
+    const auto give = [&done](const std::optional<BezierCurve>& curve) {
+      if (curve) done.push_back(*curve);
     };
     if (motion == code(5.3)) {
       const double end = nurbs_.controls() - nurbs_.order() + 1;
@@ -146,7 +147,7 @@ class Splines {
 
   /// G5: a cubic by I J from its start and P Q from its end; without I J it goes on as the one before ended.
   /// G5.1: a quadratic by I J from its start.
-  SplinePiece of_line(const Block& block, const Modal& modal, Code motion, const SplineControl& here,
+  BezierCurve of_line(const Block& block, const Modal& modal, Code motion, const SplineControl& here,
                       const SplineControl& target) {
     const auto number = [&](char letter) {
       return block.has(letter) ? block.number(letter) * modal.millimetres_per_unit : 0.0;
@@ -154,13 +155,13 @@ class Splines {
     const bool goes_on = motion == code(5) && !block.has('I');
     const SplineControl second{here.first + (goes_on ? -last_leg_[0] : number('I')),
                                here.second + (goes_on ? -last_leg_[1] : number('J')), 1.0};
-    if (motion == code(5.1)) return detail::as_cubic({here, second, target}, 2);
+    if (motion == code(5.1)) return {{here, second, target}, 2};
     last_leg_ = {number('P'), number('Q')};
-    return {{here, second, {target.first + last_leg_[0], target.second + last_leg_[1], 1.0}, target}};
+    return {{here, second, {target.first + last_leg_[0], target.second + last_leg_[1], 1.0}, target}, 3};
   }
 
   Nurbs nurbs_;
-  EvenPieces pieces_;
+  SplinePieces pieces_;
   Position start_{};
   std::array<double, 2> last_leg_{};  // of the last G5, P and Q
 };

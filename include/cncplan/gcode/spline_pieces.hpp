@@ -1,0 +1,231 @@
+// Rational Bezier curves of the plane, and the rational cubic pieces that they come out as.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "cncplan/core/compiler.hpp"
+#include "cncplan/gcode/motion.hpp"
+
+namespace cncplan::gcode {
+
+/// Highest order of a NURBS: one more than the degree of its curves between two knots.
+inline constexpr int max_nurbs_order = 8;
+
+/// mm: no piece of a curve is farther from it. Pieces of degree 3 and less are the curve itself, but for
+/// those next to a place where it has no derivative.
+inline constexpr double spline_accuracy = 1e-6;
+
+/// A rational Bezier curve, of degree 1 to `max_nurbs_order - 1`.
+struct BezierCurve {
+  std::array<SplineControl, static_cast<std::size_t>(max_nurbs_order)> controls{};
+  int degree = 3;
+
+  [[nodiscard]] std::span<const SplineControl> used() const {
+    return std::span(controls).first(static_cast<std::size_t>(degree) + 1);
+  }
+  [[nodiscard]] SplineControl& at(int i) { return controls[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const SplineControl& at(int i) const { return controls[static_cast<std::size_t>(i)]; }
+};
+
+/// A rational cubic with the weights 1 at both ends.
+struct SplinePiece {
+  std::array<SplineControl, 4> controls{};
+};
+
+namespace detail {
+
+/// Between two controls in homogeneous coordinates: (1 - t) a + t b; at 0 and 1 they themselves, bit for bit.
+[[nodiscard]] inline SplineControl between(const SplineControl& a, const SplineControl& b, double t) {
+  if (t == 0.0) return a;
+  if (t == 1.0) return b;
+  const double of_a = (1.0 - t) * a.weight, of_b = t * b.weight, weight = of_a + of_b;
+  return {(of_a * a.first + of_b * b.first) / weight, (of_a * a.second + of_b * b.second) / weight, weight};
+}
+
+[[nodiscard]] inline double apart(const SplineControl& a, const SplineControl& b) {
+  return std::hypot(b.first - a.first, b.second - a.second);
+}
+
+/// The same curve by one degree more (Piegl and Tiller, The NURBS Book, Eq. 5.36).
+inline void elevate(BezierCurve& curve) {
+  const int degree = ++curve.degree;
+  for (int i = degree; i > 0; --i) {
+    const SplineControl last = curve.at(std::min(i, degree - 1));
+    curve.at(i) = between(last, curve.at(i - 1), static_cast<double>(i) / degree);
+  }
+}
+
+/// Both halves, by de Casteljau's algorithm.
+[[nodiscard]] inline std::array<BezierCurve, 2> halves(const BezierCurve& curve) {
+  BezierCurve points = curve, low = curve, high = curve;
+  for (int step = 1; step <= curve.degree; ++step) {
+    const int last = curve.degree - step;
+    for (int i = 0; i <= last; ++i) points.at(i) = between(points.at(i), points.at(i + 1), 0.5);
+    low.at(step) = points.at(0);
+    high.at(last) = points.at(last);
+  }
+  return {low, high};
+}
+
+/// The cubic, in homogeneous coordinates, that has the places and the derivatives of a curve of a higher
+/// degree at its ends. Weights may be <= 0 where it is far from the curve.
+[[nodiscard]] inline BezierCurve hermite_cubic(const BezierCurve& curve) {
+  const double part = curve.degree / 3.0;  // of the curve's own first and last leg
+  const auto leg = [part](const SplineControl& end, const SplineControl& next) {
+    const double weight = end.weight + part * (next.weight - end.weight), way = part * next.weight / weight;
+    return SplineControl{end.first + way * (next.first - end.first),
+                         end.second + way * (next.second - end.second), weight};
+  };
+  const SplineControl &start = curve.at(0), &end = curve.at(curve.degree);
+  return {{start, leg(start, curve.at(1)), leg(end, curve.at(curve.degree - 1)), end}, 3};
+}
+
+/// How far controls, one or more, are from the first: as far as the curve may be.
+[[nodiscard]] inline double reach(std::span<const SplineControl> controls) {
+  double farthest = 0.0;
+  for (const SplineControl& control : controls)
+    farthest = std::max(farthest, apart(controls.front(), control));
+  return farthest;
+}
+
+/// Bound of the distance between a curve and a cubic with the same ends and the same parameter. With C / W
+/// and c / w for the two, (C - c + (w - W) c / w) / W lies between them, and c / w within the controls of the
+/// cubic; a polynomial is nowhere larger than the largest of its controls.
+[[nodiscard]] inline double distance_bound(const BezierCurve& curve, BezierCurve cubic) {
+  const SplineControl start = curve.at(0);
+  for (const int i : {1, 2})
+    if (!(cubic.at(i).weight > 0.0)) return std::numeric_limits<double>::infinity();
+  const double far = reach(cubic.used());
+  while (cubic.degree < curve.degree) elevate(cubic);
+  double off = 0.0, off_weight = 0.0, least_weight = start.weight;
+  for (int i = 0; i <= curve.degree; ++i) {
+    const SplineControl &a = curve.at(i), &b = cubic.at(i);
+    const auto difference = [&](double SplineControl::*coordinate) {
+      return a.weight * (a.*coordinate - start.*coordinate) - b.weight * (b.*coordinate - start.*coordinate);
+    };
+    off = std::max(off, std::hypot(difference(&SplineControl::first), difference(&SplineControl::second)));
+    off_weight = std::max(off_weight, std::abs(a.weight - b.weight));
+    least_weight = std::min(least_weight, a.weight);
+  }
+  return (off + far * off_weight) / least_weight;
+}
+
+/// A cubic with the weights 1 at its ends: the weights w_i become w_i c^i / w_0, which is another parameter
+/// on the same curve.
+[[nodiscard]] inline SplinePiece normalized(const BezierCurve& cubic) {
+  SplinePiece piece{{cubic.at(0), cubic.at(1), cubic.at(2), cubic.at(3)}};
+  const double start = cubic.at(0).weight, end = cubic.at(3).weight, scale = std::cbrt(start / end);
+  constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+  double factor = 1.0 / start;
+  for (SplineControl& control : piece.controls) {
+    control.weight *= factor;
+    if (std::abs(control.weight - 1.0) <= rounding) control.weight = 1.0;
+    factor *= scale;
+  }
+  piece.controls[3].weight = 1.0;
+  return piece;
+}
+
+/// The polynomial cubic that is the parabola of three controls.
+[[nodiscard]] inline SplinePiece parabola(SplineControl start, SplineControl middle, SplineControl end) {
+  start.weight = middle.weight = end.weight = 1.0;
+  BezierCurve curve{{start, middle, end}, 2};
+  elevate(curve);
+  return normalized(curve);
+}
+
+/// From end to end of a curve.
+[[nodiscard]] inline SplinePiece straight(const BezierCurve& curve) {
+  const SplineControl &start = curve.at(0), &end = curve.at(curve.degree);
+  return parabola(start, {(start.first + end.first) / 2.0, (start.second + end.second) / 2.0}, end);
+}
+
+/// Whether a piece's legs (the derivative's controls) or weights differ much: its speed by the parameter is
+/// uneven then, and its length is hard to measure. With these bounds eight Gauss panels measure it to 1e-9.
+[[nodiscard]] inline bool is_uneven(const SplinePiece& piece) {
+  constexpr double most_off = 0.8, most_weight = 2.0;
+  const auto& c = piece.controls;
+  const double first = (c[3].first - c[0].first) / 3.0, second = (c[3].second - c[0].second) / 3.0;
+  const double mean = std::hypot(first, second);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::hypot(c[i + 1].first - c[i].first - first, c[i + 1].second - c[i].second - second) >
+        most_off * mean)
+      return true;
+  for (const double weight : {c[1].weight, c[2].weight})
+    if (weight > most_weight || weight < 1.0 / most_weight) return true;
+  return false;
+}
+
+/// What stands for a piece whose first or last leg has no length, or both: its speed is 0 there, and its
+/// curvature has no bound. Where the other inner control is near the chord, a parabola with the same tangents
+/// at its ends is as near: both lie in the triangle of these three. None of other pieces.
+[[nodiscard]] inline std::optional<SplinePiece> without_still_end(const SplinePiece& piece, double within) {
+  constexpr double no_length = 1e-10;  // mm
+  const auto& [start, one, two, end] = piece.controls;
+  const bool still_start = apart(start, one) <= no_length, still_end = apart(two, end) <= no_length;
+  if (!still_start && !still_end) return std::nullopt;
+  const double first = end.first - start.first, second = end.second - start.second;
+  const double chord = std::hypot(first, second);
+  if (still_start && still_end) return straight({{start, one, two, end}, 3});
+  const SplineControl& corner = still_start ? two : one;
+  const double a = corner.first - start.first, b = corner.second - start.second;
+  const double along = a * first + b * second, off = std::abs(a * second - b * first);
+  if (!(along >= 0.0 && along <= chord * chord && off <= within * chord)) return std::nullopt;
+  return parabola(start, corner, end);
+}
+
+}  // namespace detail
+
+/// Curves as cubic pieces, in order. A curve is cut in halves until each is even and near enough to a cubic,
+/// or has been cut `most_cuts` times: what is around a cusp is a line of less than the accuracy then.
+class SplinePieces {
+ public:
+  static constexpr int most_cuts = 16;
+  static constexpr int most_waiting = max_nurbs_order;
+
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  void clear() { count_ = 0; }
+  /// What comes next, before all that waits; up to `most_waiting` curves may wait.
+  void put_first(const BezierCurve& curve) { put(curve, 0); }
+  /// The next; not where it is empty.
+  [[nodiscard]] SplinePiece next() {
+    constexpr double half = spline_accuracy / 2.0;  // there are two reasons to leave the curve
+    for (;;) {
+      auto [curve, cuts] = waiting_[--count_];
+      while (curve.degree < 3) detail::elevate(curve);
+      const bool last = cuts >= most_cuts;
+      const BezierCurve cubic = curve.degree == 3 ? curve : detail::hermite_cubic(curve);
+      const double off = curve.degree == 3 ? 0.0 : detail::distance_bound(curve, cubic);
+      if (last && (!std::isfinite(off) || detail::reach(curve.used()) <= half))
+        return detail::straight(curve);
+      if (last || off <= half) {
+        const SplinePiece piece = detail::normalized(cubic);
+        if (const auto other = detail::without_still_end(piece, half)) return *other;
+        if (last || !detail::is_uneven(piece)) return piece;
+      }
+      const auto [low, high] = detail::halves(curve);
+      put(high, cuts + 1);
+      put(low, cuts + 1);
+    }
+  }
+
+ private:
+  struct Waiting {
+    BezierCurve curve;
+    int cuts{};
+  };
+  void put(const BezierCurve& curve, int cuts) {
+    if (count_ < waiting_.size()) waiting_[count_++] = {curve, cuts};
+  }
+
+  std::array<Waiting, static_cast<std::size_t>(most_waiting + most_cuts)> waiting_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace cncplan::gcode
