@@ -64,6 +64,20 @@ TEST_CASE("taps stop, turn round, wait, and come out by the feed") {
   CHECK(steps("F1 G98 G0 Z9\nG84 Z-1 R2") == " r9000 r2000 f-1000 f9000");  // a spindle that stands
 }
 
+TEST_CASE("the $ of a tap or a thread may name spindle 0, and does not come out") {
+  for (const std::string motion : {"G74 Z-3 R1 $0", "F1 G84 X0 Z-3 R1 $0", "S9 M3\nG33 Z-5 K1 $0"}) {
+    INFO(motion);
+    const auto reading = test::read("F1\n" + motion);
+    CHECK(reading.error.empty());
+    for (const auto& word : reading.all<gcode::Word>()) CHECK(word.letter != '$');
+  }
+  CHECK(test::read("F1\nG74 Z-3 R1 $1").error == "2:12: $ is not supported");
+  CHECK(test::read("S9 M3\nG33 Z-5 K1 $1").error == "2:12: $ is not supported");
+  CHECK(test::read("S9 $1 M3").all<gcode::Word>().size() == 3);
+  CHECK(test::read("G95 F1 S9 $1 M3 G1 X1").error == "1:17: S: a required word is missing");
+  CHECK(test::read("G95 F1 S9\nS5 $1 G1 X1").motions()[0].feed == 9.0 / 60.0);
+}
+
 TEST_CASE("a thread is cut pass by pass to its depth") {
   // Two passes: 0.3 deep, then the full 0.4; and one spring pass. The crest is 1 inside the start.
   const auto reading = test::read("G18 S60 M3\nG0 X10 Z0\nG76 P1 Z-8 I-1 J.3 K.4 H1");

@@ -205,9 +205,11 @@ class Reader {
   template <class Emit>
   void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
-    for (const char letter : {'$', 'S', 'T'})
-      if (block_.has(letter) && !(letter == 'S' && dwells_by_s(block_)))
-        emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    const bool speed = block_.has('S') && !dwells_by_s(block_);
+    const bool names_spindle = block_.has('$') && (speed || block_.has(Group::spindle));  // else a tap's
+    for (const auto& [letter, comes_out] :
+         {std::pair('$', names_spindle), {'S', speed}, {'T', block_.has('T')}})
+      if (comes_out) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);

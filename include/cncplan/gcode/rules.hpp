@@ -449,8 +449,10 @@ using Check = Expected<void, Diagnostic>;
   Letters used = bits("NST");
   if (takes_axes || motion != no_code) used |= alphabet.axes;
   if (motion != no_code) used |= polar_words;
-  if (block.has('S') || block.has(Group::spindle) || is_synchronised(motion) || is_tap(motion))
-    used |= bit('$');
+  const bool turns = is_synchronised(motion) || is_tap(motion);
+  if ((block.has('S') && !dwells_by_s(block)) || block.has(Group::spindle) || turns) used |= bit('$');
+  if (turns && block.has('$') && block.number('$') != 0.0)  // the feed is made of spindle 0
+    return tl::unexpected(block.error(ErrorCode::not_supported, '$'));
   if (auto ok = check_polar(block, modal, alphabet, motion); !ok) return tl::unexpected(ok.error());
   Letters taken = 0;
   if (is_arc(motion)) {

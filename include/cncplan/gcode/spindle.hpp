@@ -22,7 +22,7 @@ struct Spindle {
   /// What a line says of it: S, M3 to M5, M19, G96 and G97. A line with $ is about another one, but for $0
   /// and $-1 (all).
   void take(const Block& block, double millimetres_per_unit) {
-    if (block.has('$') && block.number('$') > 0.0) return;
+    if (about_another(block)) return;
     if (block.has('S') && !dwells_by_s(block)) speed = block.number('S');
     if (block.has(Group::spindle)) direction = direction_of(block);
     if (block.has(Group::spindle_mode)) select_mode(block, millimetres_per_unit);
@@ -34,10 +34,10 @@ struct Spindle {
     const bool feeds = motion != no_code && motion != code(0);
     const int column = detail::motion_column(block);
     const bool per_turn = (feeds && modal.feed_mode == FeedMode::per_revolution) || is_synchronised(motion);
-    const bool says = block.has('S') && !dwells_by_s(block);
+    const bool says = block.has('S') && !dwells_by_s(block) && !about_another(block);
     if (per_turn && !((says ? block.number('S') : speed.value_or(0.0)) > 0.0))
       return detail::missing("S", column);
-    const int turns = block.has(Group::spindle) ? direction_of(block) : direction;
+    const int turns = block.has(Group::spindle) && !about_another(block) ? direction_of(block) : direction;
     if (is_tap(motion) && turns == (motion == code(84) ? 4 : 3))
       return detail::conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, column}, "M", turns);
     return {};
@@ -53,6 +53,7 @@ struct Spindle {
   }
 
  private:
+  static bool about_another(const Block& block) { return block.has('$') && block.number('$') > 0.0; }
   static int direction_of(const Block& block) {
     const int code = block.code(Group::spindle) / 10;
     return code == 19 ? 5 : code;  // M19 stops it
