@@ -35,6 +35,19 @@ TEST_CASE("words of axes that the machine lacks are left out") {
   CHECK(test::read("G0 X1 A90").error == "1:7: A is not supported");
 }
 
+TEST_CASE("an exponent is refused by lenient dialects too") {
+  CHECK(read("G0 X1E5").error == "1:6: E is not supported");
+  CHECK(read("G0 X1.E-5").error == "1:7: E is not supported");
+  CHECK(read("G92 X1E0").error == "1:7: E is not supported");
+  CHECK(read("G1 F60 X1 E5").motions().size() == 1);  // an extruder's word
+  CHECK(read("M67E0Q1").error.empty());
+  CHECK(read("M67E0Q1\nG0 X1 E5").error.empty());
+  gcode::Dialect printer;
+  printer.lenient = true;
+  printer.axes.push_back({'E', AxisKind::linear});
+  CHECK(test::read("G0 X1E5", printer).motions()[0].end[3] == 5.0);
+}
+
 TEST_CASE("a rapid where no motion code holds") {
   const auto behind_a_cycle = test::read("F1 G81 X1 Z-1 R1\nG80\nG80\nX5");
   CHECK(behind_a_cycle.error.empty());

@@ -49,6 +49,7 @@ class Block {
         word = **other;
       }
       if (auto ok = add(word, pass_through); !ok) return ok;
+      if (word.letter == 'E') exponent_ = scanner.behind_number(word.column);
       if (word.letter == 'M' && (word.number == 117.0 || word.number == 118.0)) return {};  // a message
     }
   }
@@ -75,6 +76,9 @@ class Block {
 
   /// Letters of which `salvage` lost a word.
   [[nodiscard]] Letters lost() const { return lost_; }
+
+  /// Whether E stands right behind a number, as an exponent would.
+  [[nodiscard]] bool exponent() const { return exponent_; }
 
   [[nodiscard]] bool empty() const { return letters_ == 0 && codes_seen_ == 0 && passed_count_ == 0; }
 
@@ -155,6 +159,7 @@ class Block {
     codes_seen_ = 0;
     passed_count_ = 0;
     passes_code_ = false;
+    exponent_ = false;
     unknown_.reset();
     lost_ = 0;
   }
@@ -221,6 +226,7 @@ class Block {
   std::uint32_t codes_seen_{};
   int passed_count_{};
   bool passes_code_{};
+  bool exponent_{};
   Letters bare_{};
   std::optional<Word> unknown_{};
   Letters lost_{};

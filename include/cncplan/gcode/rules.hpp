@@ -50,12 +50,13 @@ struct Alphabet {
   [[nodiscard]] Letters known() const { return bits("FHIJKLNPQST@^$") | axes | (has_radius ? bit('R') : 0); }
 };
 
-/// Letters of axes that the machine lacks and whose words are left out. E is a word of some codes, too.
+/// Letters of axes that the machine lacks and whose words are left out. E is a word of some codes, too, and
+/// in X1E5 an exponent, which no number has.
 [[nodiscard]] inline Letters left_out(const Block& block, const Alphabet& alphabet, Code motion) {
   const bool takes_e = motion == code(76) ||
                        (block.has(Group::input_output) &&
                         (facts(Group::input_output, block.code(Group::input_output)).may & bit('E')) != 0);
-  return block.letters() & alphabet.left_out & ~(takes_e ? bit('E') : 0);
+  return block.letters() & alphabet.left_out & ~(takes_e || block.exponent() ? bit('E') : 0);
 }
 
 [[nodiscard]] constexpr bool is_arc(Code motion) { return motion == code(2) || motion == code(3); }

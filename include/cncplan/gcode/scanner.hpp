@@ -88,6 +88,13 @@ class Scanner {
     return letter >= 'A' && letter <= 'Z' ? bit(letter) : 0;
   }
 
+  /// Whether a number ends where the word of a column begins.
+  [[nodiscard]] bool behind_number(int column) const {
+    if (column < 2) return false;
+    const char before = begin_[column - 2];
+    return is_digit(before) || before == '.';
+  }
+
   /// Passes a character in which no word begins; false at the end.
   bool skip() {
     if (at_ == end_) return false;
