@@ -202,6 +202,13 @@ TEST_CASE("a tap's turns of the spindle are written on lines of their own") {
   check_round_trip(at_the_bottom.items);
 }
 
+TEST_CASE("a centre's letter behind a passed-through code is no arc where one holds") {
+  const auto reading = test::read("G2 X20 I5\nG1\nM482 I5 Q2\nG2 X30 I5\n");
+  REQUIRE(reading.all<gcode::Word>().size() == 3);
+  REQUIRE(reading.motions().size() == 2);
+  check_round_trip(reading.items);
+}
+
 TEST_CASE("what cannot be written is refused") {
   gcode::Writer writer;
   std::string text;

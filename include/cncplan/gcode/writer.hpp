@@ -196,12 +196,17 @@ class Writer {
   }
 
   /// Words that came from one line stay on one: some belong together. A tap stops its spindle and turns it
-  /// the other way, which takes two lines. The program's number stands before everything.
+  /// the other way, which takes two lines. I, J and K would be an arc's where its code holds. The program's
+  /// number stands before everything.
   template <class Out>
   void pass(const Word& word, Pen<Out>& pen) {
     if (word.letter != 'O' && !begun_) begin(pen);
     const bool turns = word.letter == 'M' && word.number >= 3.0 && word.number <= 5.0;
     if (word.line == 0 || word.line != word_line_ || (turns && word_turns_)) end_line(pen);
+    if (is_arc(modal_.motion) && (bit(word.letter) & bits("IJK")) != 0) {
+      put(pen, "G", 80);
+      modal_.motion = no_code;
+    }
     put(pen, name(word.letter), word.number);
     word_line_ = word.line;
     word_turns_ = word_turns_ || turns;
