@@ -73,7 +73,7 @@ inline void check_recovery(std::string_view text, const gcode::Dialect& dialect)
       [&](const gcode::Item& item) {
         if (const auto* motion = std::get_if<gcode::Motion>(&item))
           require(finite(*motion), "numbers are finite behind an error");
-        return ++steps < 10000;
+        return ++steps < 1000;
       },
       [&](const gcode::Diagnostic& problem) {
         require(problem.line > last_error, "a line has one error");
@@ -87,7 +87,7 @@ inline void check_recovery(std::string_view text, const gcode::Dialect& dialect)
 inline void check_language(std::string_view text, const gcode::Dialect& dialect) {
   gcode::Reader reader(dialect);
   gcode::TextLines source(text);
-  constexpr int patience = 1000;
+  constexpr int patience = 100;
   gcode::ProgramLines lines(
       source, reader,
       [text](std::string_view name) {
@@ -128,7 +128,7 @@ inline void check_gcode(std::string_view bytes) {
   gcode::Position place{};
   bool offset_changes = false;
   constexpr int most_steps =
-      10000;  // of a canned cycle: a fuzzer has no patience for all pecks of a deep hole
+      1000;  // of a canned cycle: a fuzzer has no patience for all pecks of a deep hole
   while (const auto line = lines.next()) {
     auto end = reader.read_line(*line, items.begin());
     if (!end) {
