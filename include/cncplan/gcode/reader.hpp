@@ -398,7 +398,7 @@ class Reader {
   template <class Emit>
   void spindle(int code, Emit& emit) {
     if (spindle_.direction != 5)
-      emit(Word{'M', static_cast<double>(code), line_, block_.column(Group::motion)});
+      emit(Word{'M', static_cast<double>(code), line_, detail::motion_column(block_)});
   }
 
   /// K of G33 and G33.1, mm for each turn.

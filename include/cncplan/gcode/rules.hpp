@@ -362,8 +362,7 @@ using Check = Expected<void, Diagnostic>;
   if (block.has(Group::non_modal) && block.code(Group::non_modal) != code(4))
     return conflict(block.error(ErrorCode::conflicting_words, Group::non_modal), "G", how);
   if (motion != no_code && motion > code(3))
-    return conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, std::max(1, block.column(Group::motion))},
-                    "G", how);
+    return conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, motion_column(block)}, "G", how);
   return {};
 }
 
