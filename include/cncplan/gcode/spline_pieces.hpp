@@ -19,7 +19,7 @@ inline constexpr int max_nurbs_order = 8;
 
 /// mm: no piece of a curve is farther from it. Pieces of degree 3 and less are the curve itself, but for
 /// those next to a place where it has no derivative.
-inline constexpr double spline_accuracy = 1e-6;
+inline constexpr double spline_accuracy = 1e-5;
 
 /// A rational Bezier curve, of degree 1 to `max_nurbs_order - 1`.
 struct BezierCurve {
@@ -94,26 +94,31 @@ inline void elevate(BezierCurve& curve) {
   return farthest;
 }
 
-/// Bound of the distance between a curve and a cubic with the same ends and the same parameter. With C / W
-/// and c / w for the two, (C - c + (w - W) c / w) / W lies between them, and c / w within the controls of the
-/// cubic; a polynomial is nowhere larger than the largest of its controls.
+/// Bound of the distance between a curve and its `hermite_cubic`. With C / W and c / w for the two,
+/// (C - c + (w - W) c / w) / W lies between them at the same parameter, and c / w within the controls of the
+/// cubic. Of the differences two controls at each end are 0, and the polynomials of the others add up to no
+/// more than they do in the middle.
 [[nodiscard]] inline double distance_bound(const BezierCurve& curve, BezierCurve cubic) {
-  const SplineControl start = curve.at(0);
-  for (const int i : {1, 2})
-    if (!(cubic.at(i).weight > 0.0)) return std::numeric_limits<double>::infinity();
-  const double far = reach(cubic.used());
+  const SplineControl &start = curve.at(0), &end = curve.at(curve.degree);
+  const SplineControl middle{(start.first + end.first) / 2.0, (start.second + end.second) / 2.0, 1.0};
+  double far = 0.0, off = 0.0, off_weight = 0.0, least_weight = start.weight;
+  for (const SplineControl& control : cubic.used()) {
+    if (!(control.weight > 0.0)) return std::numeric_limits<double>::infinity();
+    far = std::max(far, apart(middle, control));
+  }
   while (cubic.degree < curve.degree) elevate(cubic);
-  double off = 0.0, off_weight = 0.0, least_weight = start.weight;
   for (int i = 0; i <= curve.degree; ++i) {
     const SplineControl &a = curve.at(i), &b = cubic.at(i);
     const auto difference = [&](double SplineControl::*coordinate) {
-      return a.weight * (a.*coordinate - start.*coordinate) - b.weight * (b.*coordinate - start.*coordinate);
+      return a.weight * (a.*coordinate - middle.*coordinate) -
+             b.weight * (b.*coordinate - middle.*coordinate);
     };
     off = std::max(off, std::hypot(difference(&SplineControl::first), difference(&SplineControl::second)));
     off_weight = std::max(off_weight, std::abs(a.weight - b.weight));
     least_weight = std::min(least_weight, a.weight);
   }
-  return (off + far * off_weight) / least_weight;
+  const double share = 1.0 - std::ldexp(2.0 * (curve.degree + 1), -curve.degree);
+  return share * (off + far * off_weight) / least_weight;
 }
 
 /// A cubic with the weights 1 at its ends: the weights w_i become w_i c^i / w_0, which is another parameter
