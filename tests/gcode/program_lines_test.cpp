@@ -47,6 +47,21 @@ std::string run(const std::string& text, int most_jumps = gcode::max_jumps) {
   return result;
 }
 
+/// All that is wrong with a program, a line each.
+std::string problems(std::string_view program, int most_jumps = gcode::max_jumps) {
+  std::string told;
+  gcode::Reader reader;
+  gcode::TextLines text(program);
+  gcode::ProgramLines lines(text, reader, {}, most_jumps);
+  gcode::read_program(
+      lines, reader, [](const gcode::Item&) {},
+      [&told](const gcode::Diagnostic& problem) {
+        told += gcode::to_text("", problem) + '\n';
+        return true;
+      });
+  return told;
+}
+
 }  // namespace
 
 TEST_CASE("parameters of a line are set behind its values") {
@@ -132,18 +147,14 @@ TEST_CASE("a loop that never ends is told with its line") {
         "1:1 4:1: error: number of times that the program goes back is above the limit 1000");
 }
 
+TEST_CASE("a call that is refused leaves no subprogram open") {
+  CHECK(problems("o1 sub\nG0 X1\no1 endsub\no1 call\no1 call\no1 endsub\nG0 X2\n", 1) ==
+        "5:1: error: number of times that the program goes back is above the limit 1\n"
+        "6:1: error: O-word belongs to nothing that is open\n");
+}
+
 TEST_CASE("all problems of a program with parameters are told, at their columns") {
-  std::string told;
-  gcode::Reader reader;
-  gcode::TextLines text("G0 X[1/0]\nX1\nX[#1] Q1\no1 endif\nG1 X#<a> F1\nG1 X2 F100\nY[1] E\n");
-  gcode::ProgramLines lines(text, reader);
-  gcode::read_program(
-      lines, reader, [](const gcode::Item&) {},
-      [&told](const gcode::Diagnostic& problem) {
-        told += gcode::to_text("", problem) + '\n';
-        return true;
-      });
-  CHECK(told ==
+  CHECK(problems("G0 X[1/0]\nX1\nX[#1] Q1\no1 endif\nG1 X#<a> F1\nG1 X2 F100\nY[1] E\n") ==
         "1:7: error: / is not a finite number\n3:7: error: Q is used by nothing on this line\n"
         "4:1: error: O-word belongs to nothing that is open\n5:5: error: named parameter is not defined\n"
         "7:6: error: E has no number\n");

@@ -443,7 +443,7 @@ class ProgramLines {
       return false;
     }
     go_back_to(frame.begin, column);
-    frames_.push_back(std::move(frame));
+    if (!problem_) frames_.push_back(std::move(frame));
     return !problem_;
   }
 
