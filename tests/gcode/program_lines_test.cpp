@@ -148,9 +148,10 @@ TEST_CASE("a loop that never ends is told with its line") {
 }
 
 TEST_CASE("a call that is refused leaves no subprogram open") {
-  CHECK(problems("o1 sub\nG0 X1\no1 endsub\no1 call\no1 call\no1 endsub\nG0 X2\n", 1) ==
+  CHECK(problems("o1 sub\nG0 X1\no1 endsub\no1 call\no1 call\nX[1/0]\no1 endsub\n", 1) ==
         "5:1: error: number of times that the program goes back is above the limit 1\n"
-        "6:1: error: O-word belongs to nothing that is open\n");
+        "6:4: error: / is not a finite number\n"  // once: the endsub goes back to no call
+        "7:1: error: O-word belongs to nothing that is open\n");
 }
 
 TEST_CASE("all problems of a program with parameters are told, at their columns") {
