@@ -500,6 +500,8 @@ using Check = Expected<void, Diagnostic>;
         block.code(Group::input_output) < code(67))  // M67, M68: any Q
       if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
   if (auto ok = not_negative(block, 'N'); !ok) return tl::unexpected(ok.error());
+  if (block.code(Group::spindle_mode) == code(96) && block.has('D') && block.number('D') == 0.0)
+    return tl::unexpected(block.error(ErrorCode::not_positive, 'D'));
   for (const char letter : {'T', 'H'})
     if ((counted & bit(letter)) != 0)
       if (auto ok = whole(block, letter, 0, max_count); !ok) return tl::unexpected(ok.error());
