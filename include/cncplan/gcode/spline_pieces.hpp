@@ -188,10 +188,10 @@ inline void elevate(BezierCurve& curve) {
 }  // namespace detail
 
 /// Curves as cubic pieces, in order. A curve is cut in halves until each is even and near enough to a cubic,
-/// or has been cut `most_cuts` times: what is around a cusp is a line of less than the accuracy then.
+/// or has been cut `most_cuts` times: what is left around a cusp is a line of less than the accuracy then.
 class SplinePieces {
  public:
-  static constexpr int most_cuts = 16;
+  static constexpr int most_cuts = 20;
   static constexpr int most_waiting = max_nurbs_order;
 
   [[nodiscard]] bool empty() const { return count_ == 0; }
@@ -204,16 +204,13 @@ class SplinePieces {
     for (;;) {
       auto [curve, cuts] = waiting_[--count_];
       while (curve.degree < 3) detail::elevate(curve);
-      const bool last = cuts >= most_cuts;
       const BezierCurve cubic = curve.degree == 3 ? curve : detail::hermite_cubic(curve);
-      const double off = curve.degree == 3 ? 0.0 : detail::distance_bound(curve, cubic);
-      if (last && (!std::isfinite(off) || detail::reach(curve.used()) <= half))
-        return detail::straight(curve);
-      if (last || off <= half) {
+      if (curve.degree == 3 || detail::distance_bound(curve, cubic) <= half) {
         const SplinePiece piece = detail::normalized(cubic);
         if (const auto other = detail::without_still_end(piece, half)) return *other;
-        if (last || !detail::is_uneven(piece)) return piece;
+        if (!detail::is_uneven(piece)) return piece;
       }
+      if (cuts >= most_cuts) return detail::straight(curve);
       const auto [low, high] = detail::halves(curve);
       put(high, cuts + 1);
       put(low, cuts + 1);
