@@ -485,7 +485,7 @@ class Reader {
     };
     const auto& [from, one, two, to] = piece.controls;
     constexpr double rounding = 1e-9;  // mm; from piece to piece
-    if (detail::reach(piece.controls) <= rounding) return;
+    if (detail::reach(piece.controls) == 0.0) return;
     const double gap = std::hypot(from.first - position()[static_cast<std::size_t>(first)],
                                   from.second - position()[static_cast<std::size_t>(second)]);
     if (gap > rounding) straight(code(1), at(from), emit);

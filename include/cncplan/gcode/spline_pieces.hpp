@@ -188,7 +188,7 @@ inline void elevate(BezierCurve& curve) {
 }  // namespace detail
 
 /// Curves as cubic pieces, in order. A curve is cut in halves until each is even and near enough to a cubic,
-/// or has been cut `most_cuts` times: what is left around a cusp is a line of less than the accuracy then.
+/// or shorter than the accuracy, as around a cusp, or has been cut `most_cuts` times: it is a line then.
 class SplinePieces {
  public:
   static constexpr int most_cuts = 20;
@@ -210,7 +210,7 @@ class SplinePieces {
         if (const auto other = detail::without_still_end(piece, half)) return *other;
         if (!detail::is_uneven(piece)) return piece;
       }
-      if (cuts >= most_cuts) return detail::straight(curve);
+      if (cuts >= most_cuts || detail::reach(curve.used()) <= half) return detail::straight(curve);
       const auto [low, high] = detail::halves(curve);
       put(high, cuts + 1);
       put(low, cuts + 1);
