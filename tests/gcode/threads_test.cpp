@@ -40,6 +40,9 @@ TEST_CASE("a feed that follows the spindle is its pitch times the speed") {
   CHECK(feed_of("M3 S600\nG33 Z-5 K1 S1200") == Approx(20.0));  // of its own line
   CHECK(feed_of("G96 S100 D900 M3\nG0 X50\nG33 X50 Z-5 K1") ==  // surface speed at X50
         Approx(100e3 / (2.0 * 3.14159265358979 * 50.0) / 60.0));
+  CHECK(feed_of("G96 S0 M3\nG0 X50\nS100\nG33 X50 Z-5 K1") ==  // S goes on to be one until G97
+        Approx(100e3 / (2.0 * 3.14159265358979 * 50.0) / 60.0));
+  CHECK(feed_of("G96 S9 M3\nG97 S600\nG33 Z-5 K1") == Approx(10.0));
   CHECK(feed_of("M3 S600\nG1 F60 X1\nG33 Z-5 K1\nG1 X2") == Approx(1.0));  // F holds on
 }
 

@@ -19,13 +19,18 @@ struct Spindle {
   std::optional<double> surface_speed{};  ///< G96, mm per minute
   double fastest{};                       ///< revolutions per minute, under G96
 
-  /// What a line says of it: S, M3 to M5, M19, G96 and G97. A line with $ is about another one, but for $0
-  /// and $-1 (all).
+  /// What a line says of it: S, M3 to M5, M19, G96 D and G97. From G96 to G97 S is the surface speed, m/min
+  /// (feet per minute in inches), at D revolutions per minute at most. A line with $ is about another one,
+  /// but for $0 and $-1 (all).
   void take(const Block& block, double millimetres_per_unit) {
     if (about_another(block)) return;
-    if (block.has('S') && !dwells_by_s(block)) speed = block.number('S');
     if (block.has(Group::spindle)) direction = direction_of(block);
-    if (block.has(Group::spindle_mode)) select_mode(block, millimetres_per_unit);
+    const bool begins = block.code(Group::spindle_mode) == code(96);
+    if (begins) fastest = block.has('D') ? block.number('D') : std::numeric_limits<double>::infinity();
+    if (block.has(Group::spindle_mode) && !begins) surface_speed.reset();
+    if (!block.has('S') || dwells_by_s(block)) return;
+    speed = block.number('S');
+    if (begins || surface_speed) surface_speed = *speed * (millimetres_per_unit != 1.0 ? 304.8 : 1000.0);
   }
 
   /// Whether it turns as a line's motion needs it: at a speed for a feed per revolution, and the right way
@@ -57,15 +62,6 @@ struct Spindle {
   static int direction_of(const Block& block) {
     const int code = block.code(Group::spindle) / 10;
     return code == 19 ? 5 : code;  // M19 stops it
-  }
-
-  /// G96 D S: the surface speed S, m/min (feet per minute in inches), at D revolutions per minute at most;
-  /// G97: S is revolutions per minute.
-  void select_mode(const Block& block, double millimetres_per_unit) {
-    surface_speed.reset();
-    if (block.code(Group::spindle_mode) == code(97)) return;
-    surface_speed = block.number('S') * (millimetres_per_unit != 1.0 ? 304.8 : 1000.0);
-    fastest = block.has('D') ? block.number('D') : std::numeric_limits<double>::infinity();
   }
 };
 
