@@ -191,6 +191,9 @@ TEST_CASE("all problems of a program are told, and none that another one causes"
   CHECK(problems("G1 X#1\nX2 !\nG93 F[1]\nG1 X2\nM30 !\n)\n") ==
         "1: variable # is not supported\n2: !: unknown character\n3: expression [ ] is not supported\n"
         "4: F: a required word is missing\n5: !: unknown character\n");
+  CHECK(problems("G34 X1\nT2e\nT1.5\nG43 H18888888888\nM61 Q-1\n") ==  // numbers of tools behind a lost code
+        "1: G34 is not supported\n2: E has no number\n3: T must be a whole number\n"
+        "4: H is above the limit 1e+09\n5: Q must not be negative\n");
 }
 
 TEST_CASE("behind a line in error the machine stands where it should") {

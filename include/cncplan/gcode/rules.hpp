@@ -375,6 +375,14 @@ using Check = Expected<void, Diagnostic>;
   return {};
 }
 
+/// Numbers of tools, whatever else the line says: T, H of a tool's length, Q of M61.
+[[nodiscard]] inline Check check_tools(const Block& block) {
+  if (auto ok = whole(block, 'T', 0, max_count); !ok) return ok;
+  if (block.has(Group::tool_length))
+    if (auto ok = whole(block, 'H', 0, max_count); !ok) return ok;
+  return block.code(Group::tool_change) == code(61) ? whole(block, 'Q', 0, max_count) : Check();
+}
+
 /// What becomes of words that nothing has used: they go with a passed-through code, or they are errors. Axis
 /// words and feeds are never for others: what moves the machine is read here or refused.
 [[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
@@ -407,6 +415,8 @@ using Check = Expected<void, Diagnostic>;
   const bool shifts = non_modal == code(92) || non_modal == code(52) || non_modal == code(10);
   const bool sets_length = block.code(Group::tool_length) == code(43.1);
   const bool takes_axes = homes || shifts || sets_length;
+
+  if (auto ok = check_tools(block); !ok) return tl::unexpected(ok.error());
 
   // What is said under a code that was not understood belongs to it.
   if (modal.motion == lost_code && requested == no_code && !takes_axes) return no_code;
@@ -502,9 +512,6 @@ using Check = Expected<void, Diagnostic>;
   if (auto ok = not_negative(block, 'N'); !ok) return tl::unexpected(ok.error());
   if (block.code(Group::spindle_mode) == code(96) && block.has('D') && block.number('D') == 0.0)
     return tl::unexpected(block.error(ErrorCode::not_positive, 'D'));
-  for (const char letter : {'T', 'H'})
-    if ((counted & bit(letter)) != 0)
-      if (auto ok = whole(block, letter, 0, max_count); !ok) return tl::unexpected(ok.error());
   if (feeds)
     if (auto ok = check_feed(block, modal, column); !ok) return tl::unexpected(ok.error());
   if (const Letters unused = block.letters() & ~used; unused != 0)
