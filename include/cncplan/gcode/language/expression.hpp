@@ -136,6 +136,10 @@ class Expression {
     skip_blanks();
     const int column = this->column();
     const double value = this->value();
+    if (std::abs(value) > max_number) {
+      fail(ErrorCode::above_limit, "value", column, value, max_number);
+      return 0.0;
+    }
     const double whole = std::round(value);
     if (std::abs(value - whole) > whole_within) fail(ErrorCode::not_an_integer, "value", column, value);
     return whole;
