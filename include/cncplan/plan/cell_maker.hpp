@@ -268,11 +268,15 @@ class CellMaker {
     return {};
   }
 
-  // What holds where a block with a feed of its own may go at twice of it.
+  // What holds where a block with a feed of its own may go at twice of it; the part's own limits where the
+  // cut knows no others.
   [[nodiscard]] BasicLimits<Scalar> limits_above(const BasicPartLimits<Scalar>& part) const {
     const Scalar twice = plan::wanted_speed(*block_, machine_, counted_, Scalar(2));
     if (block_->rapid || !(twice > wanted_)) return part.limits;
-    return cut_.limits(driven_, machine_, part.from, part.to, twice);
+    if constexpr (requires { cut_.limits(driven_, machine_, part.from, part.to, twice); })
+      return cut_.limits(driven_, machine_, part.from, part.to, twice);
+    else
+      return part.limits;
   }
 
   // Begins with the piece from a length to the next place within the block where an axis turns round.

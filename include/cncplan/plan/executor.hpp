@@ -51,8 +51,8 @@ using ExecutorOptions = BasicExecutorOptions<double>;
 /// come, until a rest is known, or until the machine has rested for `longest_wait` (then the part ends at
 /// rest). Under a map paths stay exact.
 ///
-/// Look-ahead reaches over `capacity` cells: one for a line on the exact path, several for a smoothed corner,
-/// where a larger capacity is faster (docs/real-time.md has figures). As many blocks are kept behind to run
+/// Look-ahead reaches over `capacity` cells: one for a line on the exact path, one or two for a block that is
+/// smoothed, more for a long curve (docs/real-time.md has figures). As many blocks are kept behind to run
 /// backwards. All memory is inside. `Block` is that of `BlockReader`, or one with curves of one's own.
 ///
 /// Two threads: one calls `push`, `end_of_program` and `plan`, the other one `tick` and all requests; neither

@@ -25,7 +25,7 @@ template <std::floating_point S>
 class BasicLevelLimits {
  public:
   static constexpr S most_apart = S(2);
-  static constexpr S loss = S(0.03);
+  static constexpr S loss = S(0.01);
 
   /// The limits for the next cell, of such a length, in place of its own. A cell that `begins` a motion has
   /// nothing in common with those before.
