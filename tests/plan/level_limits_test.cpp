@@ -23,12 +23,12 @@ using Level = plan::BasicLevelLimits<double>;
 constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 1e4}};
 
 // Rings of short lines one above the other, as ball.nc has them.
-std::vector<Block<3>> rings(double radius, int count) {
+std::vector<Block<3>> rings(double radius, int count, double side) {
   std::vector<Block<3>> blocks;
   Vector3 at(radius, 0, 0);
   for (int ring = 0; ring < count; ++ring) {
     const double r = radius - 0.2 * ring;
-    const int sides = static_cast<int>(std::ceil(2 * std::numbers::pi * r / 0.8));
+    const int sides = static_cast<int>(std::ceil(2 * std::numbers::pi * r / side));
     for (int i = 0; i <= sides; ++i) {
       const double angle = 2 * std::numbers::pi * i / sides;
       const Vector3 next(r * std::cos(angle), r * std::sin(angle), -0.1 * ring);
@@ -85,23 +85,26 @@ TEST_CASE("limits stay the same while those that come serve them, until a motion
 }
 
 TEST_CASE("rings of short lines have about a cell a block, and few waypoints") {
-  const std::vector<Block<3>> blocks = rings(20, 6);
-  const auto smoothing = plan::smoothing(std::span(blocks), mill, {0.01, 1e-3, false});
-  const plan::JointRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
-  const auto cells = plan::make_cells(std::span(blocks), mill, rules, smoothing).value();
-  CHECK(2 * cells.caps.size() < 3 * blocks.size());
-  std::vector<plan::Waypoint> waypoints(cells.caps.size() + 1);
-  CHECK(plan::make_waypoints(std::span<const plan::BlockCaps>(cells.caps), 0.0, std::span(waypoints)) <
-        blocks.size() / 4);
-  double length = 0;
-  for (const plan::BlockCaps& cell : cells.caps) length += cell.length;
-  double programmed = 0;
-  for (const Block<3>& block : blocks) programmed += block.path.length();
-  CHECK_THAT(length, Catch::Matchers::WithinRel(programmed, 1e-12));
+  for (const double side : {0.3, 0.8, 1.5}) {
+    CAPTURE(side);
+    const std::vector<Block<3>> blocks = rings(20, 6, side);
+    const auto smoothing = plan::smoothing(std::span(blocks), mill, {0.01, 1e-3, false});
+    const plan::JointRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
+    const auto cells = plan::make_cells(std::span(blocks), mill, rules, smoothing).value();
+    CHECK(10 * cells.caps.size() < 11 * blocks.size());
+    std::vector<plan::Waypoint> waypoints(cells.caps.size() + 1);
+    CHECK(plan::make_waypoints(std::span<const plan::BlockCaps>(cells.caps), 0.0, std::span(waypoints)) <
+          blocks.size() / 4);
+    double length = 0;
+    for (const plan::BlockCaps& cell : cells.caps) length += cell.length;
+    double programmed = 0;
+    for (const Block<3>& block : blocks) programmed += block.path.length();
+    CHECK_THAT(length, Catch::Matchers::WithinRel(programmed, 1e-12));
+  }
 }
 
 TEST_CASE("an executor that looks ahead over 64 cells takes the time of the plan within a tolerance") {
-  const std::vector<Block<3>> blocks = rings(20, 4);
+  const std::vector<Block<3>> blocks = rings(20, 4, 0.8);
   const auto executor = std::make_unique<Executor<Machine<3>, 64, Block<3>>>(mill);
   std::size_t pushed = 0;
   int ticks = 0;
