@@ -121,7 +121,7 @@ TEST_CASE("option --tolerance: within limits as samples show, within the toleran
   CHECK(jerk <= 10000 * (1 + 1e-4));
   CHECK(json["tolerance_mm"] == tolerance);
   CHECK(json["deviation_mm"].get<double>() <= tolerance);
-  CHECK(json["deviation_mm"].get<double>() > 0.2 * tolerance);
+  CHECK(json["deviation_mm"].get<double>() > 0.1 * tolerance);  // fast rests at sharp corners
   CHECK(json["acceleration_jumps"] == 0);
   CHECK(json["corner_velocity_step"].get<double>() < 1e-9);
   CHECK(json["tool_peak"]["jerk"].get<double>() <= 10000 * (1 + 1e-9));
