@@ -81,7 +81,7 @@ class CutByLimits {
   [[nodiscard]] BasicLimits<Scalar> limits(const Driven& driven, const M& machine, Scalar from, Scalar to,
                                            Scalar speed) const {
     const auto along = [&](const auto& path) {
-      return limits_along(path.bounds(from, to), machine, speed, tool_speed_, path.length(), !driven.exact());
+      return limits_along(path.bounds(from, to), machine, speed, tool_speed_, path.length());
     };
     if constexpr (EnclosedPath<typename B::Path>)
       if (!driven.exact()) return along(driven);

@@ -169,7 +169,7 @@ template <MachineModel M>
 template <MachineModel M>
 [[nodiscard]] BasicLimits<typename M::Scalar> limits_on_bends(
     const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
-    typename M::Scalar speed, typename M::Scalar tool_speed, typename M::Scalar length, bool goes_on) {
+    typename M::Scalar speed, typename M::Scalar tool_speed, typename M::Scalar length) {
   using S = typename M::Scalar;
   using Row = Limited<S>;
   const auto rows = limited(machine, bounds, tool_speed);
@@ -194,7 +194,8 @@ template <MachineModel M>
   if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
   const S rise = (fastest(S(1), S(1)) - least) / S(4);
   const int speeds = rise > S(1e-3) * least ? 4 : 0;  // that are higher
-  if (goes_on) length = std::max(length, S(2) * room_for_ramp(best));
+  // Ramps go on over the blocks next to a short one.
+  length = std::max(length, S(2) * room_for_ramp(best));
   const S alone = time_with_ramps(best, length, S(1));
   S shortest = time_with_ramps(best, length, S(2));
   for (int i = 0; i <= speeds; ++i) {
@@ -220,15 +221,14 @@ template <MachineModel M>
 ///
 /// A higher speed on a bend leaves less to change speed with. The bends may take 0.8 of the acceleration and
 /// half of the jerk; over a known `length` a higher speed, or a lower acceleration with a higher jerk, is
-/// taken where that saves time. `goes_on`: ramps go on over the blocks next to a short one.
+/// taken where that saves time.
 template <MachineModel M>
 [[nodiscard]] BasicLimits<typename M::Scalar> limits_along(
     const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
     typename M::Scalar speed, typename M::Scalar tool_speed,
-    typename M::Scalar length = std::numeric_limits<typename M::Scalar>::infinity(), bool goes_on = false) {
-  return detail::straight(bounds)
-             ? detail::limits_straight(bounds, machine, speed, tool_speed)
-             : detail::limits_on_bends(bounds, machine, speed, tool_speed, length, goes_on);
+    typename M::Scalar length = std::numeric_limits<typename M::Scalar>::infinity()) {
+  return detail::straight(bounds) ? detail::limits_straight(bounds, machine, speed, tool_speed)
+                                  : detail::limits_on_bends(bounds, machine, speed, tool_speed, length);
 }
 
 }  // namespace cncplan::plan

@@ -1,7 +1,10 @@
 #include "cncplan/plan/player/path_ahead.hpp"
 
+#include <array>
+#include <cmath>
 #include <vector>
 
+#include "cncplan/plan/player/brake_ahead.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -127,5 +130,25 @@ TEST_CASE("in float a place is a junction but for rounding too") {
     CAPTURE(blocks);
     CHECK(path.snapped(path.advance(Place{0, 0.0F}, 12.7F * static_cast<float>(blocks))) ==
           Place{blocks, 0.0F});
+  }
+}
+
+// The oracle: from v to rest, jerk alone binding, the way is v sqrt(v / j).
+TEST_CASE("a brake that would rest behind the last block is none, in both directions") {
+  Blocks given(3);
+  auto& path = given.path;
+  std::array<plan::BlockCaps, 8> zones{};
+  constexpr double v = 10.0;
+  const double way = v * std::sqrt(v / limits.jerk);
+  const State now{0, v, 0, 0};
+  for (const int direction : {1, -1}) {
+    path.direction = path.asked.direction = direction;
+    const std::int64_t last = direction > 0 ? 2 : 0;
+    const double end = path.ring.length(last);
+    CAPTURE(direction);
+    CHECK(plan::brake_ahead<double>(path, {last, end - way - 1e-6}, now, zones));
+    CHECK(plan::brake_ahead<double>(path, {last, end - way}, now, zones));
+    CHECK_FALSE(plan::brake_ahead<double>(path, {last, end - way + 1e-6}, now, zones));
+    CHECK_FALSE(plan::brake_ahead<double>(path, {last, end - way / 2}, now, zones));
   }
 }

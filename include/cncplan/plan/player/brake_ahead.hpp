@@ -90,7 +90,9 @@ template <std::floating_point S>
     const S length = profile.length();
     profile.advance(profile.left());
     const BasicState<S> end = profile.state();
-    place = path.snapped(path.advance(place, length));
+    place = path.advance(place, length);
+    if (path.beyond_end(place)) return {};
+    place = path.snapped(place);
     if (!(end.velocity > negligible_speed<S>)) return first;
     if (!path.ring.holds(place.block)) return {};
     if (place.along == S(0) && end.velocity > path.junction_cap(place.block) * junction_tolerance<S>)

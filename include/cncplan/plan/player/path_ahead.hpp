@@ -121,6 +121,11 @@ class BasicPathAhead {
     return from;
   }
 
+  /// Whether a place, as `advance` gives it, lies behind the end of the last block that there is.
+  [[nodiscard]] bool beyond_end(const Place& place) const {
+    return ring.holds(place.block) && place.along > ring.length(place.block) + path_rounding<S>;
+  }
+
   /// A place that is a junction but for rounding, at the junction.
   [[nodiscard]] Place snapped(Place place) const {
     if (!ring.holds(place.block)) return place;
