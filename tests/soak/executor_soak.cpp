@@ -3,6 +3,7 @@
 // against the limits of tool and axes by differencing. Prints the worst of each fault with its sequence. Exit
 // 1 if a bound is broken.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -18,10 +19,11 @@ using namespace cncplan;
 using Faults = test::ExecutorFaults;
 
 template <MachineModel M, class B>
-Faults run(const M& machine, const std::vector<B>& blocks, test::Random& random, double rounding,
-           double tolerance = 0) {
+Faults run(const M& machine, const std::vector<B>& blocks, test::Random& random, int most_lines,
+           double rounding, double tolerance = 0) {
+  constexpr long ticks_a_line = 25;
   const test::Disturbance how{random.integer(0, 3) == 0 ? 1 : random.integer(2, 100),
-                              1000,
+                              ticks_a_line * most_lines,
                               1e-3,
                               rounding,
                               random.integer(0, 3) == 0 && !(tolerance > 0),  // the axes first go to the path
@@ -35,36 +37,40 @@ Faults run(const M& machine, const std::vector<B>& blocks, test::Random& random,
 
 template <MachineModel M>
 Faults run_lines(const M& machine, const std::array<double, 3>& center, const std::string& letters,
-                 test::Random& random, double rounding = 1e-12, double tolerance = 0) {
+                 test::Random& random, int most_lines, double rounding = 1e-12, double tolerance = 0) {
   PlanOptions options;
   std::copy(center.begin(), center.end(), options.start.begin());
-  const auto lines = test::random_lines(random, random.integer(1, 40), center, 20, letters);
-  return run(machine, test::blocks_of(lines, machine, options), random, rounding, tolerance);
+  const auto lines = test::random_lines(random, random.integer(1, most_lines), center, 20, letters);
+  return run(machine, test::blocks_of(lines, machine, options), random, most_lines, rounding, tolerance);
 }
 
 // Each kind has bounds of its own: those in `float`, and those within a tolerance.
 constexpr std::uint64_t kinds = 7, in_float = 3, smoothed = 5;
 
-Faults one(std::uint64_t sequence, test::Random& random) {
+Faults one(std::uint64_t sequence, test::Random& random, int most_lines) {
   switch (sequence % kinds) {
     case 0:
-      return run_lines(test::six_axes, {0, 0, 0}, "ACU", random);
+      return run_lines(test::six_axes, {0, 0, 0}, "ACU", random, most_lines);
     case 1:
-      return run_lines(test::polar, {60, 0, 0}, "", random);
+      return run_lines(test::polar, {60, 0, 0}, "", random, most_lines);
     case 2:
-      return run(test::slow_axes<double>, test::random_waves(random, random.integer(1, 12)), random, 1e-12);
+      return run(test::slow_axes<double>,
+                 test::random_waves(random, random.integer(1, std::min(most_lines, 12))), random, most_lines,
+                 1e-12);
     case in_float:
-      return run_lines(test::slow_axes<float>, {0, 0, 0}, "", random, 4e-5);
+      return run_lines(test::slow_axes<float>, {0, 0, 0}, "", random, most_lines, 4e-5);
     case smoothed:
-      return run_lines(test::slow_axes<double>, {0, 0, 0}, "", random, 1e-9, random.log_uniform(1e-3, 0.1));
+      return run_lines(test::slow_axes<double>, {0, 0, 0}, "", random, most_lines, 1e-9,
+                       random.log_uniform(1e-3, 0.1));
     case smoothed + 1:
-      return run_lines(test::six_axes, {0, 0, 0}, "ACU", random, 1e-9, random.log_uniform(1e-3, 0.1));
+      return run_lines(test::six_axes, {0, 0, 0}, "ACU", random, most_lines, 1e-9,
+                       random.log_uniform(1e-3, 0.1));
     default:
-      return run_lines(test::slow_axes<double>, {0, 0, 0}, "", random);
+      return run_lines(test::slow_axes<double>, {0, 0, 0}, "", random, most_lines);
   }
 }
 
-int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count, int most_lines) {
   using Worst = test::Worst<Faults, std::uint64_t>;
   const auto table = [](double relative) {
     return std::array{Worst{"velocity of an axis (relative)", &Faults::velocity, relative},
@@ -81,7 +87,7 @@ int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
   std::uint64_t ticks = 0, requests = 0, wrong = 0;
   for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {
     test::Random random(seed + sequence * 0x9e3779b97f4a7c15);
-    const Faults faults = one(sequence, random);
+    const Faults faults = one(sequence, random, most_lines);
     ticks += static_cast<std::uint64_t>(faults.ticks);
     requests += static_cast<std::uint64_t>(faults.requests);
     const std::uint64_t kind = sequence % kinds;
@@ -112,6 +118,10 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
   app.add_option("--first", first, "the first sequence, to see one again")->capture_default_str();
   app.add_option("--count", count, "how many sequences")->capture_default_str();
+  int most_lines = 40;
+  app.add_option("--lines", most_lines, "of a program at most; short ones make room for more sequences")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  return soak(seed, first, static_cast<std::uint64_t>(count));
+  return soak(seed, first, static_cast<std::uint64_t>(count), most_lines);
 }
