@@ -61,6 +61,30 @@ TEST_CASE("within a tolerance no request makes three axes jump at a joint", "[ex
 TEST_CASE("within a tolerance no request makes six axes jump at a joint", "[executor]") {
   disturb(test::six_axes, "ACU", 40);
 }
+TEST_CASE("a hold goes on over a cell that is as short as rounding", "[executor]") {
+  using Runner = Executor<Machine<3>, 64>;
+  const auto& machine = test::slow_axes<double>;
+  constexpr double tolerance = 0.060940454288297315;
+  const auto blocks = test::blocks_of({"F1095", "G2 X0.004397 Y-0.019868 I-0.408014 J-0.100729",
+                                       "G3 X0.043641 Y-0.099759 I0.245737 J0.071124", "M30"},
+                                      machine);
+  const test::Disturbance how{.restless = 1, .period = period, .tolerance = tolerance};
+  for (int hold = 1; hold < 150; ++hold) {
+    CAPTURE(hold);
+    const auto executor = std::make_unique<Runner>(machine, Runner::Options{.tolerance = tolerance});
+    for (const auto& block : blocks) REQUIRE(executor->push(block));
+    executor->end_of_program();
+    test::TickCheck<Machine<3>, Runner::SetPoint, Runner::Block> ticks(machine, blocks, how);
+    for (int tick = 0; tick < 1000 && !executor->finished(); ++tick) {
+      if (tick == hold) executor->feed_hold();
+      if (tick == 200) executor->resume();
+      ticks.take(executor->tick(period));
+    }
+    ticks.finish();
+    ticks.faults.finished = executor->finished();
+    check(ticks.faults, 1e-9);
+  }
+}
 TEST_CASE("blocks that wait for others go on when the machine has rested for long enough", "[executor]") {
   const auto blocks = test::blocks_of({"F1200", "G1 X5", "Y5", "X10"}, test::slow_axes<double>);
   const auto executor = std::make_unique<Executor<Machine<3>, 64>>(

@@ -58,3 +58,13 @@ TEST_CASE("without a cruise the turn is at the top, no phases are rest") {
   CHECK(none.state() == State{});
   CHECK(none.left() == 0.0);
 }
+
+TEST_CASE("a profile that takes no time is in motion as its phases are") {
+  const std::array<Phase, 2> phases{{{0.0, 0.0, 0.0, 1.5, -30.0, -4000.0}, {0.0, 0.0, 0.0, 1.5, -30.0, 0.0}}};
+  plan::BasicRunningProfile<double> none(phases, 0.0);
+  CHECK(none.left() == 0.0);
+  none.advance(0.0);
+  CHECK(none.state().velocity == 1.5);
+  CHECK(none.end().velocity == 1.5);
+  CHECK(none.end().acceleration == -30.0);
+}

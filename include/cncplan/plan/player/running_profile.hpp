@@ -13,7 +13,8 @@
 
 namespace cncplan::plan {
 
-/// Phases that follow each other, and a time within them that only grows. Phases of no duration are left out.
+/// Phases that follow each other, and a time within them that only grows. Phases of no duration are left out;
+/// where there are no others, the last one is where the motion stands.
 template <std::floating_point S>
 class BasicRunningProfile {
  public:
@@ -76,7 +77,8 @@ class BasicRunningProfile {
 
  private:
   void append(const BasicPhase<S>& phase) {
-    if (phase.duration > S(0)) phases_[count_++] = phase;
+    phases_[count_] = phase;  // of no duration: until the next one
+    if (phase.duration > S(0)) ++count_;
   }
 
   std::array<BasicPhase<S>, most_phases> phases_{};
