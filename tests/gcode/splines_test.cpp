@@ -272,7 +272,8 @@ TEST_CASE("splines are written as they are read") {
       test::read(
           "F100\nG5 I0 J3 P0 Q-3 X1 Y1\nG5.1 X4 I1 J1\nG5.2 P1 L4\nX5 Y3 P2\nX8 Y0 P.7\nX9 Y9\n"
           "X7 Y12 P.5\nG5.3\nG1 X0 Y30218\nG5.2\nX0 Y300\nX0 Y302\nX0 Y32\nX0 Y300\nG5.3\n"  // cusps
-          "G1 X0 Y0\nG5.2\nX0 Y302\nX0 Y30\nX0 Y304\nX0 Y302\nX0 Y30\nG5.3\nG1 X0 Y0")
+          "G1 X0 Y0\nG5.2\nX0 Y302\nX0 Y30\nX0 Y304\nX0 Y302\nX0 Y30\nG5.3\nG1 X0 Y0\n"
+          "G5 I0 J0 P0 Q-1.7 X0 Y30\nG1 X0 Y0")  // rests at its start, and has its other control at the end
           .items;
   std::string text;
   gcode::Writer writer;

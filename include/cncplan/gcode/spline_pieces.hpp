@@ -169,7 +169,8 @@ inline void elevate(BezierCurve& curve) {
 
 /// What stands for a piece whose first or last leg has no length, or both: its speed is 0 there, and its
 /// curvature has no bound. Where the other inner control is near the chord, a parabola with the same tangents
-/// at its ends is as near: both lie in the triangle of these three. None of other pieces.
+/// at its ends is as near: both lie in the triangle of these three. None of other pieces, and none where the
+/// parabola would be uneven.
 [[nodiscard]] inline std::optional<SplinePiece> without_still_end(const SplinePiece& piece, double within) {
   constexpr double no_length = 1e-10;  // mm
   const auto& [start, one, two, end] = piece.controls;
@@ -179,10 +180,11 @@ inline void elevate(BezierCurve& curve) {
   const double chord = std::hypot(first, second);
   if (still_start && still_end) return straight({{start, one, two, end}, 3});
   const SplineControl& corner = still_start ? two : one;
-  const double a = corner.first - start.first, b = corner.second - start.second;
-  const double along = a * first + b * second, off = std::abs(a * second - b * first);
-  if (!(along >= 0.0 && along <= chord * chord && off <= within * chord)) return std::nullopt;
-  return parabola(start, corner, end);
+  const double off =
+      std::abs((corner.first - start.first) * second - (corner.second - start.second) * first);
+  const SplinePiece result = parabola(start, corner, end);
+  if (!(off <= within * chord) || is_uneven(result)) return std::nullopt;
+  return result;
 }
 
 }  // namespace detail
