@@ -117,6 +117,21 @@ TEST_CASE("best: lines and arcs, rapids and feed moves", "[smooth-blocks]") {
   }
 }
 
+TEST_CASE("best: narrow bends at a high feed", "[smooth-blocks]") {
+  const Machine<3> quick{.limits = {.velocity = 100, .acceleration = 2000, .jerk = 40000}};
+  for (const double radius : {0.05, 0.3, 2.6})
+    for (const double tolerance : {0.002, 0.01}) {
+      CAPTURE(radius, tolerance);
+      std::ostringstream text;
+      text << "F5600 G1 X12\nG3 X12 Y" << 2 * radius << " J" << radius << "\nG1 X6 Y" << 2 * radius + 0.8
+           << "\nG5.1 X" << 6 - 4 * radius << " I" << -2 * radius << " J" << radius << "\nG1 X-9\n";
+      const auto blocks = blocks_of(text.str(), quick);
+      check(blocks, tolerance, quick);
+      const auto best = plan_smooth(blocks, quick, {.tolerance = tolerance});
+      CHECK(cubics(*best) == static_cast<std::ptrdiff_t>(best->program().size()));
+    }
+}
+
 TEST_CASE("best: stops, pauses and exact blocks divide the program", "[smooth-blocks]") {
   const auto blocks = blocks_of(
       "F1800 G1 X10\nX20 Y5\nX30\nG4 P0.25\nX40 Y5\nX50\nY0\nG61.1 X60\nY10\nG61 X70\nX75\nG64 X80\nX90 "

@@ -76,7 +76,7 @@ template <class Blocks>
 Polyline programmed(const Blocks& blocks) {
   Polyline result;
   for (const auto& block : blocks) {
-    const int parts = block.path.arc() != nullptr ? 400 : 1;
+    const int parts = block.path.line() != nullptr ? 1 : 400;
     for (int i = 0; i <= parts; ++i)
       result.push_back(block.path.position_at(block.path.length() * i / parts).template head<3>());
   }

@@ -180,8 +180,7 @@ inline void elevate(BezierCurve& curve) {
   const double chord = std::hypot(first, second);
   if (still_start && still_end) return straight({{start, one, two, end}, 3});
   const SplineControl& corner = still_start ? two : one;
-  const double off =
-      std::abs((corner.first - start.first) * second - (corner.second - start.second) * first);
+  const double off = std::abs((corner.first - start.first) * second - (corner.second - start.second) * first);
   const SplinePiece result = parabola(start, corner, end);
   if (!(off <= within * chord) || is_uneven(result)) return std::nullopt;
   return result;

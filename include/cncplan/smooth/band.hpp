@@ -274,28 +274,54 @@ class Band {
                                       : speed * speed / limits.acceleration;
   }
 
-  // Cells a third of a corner's kernel wide near it, and growing with the distance; and short where the feed
-  // changes, for from a low speed to a high one b grows by decades on a short length.
+  // A length of cell, which holds up to `reach` on both sides of a place and grows with the distance beyond.
+  struct Fine {
+    S at, size, reach;
+  };
+
+  // The cells on which control points on the path itself leave a curve inside the tolerance: on a bend |p''|
+  // it is off by |p''| h^2 / 6. A piece is halved where one half allows longer cells.
+  template <class Add>
+  void fit_bends(std::size_t block, S from, S to, int halvings, const Add& add) const {
+    constexpr S most_off = S(0.8);  // of the tolerance; a start is narrowed above 0.85
+    const auto size = [&](S a, S b) {
+      const Vector bend = blocks_[block].path->bounds(a, b).second.cwiseQuotient(blocks_[block].tolerance);
+      return std::sqrt(S(6) * most_off / bend.norm());
+    };
+    const S own = size(from, to), middle = from + (to - from) / S(2);
+    if (!(own < std::numeric_limits<S>::infinity())) return;
+    if (halvings > 0 && std::max(size(from, middle), size(middle, to)) > S(1.5) * own) {
+      fit_bends(block, from, middle, halvings - 1, add);
+      fit_bends(block, middle, to, halvings - 1, add);
+      return;
+    }
+    add(starts_[block] + middle, own, middle - from);
+  }
+
+  // Cells a third of a corner's kernel wide near it, and growing with the distance; short on narrow bends;
+  // and short where the feed changes, for from a low speed to a high one b grows by decades on a short
+  // length.
   void make_knots() {
     S feed = S(0);
     for (const auto& block : blocks_) feed = std::max(feed, block.feed);
     const S widest = std::min(S(0.1) * ramp_length(feed), length() / S(8));
     constexpr S growth = S(0.12);
-    struct Fine {
-      S at, size, reach;
-    };
+    constexpr int halvings = 6;
     std::vector<Fine> fine;
     fine.push_back({S(0), widest / S(30), S(0)});
     const auto add = [&](S at, S size, S reach) {
       if (size < widest) fine.push_back({at, std::max(size, widest / S(1000)), reach});
     };
     auto corner = corners_.begin();
+    fit_bends(0, S(0), blocks_[0].path->length(), halvings, add);
     for (std::size_t i = 1; i < blocks_.size(); ++i) {
       const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
       if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
-      if (corner == corners_.end() || corner->at > starts_[i]) continue;
-      add(corner->at, corner->width / S(3), S(1.7) * corner->width);
-      ++corner;
+      if (corner != corners_.end() && !(corner->at > starts_[i])) {
+        add(corner->at, corner->width / S(3), S(1.7) * corner->width);
+        ++corner;
+      }
+      fit_bends(i, S(0), blocks_[i].path->length(), halvings, add);
     }
     fine.push_back({length(), widest / S(30), S(0)});
     for (std::size_t i = 1; i < fine.size(); ++i)
