@@ -274,3 +274,26 @@ TEST_CASE("a decimal is found again") {
   }
   CHECK(lost == 0);
 }
+
+TEST_CASE("the $ of a spindle goes with its S and with its M3, a tool change between them or not") {
+  const auto told = [](const std::string& text) {
+    const auto reading = test::read(text);
+    REQUIRE(reading.error.empty());
+    std::ostringstream result;
+    for (const auto& item : reading.items) {
+      if (const auto* word = std::get_if<gcode::Word>(&item)) result << word->letter << word->number << ' ';
+      if (const auto* stop = std::get_if<gcode::Stop>(&item)) result << "stop " << stop->code << ' ';
+    }
+    return result.str();
+  };
+  for (const auto& [line, items] : {std::pair("$1 M3", "$1 M3 "),
+                                    {"$1 S9 M3", "$1 S9 M3 "},
+                                    {"$1 M6 M3", "stop 6 $1 M3 "},
+                                    {"$1 S9 T2 M6 M3", "$1 S9 T2 stop 6 $1 M3 "}}) {
+    INFO(line);
+    CHECK(told(line) == items);
+    const std::string text = written(test::read(line).items);
+    INFO(text);
+    CHECK(told(text) == items);
+  }
+}

@@ -30,7 +30,7 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 25;
+inline constexpr std::size_t max_items_per_line = max_passed + 26;
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -206,14 +206,17 @@ class Reader {
   void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
     const bool speed = block_.has('S') && !dwells_by_s(block_);
-    const bool names_spindle = block_.has('$') && (speed || block_.has(Group::spindle));  // else a tap's
-    for (const auto& [letter, comes_out] :
-         {std::pair('$', names_spindle), {'S', speed}, {'T', block_.has('T')}})
-      if (comes_out) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    const auto pass = [&](char letter) {
+      if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    };
+    if (speed) pass('$'), pass('S');  // the $ of a tap comes out with its motion
+    pass('T');
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);
     change_tool(emit);
+    const bool apart = !speed || block_.code(Group::tool_change) == code(6);  // from the $ above
+    if (block_.has(Group::spindle) && apart) pass('$');
     for (const Group group : {Group::spindle, Group::coolant, Group::override_control}) hand_out(group, emit);
     spindle_.take(block_, modal_.millimetres_per_unit);
     const Code non_modal = block_.code(Group::non_modal);
