@@ -53,6 +53,26 @@ void disturb(const M& machine, const std::string& letters, int sequences, double
   }
 }
 
+// A whole program, held at a tick and resumed at the 200th.
+template <std::size_t capacity, class B>
+test::ExecutorFaults held_at(int hold, const std::vector<B>& blocks, double tolerance) {
+  using Runner = Executor<Machine<3>, capacity, B>;
+  const auto& machine = test::slow_axes<double>;
+  const test::Disturbance how{.restless = 1, .period = period, .tolerance = tolerance};
+  const auto executor = std::make_unique<Runner>(machine, typename Runner::Options{.tolerance = tolerance});
+  for (const B& block : blocks) REQUIRE(executor->push(block));
+  executor->end_of_program();
+  test::TickCheck<Machine<3>, typename Runner::SetPoint, B> ticks(machine, blocks, how);
+  for (int tick = 0; tick < 1000 && !executor->finished(); ++tick) {
+    if (tick == hold) executor->feed_hold();
+    if (tick == 200) executor->resume();
+    ticks.take(executor->tick(period));
+  }
+  ticks.finish();
+  ticks.faults.finished = executor->finished();
+  return ticks.faults;
+}
+
 }  // namespace
 
 TEST_CASE("within a tolerance no request makes three axes jump at a joint", "[executor]") {
@@ -62,28 +82,21 @@ TEST_CASE("within a tolerance no request makes six axes jump at a joint", "[exec
   disturb(test::six_axes, "ACU", 40);
 }
 TEST_CASE("a hold goes on over a cell that is as short as rounding", "[executor]") {
-  using Runner = Executor<Machine<3>, 64>;
-  const auto& machine = test::slow_axes<double>;
-  constexpr double tolerance = 0.060940454288297315;
   const auto blocks = test::blocks_of({"F1095", "G2 X0.004397 Y-0.019868 I-0.408014 J-0.100729",
                                        "G3 X0.043641 Y-0.099759 I0.245737 J0.071124", "M30"},
-                                      machine);
-  const test::Disturbance how{.restless = 1, .period = period, .tolerance = tolerance};
+                                      test::slow_axes<double>);
   for (int hold = 1; hold < 150; ++hold) {
     CAPTURE(hold);
-    const auto executor = std::make_unique<Runner>(machine, Runner::Options{.tolerance = tolerance});
-    for (const auto& block : blocks) REQUIRE(executor->push(block));
-    executor->end_of_program();
-    test::TickCheck<Machine<3>, Runner::SetPoint, Runner::Block> ticks(machine, blocks, how);
-    for (int tick = 0; tick < 1000 && !executor->finished(); ++tick) {
-      if (tick == hold) executor->feed_hold();
-      if (tick == 200) executor->resume();
-      ticks.take(executor->tick(period));
-    }
-    ticks.finish();
-    ticks.faults.finished = executor->finished();
-    check(ticks.faults, 1e-9);
+    check(held_at<64>(hold, blocks, 0.060940454288297315), 1e-9);
   }
+}
+TEST_CASE("all cells of a block are run where the one before it ends in one as short as rounding",
+          "[executor]") {
+  const auto blocks =
+      test::blocks_of({"F275", "G2 X0.015095 Y0.001787 I0.034443 J-0.226272", "G1 X0.024440 Y0.007884",
+                       "G2 X0.000539 Y0.027798 I1.267505 J1.545564", "T2 M6", "M30"},
+                      test::slow_axes<double>);
+  check(held_at<16>(-1, blocks, 0.023955603681622046), 1e-9);
 }
 TEST_CASE("blocks that wait for others go on when the machine has rested for long enough", "[executor]") {
   const auto blocks = test::blocks_of({"F1200", "G1 X5", "Y5", "X10"}, test::slow_axes<double>);

@@ -65,9 +65,10 @@ class CutByLimits {
     for (;;) {
       const Part& top = open_[--count_].part;
       const int depth = open_[count_].depth;
-      if (straight_ || depth == deepest || !(top.limits.velocity < worth_it * speed_)) return top;
+      const Scalar middle = top.from + (top.to - top.from) / Scalar(2);
+      const bool divides = top.from < middle && middle < top.to;  // not where it is as short as rounding
+      if (straight_ || depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return top;
       const Part part = top;
-      const Scalar middle = part.from + (part.to - part.from) / Scalar(2);
       const Part first{part.from, middle, limits(driven, machine, part.from, middle, speed_)};
       const Part second{middle, part.to, limits(driven, machine, middle, part.to, speed_)};
       const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;

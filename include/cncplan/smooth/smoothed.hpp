@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -127,13 +128,15 @@ class Smoothed {
 
   /// The next length beyond s at which a correction begins or ends or changes its form; the end if there is
   /// none. Between two of them all derivatives are smooth. On a path that is shorter than a correction's
-  /// reach, its changes nearer to s or to the end than `apart` of its sizes are passed over.
+  /// reach, its changes nearer to s or to the end than `apart` of its sizes are passed over; so is, on any
+  /// path, what is only rounding away from them.
   [[nodiscard]] Scalar next_change(Scalar s, Scalar apart = Scalar(0)) const {
+    const Scalar rounding = 64 * std::numeric_limits<Scalar>::epsilon() * length();
     Scalar next = length();
     for (const Correction& c : corrections_)
       for (const Scalar u : {Scalar(1), reach<Scalar>(c.jump)}) {
         const Scalar place = from_start(c) + (before(c) ? -u : u) * c.size;
-        const Scalar room = length() < c.support() ? apart * c.size : Scalar(0);
+        const Scalar room = std::max(length() < c.support() ? apart * c.size : Scalar(0), rounding);
         if (place > s + room && place < std::min(next, length() - room)) next = place;
       }
     return next;
