@@ -150,6 +150,7 @@
 #include "cncplan/plan/player/nearest.hpp"
 #include "cncplan/plan/player/path_ahead.hpp"
 #include "cncplan/plan/player/plan_ahead.hpp"
+#include "cncplan/plan/player/plans.hpp"
 #include "cncplan/plan/player/play.hpp"
 #include "cncplan/plan/player/played.hpp"
 #include "cncplan/plan/player/player.hpp"

@@ -12,15 +12,29 @@
 
 namespace cncplan::plan {
 
-/// Where a profile is. `start` is where it began, seen from the block that the machine was in, and goes along
-/// with the block: it then lies before it.
+/// Where a profile is that has travelled to `position`. `start` is where it began, seen from the block that
+/// the machine was in, and goes along with the block: it then lies before it.
 template <std::floating_point S>
 [[nodiscard]] BasicPlace<S> locate(const BasicPathAhead<S>& path, BasicPlace<S>& start,
-                                   const BasicRunningProfile<S>& running) {
-  const S position = running.state().position;
+                                   const BasicRunningProfile<S>& running, S position) {
   const BasicPlace<S> at = path.advance(start, position, running.length() - position);
   if (at.block != start.block) start = {at.block, at.along - position};
   return at;
+}
+
+/// What a player says of a state at a place, which is in a block: in that block's own direction.
+template <std::floating_point S>
+[[nodiscard]] BasicPlayed<S> played_at(const BasicPathAhead<S>& path, const BasicPlace<S>& at,
+                                       const BasicState<S>& now, bool at_rest) {
+  const S whole = path.ring.length(at.block);
+  const S travelled = std::min(at.along, whole);
+  const S sign = static_cast<S>(path.direction);
+  return {at.block,
+          sign > S(0) ? travelled : whole - travelled,
+          sign * now.velocity,
+          sign * now.acceleration,
+          sign * now.jerk,
+          at_rest};
 }
 
 /// Goes on in a profile for so many seconds, `passed` seconds into the tick, and tells the parts.
@@ -30,7 +44,7 @@ void drive(const BasicPathAhead<S>& path, BasicPlace<S>& start, BasicRunningProf
   const BlockRing<S>& ring = path.ring;
   while (seconds > S(0)) {
     const BasicState<S> now = running.state();
-    const BasicPlace<S> at = path.snapped(locate(path, start, running));
+    const BasicPlace<S> at = path.snapped(locate(path, start, running, now.position));
     const S edge = running.to_edge();
     BasicPlayedPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
                              now.acceleration, now.jerk},

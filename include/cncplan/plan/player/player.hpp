@@ -3,24 +3,21 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "cncplan/plan/player/brake_ahead.hpp"
 #include "cncplan/plan/player/drive.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/plan/player/path_ahead.hpp"
-#include "cncplan/plan/player/plan_ahead.hpp"
+#include "cncplan/plan/player/plans.hpp"
 #include "cncplan/plan/player/played.hpp"
 #include "cncplan/plan/player/ramp_ahead.hpp"
 #include "cncplan/plan/player/running_profile.hpp"
-#include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/from_state.hpp"
 
 namespace cncplan::plan {
@@ -37,16 +34,12 @@ template <std::floating_point S>
 class BasicPlayer {
  public:
   using Block = BasicPlayedBlock<S>;
-  using Waypoint = BasicWaypoint<S>;
 
   /// `keep_behind` blocks stay in memory for running backwards; fewer where that would not leave room for
   /// `memory.ahead`, none where it is negative.
   explicit BasicPlayer(const BasicPlayerMemory<S>& memory, std::int64_t keep_behind = 0)
-      : memory_(memory), path_(memory.blocks) {
-    const std::size_t waypoints = std::min(memory.waypoints.size(), memory.spare_waypoints.size());
-    memory_.ahead =
-        memory.ahead.first(std::min(memory.ahead.size(), std::max<std::size_t>(waypoints, 1) - 1));
-    const std::int64_t room = path_.ring.capacity() - static_cast<std::int64_t>(memory_.ahead.size());
+      : path_(memory.blocks), plans_(memory) {
+    const std::int64_t room = path_.ring.capacity() - static_cast<std::int64_t>(plans_.room().size());
     keep_behind_ = std::clamp(keep_behind, std::int64_t{0}, std::max(room, std::int64_t{0}));
   }
 
@@ -114,7 +107,7 @@ class BasicPlayer {
     at_ = {block, S(0)};
     wait_for(S(0));
     pending_ = false;
-    next_plan_.drop();
+    plans_.drop_next();
     return true;
   }
 
@@ -134,13 +127,13 @@ class BasicPlayer {
     };
     look();
     const auto begun_ms = static_cast<std::size_t>(std::clamp(std::ceil(period * S(1000)), S(1), S(1000)));
-    budget_ = work_in_ms() * begun_ms;
-    at_once_ = 4 * begun_ms;
+    plans_.begin_tick(begun_ms);
     const bool answers = !idle_ && answer(std::min(begun_ms, most_attempts));
-    if (answers) at_once_ = 0;  // that was a plan
+    if (answers) plans_.make_no_more_at_once();
     if (idle_ && pending_ && !(waits() > S(0))) start();
     S left = period;
-    const std::size_t most_hops = 4 * memory_.blocks.size() + 16;  // never met: profiles end blocks
+    const std::size_t most_hops =
+        4 * static_cast<std::size_t>(path_.ring.capacity()) + 16;  // never met: profiles end blocks
     for (std::size_t hops = 0; (left > S(0) || profile_over()) && hops < most_hops; ++hops) {
       if (const S wait = waits(); wait > S(0)) {
         const S waited = std::min(wait, left);
@@ -198,18 +191,7 @@ class BasicPlayer {
   [[nodiscard]] bool stopped() const { return path_.asked.stopped && idle_; }
 
  private:
-  static constexpr std::size_t no_waypoint = static_cast<std::size_t>(-1);
-  static constexpr std::size_t at_turn = no_waypoint - 1;
-  static constexpr std::size_t more_short_blocks = 3;
-  static constexpr std::size_t most_short_blocks = 128;
-  static constexpr std::size_t short_rounds = 4;  // of three passes
   static constexpr std::size_t most_attempts = 4;
-
-  // How many waypoints a tick may look at for the next plan: each millisecond; where that is too little, as
-  // many as it takes to be ready in time; where it is due and not ready, so many.
-  [[nodiscard]] std::size_t work_in_ms() const { return 4 + memory_.ahead.size() / 32; }
-  [[nodiscard]] std::size_t work_at_once() const { return 78 * (memory_.ahead.size() + 1); }
-  static constexpr std::size_t usual_looks = 36;  // at a waypoint: twelve rounds of three passes
 
   [[nodiscard]] static S share_up_to(S most, S share) { return share > S(0) ? std::min(share, most) : S(0); }
 
@@ -217,13 +199,14 @@ class BasicPlayer {
   void ask(T& value, const T& wanted) {
     if (value == wanted) return;
     value = wanted;
-    pending_ = asked_anew_ = true;
+    pending_ = true;
+    plans_.request_came();
   }
 
   // Takes notice of blocks that were pushed.
   void look() {
     if (!path_.ring.take()) return;
-    more_ = more_ || plan_open_;
+    plans_.blocks_came();
     pending_ = pending_ || idle_;
   }
 
@@ -236,31 +219,24 @@ class BasicPlayer {
 
   // Whether blocks that the plan does not know could spare the way down that this profile ends with.
   [[nodiscard]] bool could_better() const {
-    return more_ && !running_settled_ && running_.state().position > path_rounding<S>;
+    return plans_.lacks_blocks() && !running_settled_ && running_.state().position > path_rounding<S>;
   }
 
   [[nodiscard]] bool profile_over() const { return !idle_ && !(running_.left() > S(0)); }
 
   // Where it is now. At rest a block of no length is not passed by.
-  BasicPlace<S> locate() { return idle_ ? at_ : plan::locate(path_, at_, running_); }
+  BasicPlace<S> locate() {
+    return idle_ ? at_ : plan::locate(path_, at_, running_, running_.state().position);
+  }
 
   [[nodiscard]] BasicPlayed<S> played() {
-    const BlockRing<S>& ring = path_.ring;
-    if (ring.end() == ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
+    if (path_.ring.end() == path_.ring.oldest()) return {-1, S(0), S(0), S(0), S(0), true};
     const BasicState<S> now = running_.state();
-    BasicPlace<S> at = locate();
-    if (!ring.holds(at.block) ||
-        (waits() > S(0) && ring.holds(at.block - 1)))  // behind the last, or dwelling
-      at = {at.block - path_.direction, ring.length(at.block - path_.direction)};
-    const S whole = ring.length(at.block);
-    const S travelled = std::min(at.along, whole);
-    const S sign = static_cast<S>(path_.direction);
-    return {at.block,
-            sign > S(0) ? travelled : whole - travelled,
-            sign * now.velocity,
-            sign * now.acceleration,
-            sign * now.jerk,
-            idle_};
+    BasicPlace<S> at = idle_ ? at_ : plan::locate(path_, at_, running_, now.position);
+    const std::int64_t done = at.block - path_.direction;
+    if (!path_.ring.holds(at.block) || (waits() > S(0) && path_.ring.holds(done)))
+      at = {done, path_.ring.length(done)};  // behind the last, or dwelling
+    return played_at(path_, at, now, idle_);
   }
 
   // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick. So is
@@ -283,15 +259,15 @@ class BasicPlayer {
     at_ = path_.turn_round(at_);
     if (at_.along == S(0) && pauses_here()) return pending_ = false;
     pending_ = false;
-    const bool prepared = next_plan_.begun() && !asked_anew_ && next_plan_.from() == at_ &&
-                          next_plan_.speed() == S(0) && !next_plan_.waypoints().empty();
-    if (!prepared) begin_plan(at_, S(0), no_waypoint, S(1));
-    budget_ = work_at_once();
-    if (next_plan_.waypoints().empty()) {
-      next_plan_.drop();
-    } else if (work_on_plan() && next_plan_.holds()) {
+    const BasicPlanAhead<S>& next = plans_.next();
+    const bool prepared = next.begun() && !plans_.asked_anew() && next.from() == at_ &&
+                          next.speed() == S(0) && !next.waypoints().empty();
+    if (!prepared) plans_.begin_next(path_, at_, S(0), no_waypoint, S(1));
+    if (next.waypoints().empty()) {
+      plans_.drop_next();
+    } else if (plans_.finish_next()) {
       adopt(at_);
-    } else if (plan_short(at_, S(0))) {
+    } else if (plans_.plan_short(path_, at_, S(0))) {
       take_short();
       begin_span(0);
     }
@@ -307,14 +283,14 @@ class BasicPlayer {
     path_.above = path_.asks_above();
     if (path_.must_rest(at.block)) {
       path_.above = running_above_;
-      const auto braking = brake_ahead(path_, at, now, memory_.ahead);
+      const auto braking = brake_ahead(path_, at, now, plans_.room());
       if (braking) follow(*braking, at, no_waypoint);
       return braking.has_value();
     }
     const int attempt = std::exchange(attempt_, (attempt_ + 1) % 4);
     if (now.acceleration == S(0) && now.velocity <= path_.wanted_speed(at.block) && attempt % 2 == 0) {
       if (!asked) return take_over(at, now.velocity, at_turn);
-      if (!plan_short(at, now.velocity)) return false;
+      if (!plans_.plan_short(path_, at, now.velocity)) return false;
       take_short();
       at_ = at;
       begin_span(0);
@@ -323,112 +299,60 @@ class BasicPlayer {
     // From below the feed to above it, the lower acceleration limits there hold from the ramp on, or from its
     // end; from above, up to its end.
     const bool above = running_above_ || (path_.asks_above() && attempt % 4 < 2);
-    return replan(asked, now, at, above, attempt % 2 != 0);
+    return replan_by_ramp(asked, now, at, {.above = above, .settles = attempt % 2 != 0});
   }
 
-  // By a ramp under the limits above the feed, or those up to it.
-  bool replan(bool asked, const BasicState<S>& now, const BasicPlace<S>& at, bool ramp_above, bool settles) {
+  struct RampChoice {
+    bool above{};    // under the limits above the feed, else those up to it
+    bool settles{};  // to the settled speed where that is lower, else to the wanted one
+  };
+
+  bool replan_by_ramp(bool asked, const BasicState<S>& now, const BasicPlace<S>& at, RampChoice choice) {
     path_.above = path_.asks_above();
-    S target = path_.wanted_speed(at.block);
-    path_.above = ramp_above;
+    const S wanted = path_.wanted_speed(at.block);
+    path_.above = choice.above;
     const S settled = profile::settled_speed(profile::BasicStartState<S>{now.velocity, now.acceleration},
                                              path_.limits(at.block));
-    const S lower = settled > negligible_speed<S> ? std::min(settled, target) : S(0);
-    auto ramp = ramp_ahead(path_, at, now, settles ? lower : target);
-    settles = settles || (!ramp && asked);
-    if (settles) target = lower;
-    if (settles && !ramp) ramp = ramp_ahead(path_, at, now, target);
+    const S lower = settled > negligible_speed<S> ? std::min(settled, wanted) : S(0);
+    S target = choice.settles ? lower : wanted;
+    auto ramp = ramp_ahead(path_, at, now, target);
+    if (!ramp && asked && !choice.settles) ramp = ramp_ahead(path_, at, now, target = lower);
     if (!ramp) return false;
     const BasicPlace<S> end = path_.snapped(path_.advance(at, ramp->length()));  // as `next_profile` sees it
-    if (!(asked ? plan_short(end, target) : plan_better(*ramp, end, target))) return false;
-    asked ? take_short() : take_next();
+    if (!(asked ? plans_.plan_short(path_, end, target)
+                : plans_.next_betters(path_, running_, *ramp, end, target)))
+      return false;
+    asked ? take_short() : plans_.take_next(path_);
     follow(BasicRunningProfile<S>(*ramp), at, 0);
-    running_above_ = ramp_above;
+    running_above_ = choice.above;
     return true;
   }
 
-  // Plans the blocks from a place on that coming to rest takes, and a few more, at once. False if the speed
-  // is too high there, or `short_rounds` are too few.
-  bool plan_short(const BasicPlace<S>& from, S speed) {
-    const std::size_t most = std::min(memory_.ahead.size(), most_short_blocks);
-    const std::size_t blocks = std::min(path_.blocks_to_rest(from, speed, most) + more_short_blocks, most);
-    short_plan_.begin(path_, from, speed, memory_.ahead.first(blocks), short_waypoints_);
-    short_plan_.work(short_rounds * 3 * (short_plan_.waypoints().size() + 1));
-    return short_plan_.holds();
-  }
-
-  // Makes the next plan at once, behind a ramp; whether both are better than what is driven.
-  bool plan_better(const profile::BasicProfile<S>& ramp, const BasicPlace<S>& from, S speed) {
-    begin_plan(from, speed, no_waypoint, S(1));
-    budget_ = work_at_once();
-    const bool better =
-        work_on_plan() && next_plan_.holds() && betters(running_, ramp, next_plan_.waypoints());
-    if (!better) next_plan_.drop();
-    return better;
-  }
-
-  // Begins the next plan, which is to take over at a place that is passed at a speed, in so many ticks.
-  void begin_plan(const BasicPlace<S>& from, S speed, std::size_t waypoint, S ticks) {
-    next_plan_.begin(path_, from, speed, memory_.ahead, memory_.spare_waypoints);
-    next_plan_waypoint_ = waypoint;
-    asked_anew_ = false;
-    const S looks = static_cast<S>(usual_looks * next_plan_.waypoints().size());
-    rate_ = static_cast<std::size_t>(std::min(looks / std::max(ticks, S(1)), static_cast<S>(work_at_once())));
-    budget_ -= std::min(budget_, next_plan_.waypoints().size() / 4);
-  }
-  bool work_on_plan() {
-    const bool done = next_plan_.work(budget_);
-    if (!done) budget_ = 0;
-    return done;
-  }
-
-  // The next plan takes over at a place, if it was begun for this one; what is not made of it is made now, as
-  // far as that goes at once.
+  // The next plan takes over at a place, if it can.
   bool take_over(const BasicPlace<S>& at, S speed, std::size_t waypoint) {
-    if (!next_plan_.begun() && bears(at, speed)) begin_plan(at, speed, waypoint, S(1));
-    if (!next_plan_.begun() || next_plan_waypoint_ != waypoint) return false;
-    if (at_once_ > 0) budget_ = work_at_once(), --at_once_;
-    const bool good = work_on_plan() && next_plan_.holds();
-    good ? adopt(at) : next_plan_.drop();
-    return good;
+    const bool takes_over = plans_.next_takes_over(path_, at, speed, waypoint);
+    if (takes_over) adopt(at);
+    return takes_over;
   }
 
   // Goes on with the next plan, or begins it where one is due soon.
   void prepare(S period) {
-    if (next_plan_.begun()) {
-      budget_ = std::max(budget_, rate_);
-      return void(work_on_plan());
-    }
+    if (plans_.next().begun()) return plans_.work_in_time();
     if (idle_) {
       if (waits() > S(0) && pending_ && path_.asked.direction == path_.direction && !path_.asked.stopped)
-        begin_plan(at_, S(0), no_waypoint, waits() / period);
+        plans_.begin_next(path_, at_, S(0), no_waypoint, waits() / period);
       return;
     }
-    if (next_waypoint_ == no_waypoint || !(more_ || ends_at_stop())) return;
-    const auto cells = std::min(memory_.ahead.size(), static_cast<std::size_t>(cells_ahead()));
-    const S lead = period * static_cast<S>(8 + 6 * (cells + 1) / work_in_ms());
-    if (running_.to_turn() > S(0) && could_better()) {
-      if (running_.to_turn() > lead) return;
-      BasicRunningProfile<S> until = running_;
-      until.advance(until.to_turn());
-      const BasicState<S> turn = until.state();
-      const BasicPlace<S> from = path_.advance(at_, turn.position);
-      if (bears(from, turn.velocity)) begin_plan(from, turn.velocity, at_turn, running_.to_turn() / period);
-      return;
-    }
-    const auto start =
-        waypoint_to_plan_from(std::span<const Waypoint>(memory_.waypoints.first(waypoint_count_)),
-                              next_waypoint_, running_.left(), lead, ends_at_stop());
-    if (!start) return;
-    const std::size_t waypoint = start->waypoint;
-    BasicPlace<S> from = plan_from_;
-    if (waypoint > 0)
-      from = {
-          plan_from_.block + path_.direction * static_cast<std::int64_t>(memory_.waypoints[waypoint].block),
-          S(0)};
-    const S speed = memory_.waypoints[waypoint].speed;
-    if (path_.ring.holds(from.block) && bears(from, speed))
-      begin_plan(from, speed, waypoint, start->time / period);
+    if (next_waypoint_ == no_waypoint || !(plans_.lacks_blocks() || plans_.ends_at_stop())) return;
+    const S lead = period * plans_.ticks_ahead(static_cast<std::size_t>(cells_ahead()));
+    if (!(running_.to_turn() > S(0) && could_better()))
+      return plans_.begin_next_at_waypoint(path_, next_waypoint_, running_.left(), lead, period);
+    if (running_.to_turn() > lead) return;
+    BasicRunningProfile<S> until = running_;
+    until.advance(until.to_turn());
+    const BasicState<S> turn = until.state();
+    plans_.begin_next_if_borne(path_, path_.advance(at_, turn.position), turn.velocity, at_turn,
+                               running_.to_turn() / period);
   }
 
   // Cells from here on, in the direction of travel.
@@ -436,51 +360,19 @@ class BasicPlayer {
     return path_.direction > 0 ? path_.ring.end() - at_.block : at_.block + 1 - path_.ring.oldest();
   }
 
-  // Whether the plan ends where the motion has to rest.
-  [[nodiscard]] bool ends_at_stop() const { return !more_ && !plan_open_; }
-
-  // Whether a plan may begin with a speed at a place: the limits up to the feed hold no farther than that.
-  [[nodiscard]] bool bears(const BasicPlace<S>& from, S speed) {
-    path_.above = path_.asks_above();
-    return path_.above || !plan_above_ || !path_.ring.holds(from.block) ||
-           speed <= path_.wanted_speed(from.block);
-  }
-
-  // Whether blocks that the plan does not know could better the span behind a steady waypoint.
-  [[nodiscard]] bool improves_behind(std::size_t waypoint) const {
-    return more_ && waypoint + 1 < waypoint_count_ &&
-           !memory_.waypoints[next_steady<S>(memory_.waypoints, waypoint)].settled;
-  }
-
-  // Makes a plan the one that holds.
-  void take(const BasicPlanAhead<S>& plan) {
-    path_.brake_share = S(1);
-    waypoint_count_ = plan.waypoints().size();
-    plan_from_ = plan.from();
-    plan_above_ = plan.above();
-    plan_open_ = plan.open();
-    more_ = plan.lacks_blocks(path_.ring.end());
-    next_plan_.drop();
-  }
   void take_short() {
-    std::copy(short_plan_.waypoints().begin(), short_plan_.waypoints().end(), memory_.waypoints.begin());
-    take(short_plan_);
+    plans_.take_short(path_);
     attempt_ = 0;
-  }
-
-  void take_next() {
-    std::swap(memory_.waypoints, memory_.spare_waypoints);
-    take(next_plan_);
   }
 
   // Makes the next plan the one that holds, and follows it from a place.
   void adopt(const BasicPlace<S>& from) {
-    take_next();
+    plans_.take_next(path_);
     at_ = from;
-    if (waypoint_count_ == 0) return rest();
-    path_.above = plan_above_;
-    if (!asked_anew_ && !path_.must_rest(from.block) &&
-        memory_.waypoints[0].speed <= path_.wanted_speed(from.block))
+    if (plans_.size() == 0) return rest();
+    path_.above = plans_.above();
+    if (!plans_.asked_anew() && !path_.must_rest(from.block) &&
+        plans_.waypoint(0).speed <= path_.wanted_speed(from.block))
       pending_ = false;
     begin_span(0);
   }
@@ -490,24 +382,15 @@ class BasicPlayer {
     at_ = from;
     running_ = profile;
     next_waypoint_ = waypoint;
-    if (waypoint == no_waypoint || next_plan_waypoint_ == at_turn) next_plan_.drop();
-    if (waypoint != no_waypoint) running_above_ = plan_above_;
-    running_settled_ = waypoint == no_waypoint || waypoint == 0 || memory_.waypoints[waypoint].settled;
+    if (waypoint == no_waypoint || plans_.next_begins_at() == at_turn) plans_.drop_next();
+    if (waypoint != no_waypoint) running_above_ = plans_.above();
+    running_settled_ = waypoint == no_waypoint || waypoint == 0 || plans_.waypoint(waypoint).settled;
     idle_ = false;
   }
 
   void begin_span(std::size_t waypoint) {
-    WaypointPlanner planner(memory_.waypoints.first(waypoint_count_));
-    const std::size_t next = next_steady<S>(memory_.waypoints, waypoint);
-    if (const auto profile = planner.profile(waypoint, next)) {
-      const Waypoint& end = memory_.waypoints[next];
-      const profile::BasicRampLaw<S> law = profile::seven_phase_law(end.limits);
-      return follow(BasicRunningProfile<S>(*profile, S(2) * law.half_duration(std::sqrt(end.speed))), at_,
-                    next);
-    }
-    const auto stop = profile::stop(profile::BasicStartState<S>{memory_.waypoints[waypoint].speed, S(0)},
-                                    memory_.waypoints[waypoint].limits);
-    follow(BasicRunningProfile<S>(*stop), at_, no_waypoint);
+    const BasicPlanSpan<S> span = plans_.span_from(waypoint);
+    follow(span.profile, at_, span.end);
   }
 
   // The profile is over: the next one, or rest.
@@ -520,18 +403,18 @@ class BasicPlayer {
     if (next_waypoint_ == no_waypoint) {
       path_.above = running_above_;
       if (!rests && path_.ring.holds(at_.block))
-        return follow(braking_on(path_, at_, end, memory_.ahead), at_, no_waypoint);
+        return follow(braking_on(path_, at_, end, plans_.room()), at_, no_waypoint);
       return at_junction && !path_.asked.stopped ? rest_as_planned() : rest();
     }
-    if (next_waypoint_ + 1 >= waypoint_count_) return rest_as_planned();
+    if (next_waypoint_ + 1 >= plans_.size()) return rest_as_planned();
     // a ramp that began on the way to a stop, and ends there
     const std::int64_t done = at_.block - path_.direction;
     if (rests && at_junction && path_.ring.holds(done) && path_.stops_behind(done)) return rest_as_planned();
-    if (next_plan_.begun() && next_plan_waypoint_ == at_turn) next_plan_.drop();
+    if (plans_.next_begins_at() == at_turn) plans_.drop_next();
     // nothing that comes can change where a span ends that is settled
     const std::size_t waypoint = next_waypoint_;
-    if ((next_plan_.begun() || improves_behind(waypoint)) &&
-        take_over(at_, memory_.waypoints[waypoint].speed, waypoint))
+    if ((plans_.next().begun() || plans_.improves_behind(waypoint)) &&
+        take_over(at_, plans_.waypoint(waypoint).speed, waypoint))
       return;
     begin_span(waypoint);
   }
@@ -566,30 +449,17 @@ class BasicPlayer {
     pending_ = !path_.asked.held;
   }
 
-  BasicPlayerMemory<S> memory_;
   BasicPathAhead<S> path_;
+  BasicPlans<S> plans_;
   std::int64_t keep_behind_ = 0;
   BasicPlace<S> at_;  // where the profile started, seen from the block it is in; at rest, where that is
   BasicRunningProfile<S> running_;
-  std::size_t waypoint_count_ = 0;
   std::size_t next_waypoint_ = no_waypoint;
-  BasicPlace<S> plan_from_;                       // where the plan begins
-  BasicPlanAhead<S> next_plan_;                   // in the spare waypoints
-  std::size_t next_plan_waypoint_ = no_waypoint;  // of the plan that holds, where the next one takes over
-  BasicPlanAhead<S> short_plan_;                  // an answer to a request
-  std::array<Waypoint, most_short_blocks + 1> short_waypoints_{};
-  std::size_t rate_ = 0;          // waypoints a tick that make the next plan in time
-  std::size_t at_once_ = 0;       // plans that this tick may make to their end yet
-  std::size_t budget_ = 0;        // waypoints that this tick may look at yet
   int attempt_ = 0;               // to answer a request
   BasicElapsed<S> dwell_;         // s to its end, below 0
   S rested_{};                    // s
-  bool plan_above_ = false;       // the plan is made for more than the feed
-  bool running_above_ = false;    // the profile is
+  bool running_above_ = false;    // the profile is made for more than the feed
   bool pending_ = false;          // a request has not been met yet
-  bool asked_anew_ = false;       // since the next plan was begun
-  bool more_ = false;             // there are blocks that the plan does not know
-  bool plan_open_ = true;         // blocks that come count for the plan
   bool running_settled_ = false;  // what comes cannot change where the profile ends
   bool idle_ = true;
 };
