@@ -24,6 +24,9 @@ TEST_CASE("a profile is exact at its ends, and stays there outside") {
   CHECK(p.time_at(0.0) == 0.0);
   CHECK(p.time_at(10.0) == p.duration());
   CHECK(p.time_at(11.0) == p.duration());
+  CHECK(p.velocity_at(0.0) == 3.0);
+  CHECK(p.velocity_at(10.0) == 7.0);
+  CHECK(p.velocity_at(11.0) == 7.0);
 }
 
 TEST_CASE("the default profile stands still for no time") {
@@ -33,10 +36,10 @@ TEST_CASE("the default profile stands still for no time") {
   CHECK(p == profile::Profile());
 }
 
-TEST_CASE("random profiles: position grows with time, time_at is its inverse, derivatives fit") {
+TEST_CASE("random profiles: position grows with time, time_at is its inverse, derivatives and speeds fit") {
   test::Random random;
-  double worst_inverse = 0.0, worst_back = 0.0, worst_slope = 0.0;
-  test::ProfileCase inverse_case{}, back_case{}, slope_case{};
+  double worst_inverse = 0.0, worst_back = 0.0, worst_slope = 0.0, worst_speed = 0.0;
+  test::ProfileCase inverse_case{}, back_case{}, slope_case{}, speed_case{};
   for (int draw = 0; draw < 20000; ++draw) {
     const test::ProfileCase c = test::draw(random);
     const auto p = profile::seven_phase(c.length, c.speeds, c.limits);
@@ -52,6 +55,11 @@ TEST_CASE("random profiles: position grows with time, time_at is its inverse, de
       // positions agree where times differ by the rounding of the position
       const double again = std::abs(p->at(p->time_at(state.position)).position - state.position) / c.length;
       if (again > worst_inverse) worst_inverse = again, inverse_case = c;
+      // the square, as the root of a rounded position is left where the speed vanishes
+      const double speed = p->velocity_at(state.position), scale = p->peak().velocity;
+      const double square = std::abs(speed * speed - state.velocity * state.velocity) /
+                            (scale * scale + p->peak().acceleration * c.length);
+      if (square > worst_speed) worst_speed = square, speed_case = c;
       const double step = duration * 1e-5;
       if (t < step || t > duration - step) continue;
       const double slope = (p->at(t + step).position - p->at(t - step).position) / (2 * step);
@@ -66,6 +74,8 @@ TEST_CASE("random profiles: position grows with time, time_at is its inverse, de
   CHECK(worst_back < 1e-15);
   INFO(slope_case.literal());
   CHECK(worst_slope < 1e-9);
+  INFO(speed_case.literal());
+  CHECK(worst_speed < 1e-13);
 }
 
 TEST_CASE("constant speed is one cruise") {

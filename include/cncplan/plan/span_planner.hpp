@@ -258,8 +258,7 @@ class WaypointPlanner {
       const bool last = i + 1 == to;
       const S allowed = waypoints_[i].limits.velocity;
       const bool matters = !last && (top > waypoints_[i + 1].cap * tolerance || top > allowed * tolerance);
-      const S speed_there =
-          last ? waypoints_[to].speed : (matters ? planned->at(planned->time_at(position)).velocity : top);
+      const S speed_there = last ? waypoints_[to].speed : (matters ? planned->velocity_at(position) : top);
       if (!last && matters) weigh(i + 1, speed_there, waypoints_[i + 1].cap);
       const bool holds_top = top_from <= position && top_until >= here;
       const S highest = holds_top ? top : std::max(speed_here, speed_there);

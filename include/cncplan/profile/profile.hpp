@@ -83,26 +83,23 @@ class BasicProfile {
   [[nodiscard]] constexpr std::array<Phase, phase_count> phases() const {
     const auto& [length, start_velocity, start_acceleration, top_velocity, end_velocity, cruise, up, down] =
         parts_;
-    std::array<Phase, phase_count> table{};
-    table[0] = {S(0), up.first, S(0), start_velocity, start_acceleration, up.jerk};
-    table[1] = after(table[0], up.hold, up.acceleration, S(0));
-    table[2] = after(table[1], up.last, up.acceleration, up.last_jerk());
-    table[3] = after(table[2], cruise, S(0), S(0));
-    table[3].velocity = top_velocity;
-    const S total = duration();
-    const Phase end{total, S(0), length, end_velocity, S(0), S(0)};
-    table[6] = before(end, down.last, down.acceleration, -down.jerk);
-    table[5] = before(table[6], down.hold, down.acceleration, S(0));
-    table[4] = before(table[5], down.first, down.acceleration - down.jerk * down.first, down.jerk);
-    return table;
+    const Phase up_first{S(0), up.first, S(0), start_velocity, start_acceleration, up.jerk};
+    const Phase up_hold = after(up_first, up.hold, up.acceleration, S(0));
+    const Phase up_last = after(up_hold, up.last, up.acceleration, up.last_jerk());
+    Phase top = after(up_last, cruise, S(0), S(0));
+    top.velocity = top_velocity;
+    const Phase end{duration(), S(0), length, end_velocity, S(0), S(0)};
+    const Phase down_last = before(end, down.last, down.acceleration, -down.jerk);
+    const Phase down_hold = before(down_last, down.hold, down.acceleration, S(0));
+    const Phase down_first =
+        before(down_hold, down.first, down.acceleration - down.jerk * down.first, down.jerk);
+    return {up_first, up_hold, up_last, top, down_first, down_hold, down_last};
   }
 
   /// State at t; before the start and after the end, the state there.
   [[nodiscard]] constexpr State at(S t) const {
     if (!(t < duration())) return {length(), end_velocity(), S(0), S(0)};
-    const auto table = phases();
-    const Phase& phase = table[phase_index(table, t)];
-    return phase.at(std::max(t - phase.time, S(0)));
+    return state_in(phases(), t);
   }
 
   /// The first time at which a position is reached; 0 and duration() for positions before and behind the
@@ -110,10 +107,16 @@ class BasicProfile {
   [[nodiscard]] S time_at(S position) const {
     if (!(position > S(0))) return S(0);
     if (!(position < length())) return duration();
+    return time_in(phases(), position);
+  }
+
+  /// Speed where a position is reached for the first time.
+  [[nodiscard]] S velocity_at(S position) const {
+    if (!(position > S(0))) return at(S(0)).velocity;
+    if (!(position < length())) return end_velocity();
     const auto table = phases();
-    std::size_t index = phase_count - 1;
-    while (index > 0 && (table[index].duration == S(0) || position < table[index].position)) --index;
-    return table[index].time + table[index].tau_at(position);
+    const S t = time_in(table, position);
+    return t < duration() ? state_in(table, t).velocity : end_velocity();
   }
 
   /// Largest speed, and largest magnitudes of acceleration and jerk, of all phases.
@@ -151,10 +154,18 @@ class BasicProfile {
     return {next.time - duration, duration, next.position - distance, velocity, acceleration, jerk};
   }
 
-  static constexpr std::size_t phase_index(const std::array<Phase, phase_count>& table, S t) {
+  using Table = std::array<Phase, phase_count>;
+
+  static constexpr State state_in(const Table& table, S t) {
     std::size_t index = phase_count - 1;
     while (index > 0 && (t < table[index].time || table[index].duration == S(0))) --index;
-    return index;
+    return table[index].at(std::max(t - table[index].time, S(0)));
+  }
+
+  static S time_in(const Table& table, S position) {
+    std::size_t index = phase_count - 1;
+    while (index > 0 && (table[index].duration == S(0) || position < table[index].position)) --index;
+    return table[index].time + table[index].tau_at(position);
   }
 
   Parts parts_{};

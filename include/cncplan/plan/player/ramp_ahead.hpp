@@ -53,24 +53,26 @@ template <std::floating_point S>
     BasicLimits<S> touched = limits;
     BasicPlace<S> at = from;
     S position = S(0);
-    S speed = now.velocity;
     for (S until = path.ring.length(at.block) - at.along;; until += path.ring.length(at.block)) {
       const BasicLimits<S>& there = path.limits(at.block);
       touched.acceleration = std::min(touched.acceleration, there.acceleration);
       touched.jerk = std::min(touched.jerk, there.jerk);
       // at speed it must not end at a junction, which would go unseen
       const bool last = !(until < (target > S(0) ? whole + path_rounding<S> : whole));
-      const S next_speed = last ? target : ramp.at(ramp.time_at(until)).velocity;
-      const bool crest_here = crest.position >= position && crest.position <= until;
-      const S highest = crest_here ? crest.velocity : std::max(speed, next_speed);
-      const S allowed = std::max(there.velocity, at.block == from.block ? now.velocity : S(0));
-      if (fastest > allowed * tolerance && highest > allowed * tolerance) return {};
+      const S allowed = tolerance * std::max(there.velocity, at.block == from.block ? now.velocity : S(0));
+      if (fastest > allowed) {
+        const bool crest_here = crest.position >= position && crest.position <= until;
+        const S highest = crest_here
+                              ? crest.velocity
+                              : std::max(ramp.velocity_at(position), last ? target : ramp.velocity_at(until));
+        if (highest > allowed) return {};
+      }
       if (last) break;
       if (!path.ring.holds(at.block + path.direction) || path.stops_behind(at.block)) return {};
       at.block += path.direction;
-      if (next_speed > path.junction_cap(at.block) * tolerance) return {};
+      const S cap = path.junction_cap(at.block) * tolerance;
+      if (fastest > cap && ramp.velocity_at(until) > cap) return {};
       position = until;
-      speed = next_speed;
     }
     if (touched == limits) return ramp;
     limits = touched;
