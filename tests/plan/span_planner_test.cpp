@@ -54,6 +54,19 @@ class Walk {
 
 }  // namespace
 
+TEST_CASE("a length has room for a ramp where it is above the room that one takes") {
+  test::Random random;
+  for (int i = 0; i < 10000; ++i) {
+    const Limits limits{random.log_uniform(1e-3, 1e4), random.log_uniform(1, 1e6),
+                        random.log_uniform(1, 1e9)};
+    const double room = plan::room_for_ramp(limits);
+    REQUIRE(plan::has_room_for_ramp(limits, room * (1 + 1e-12)));
+    REQUIRE(!plan::has_room_for_ramp(limits, room * (1 - 1e-12)));
+  }
+  CHECK(plan::has_room_for_ramp(Limits{30, infinity, infinity}, 1e-9));
+  CHECK(!plan::has_room_for_ramp(Limits{30, infinity, infinity}, 0.0));
+}
+
 TEST_CASE("random programs break no cap, no feed and no limit, and join without a jump") {
   test::Random random;
   test::PlanErrors worst;

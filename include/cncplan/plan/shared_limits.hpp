@@ -22,18 +22,25 @@ template <std::floating_point S>
   return v * std::max(std::sqrt(v / j), v / a);
 }
 
+/// Whether a length is above `room_for_ramp`: no root and no quotient, as it is asked of every block.
+template <std::floating_point S>
+[[nodiscard]] bool has_room_for_ramp(const BasicLimits<S>& limits, S length) {
+  const auto& [v, a, j] = limits;
+  return length * a > v * v && length * length * j > v * v * v;
+}
+
 /// The limits of acceleration and jerk of consecutive blocks, from lowest to highest.
 template <std::floating_point S>
 class BasicSharedLimits {
  public:
   BasicSharedLimits(const BasicLimits<S>& limits, S length)
-      : low_(limits), high_(limits), long_(length > room_for_ramp(limits)) {}
+      : low_(limits), high_(limits), long_(has_room_for_ramp(limits, length)) {}
 
   /// Takes in the limits of the next block; whether they still differ by no more than the ratio.
   bool take(const BasicLimits<S>& limits, S length) {
     low_ = {S(0), std::min(low_.acceleration, limits.acceleration), std::min(low_.jerk, limits.jerk)};
     high_ = {S(0), std::max(high_.acceleration, limits.acceleration), std::max(high_.jerk, limits.jerk)};
-    long_ = long_ || length > room_for_ramp(limits);
+    long_ = long_ || has_room_for_ramp(limits, length);
     const S ratio = static_cast<S>(long_ ? shared_limits_ratio_of_long_blocks : shared_limits_ratio);
     return !(high_.acceleration > ratio * low_.acceleration || high_.jerk > ratio * low_.jerk);
   }
