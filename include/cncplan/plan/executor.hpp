@@ -322,9 +322,9 @@ class Executor {
     if (player_.oldest() == player_.end()) return feed_.release(told_);
     const std::int64_t furthest =
         std::max(static_cast<std::int64_t>(last_.block), told_ - 1) - static_cast<std::int64_t>(capacity);
-    while (player_[player_.oldest()].block < furthest && player_.forget_oldest()) {
-    }
-    feed_.release(std::min(told_, player_[player_.oldest()].block));
+    std::int64_t oldest = player_[player_.oldest()].block;
+    while (oldest < furthest && player_.forget_oldest()) oldest = player_[player_.oldest()].block;
+    feed_.release(std::min(told_, oldest));
   }
 
   // Words of blocks up to one; what the set point has no room for comes with the next one.

@@ -57,10 +57,7 @@ class BasicPathAhead {
   std::int64_t passed_pause = -1;  ///< the block before which a pause has been made already
 
   /// The limits of a block.
-  [[nodiscard]] const BasicLimits<S>& limits(std::int64_t block) const {
-    const Block& b = ring[block];
-    return above && b.above.velocity > S(0) ? b.above : b.caps.limits;
-  }
+  [[nodiscard]] const BasicLimits<S>& limits(std::int64_t block) const { return limits_of(ring[block]); }
 
   /// The same for a brake. Bends take no more of an axis' limits by that than before, so that with a share k
   /// of the limits along the path each axis keeps k times its own.
@@ -73,10 +70,7 @@ class BasicPathAhead {
   [[nodiscard]] bool asks_above() const { return asked.feed_share > S(1); }
 
   /// The speed that a block is asked to run at; 0 where it is held.
-  [[nodiscard]] S wanted_speed(std::int64_t block) const {
-    const Block& b = ring[block];
-    return std::min((b.rapid ? asked.rapid_share : asked.feed_share) * b.feed, limits(block).velocity);
-  }
+  [[nodiscard]] S wanted_speed(std::int64_t block) const { return wanted_speed_of(ring[block]); }
 
   /// Whether it has to be at rest in this block of its own accord.
   [[nodiscard]] bool must_rest(std::int64_t block) const {
@@ -113,8 +107,9 @@ class BasicPathAhead {
     from.along += distance;
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
       const S over = from.along - ring.length(from.block);
+      if (over < S(0) || over + left <= path_rounding<S>) break;
       const bool stops = stops_behind(from.block) || !(junction_cap(from.block + direction) > S(0));
-      if (over < (stops ? path_rounding<S> : S(0)) || over + left <= path_rounding<S>) break;
+      if (stops && over < path_rounding<S>) break;
       from.along = over;
       from.block += direction;
     }
@@ -149,10 +144,11 @@ class BasicPathAhead {
     for (Place at = from; ring.holds(at.block); at = {at.block + direction, S(0)}) {
       if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false, true};
       const bool first = ahead.blocks == 0;
-      BasicBlockCaps<S> caps = ring[at.block].caps;
-      caps.limits = limits(at.block);
+      const Block& block = ring[at.block];
+      BasicBlockCaps<S> caps = block.caps;
+      caps.limits = limits_of(block);
       caps.length = std::max(caps.length - at.along, S(0));
-      caps.limits.velocity = std::max(wanted_speed(at.block), first ? speed : S(0));
+      caps.limits.velocity = std::max(wanted_speed_of(block), first ? speed : S(0));
       if (!(caps.limits.velocity > S(0))) return ahead;
       caps.entry = first ? speed : junction_cap(at.block);
       out[ahead.blocks++] = caps;
@@ -195,6 +191,14 @@ class BasicPathAhead {
       zone.limits.jerk = std::min(zone.limits.jerk, limits.jerk);
     }
     return count;
+  }
+
+ private:
+  [[nodiscard]] const BasicLimits<S>& limits_of(const Block& b) const {
+    return above && b.above.velocity > S(0) ? b.above : b.caps.limits;
+  }
+  [[nodiscard]] S wanted_speed_of(const Block& b) const {
+    return std::min((b.rapid ? asked.rapid_share : asked.feed_share) * b.feed, limits_of(b).velocity);
   }
 };
 

@@ -126,7 +126,7 @@ class BasicPlayer {
       tell ? drive(path_, at_, running_, seconds, period - left, visit) : running_.advance(seconds);
     };
     look();
-    const auto begun_ms = static_cast<std::size_t>(std::clamp(std::ceil(period * S(1000)), S(1), S(1000)));
+    const std::size_t begun_ms = milliseconds_begun(period);
     plans_.begin_tick(begun_ms);
     const bool answers = !idle_ && answer(std::min(begun_ms, most_attempts));
     if (answers) plans_.make_no_more_at_once();
@@ -194,6 +194,11 @@ class BasicPlayer {
   static constexpr std::size_t most_attempts = 4;
 
   [[nodiscard]] static S share_up_to(S most, S share) { return share > S(0) ? std::min(share, most) : S(0); }
+
+  // 1 to 1000.
+  [[nodiscard]] static std::size_t milliseconds_begun(S period) {
+    return period > S(1e-3) ? static_cast<std::size_t>(std::ceil(std::min(period, S(1)) * S(1000))) : 1;
+  }
 
   template <class T>
   void ask(T& value, const T& wanted) {
@@ -345,9 +350,9 @@ class BasicPlayer {
     }
     if (next_waypoint_ == no_waypoint || !(plans_.lacks_blocks() || plans_.ends_at_stop())) return;
     const S lead = period * plans_.ticks_ahead(static_cast<std::size_t>(cells_ahead()));
+    if (running_.to_turn() > lead) return;
     if (!(running_.to_turn() > S(0) && could_better()))
       return plans_.begin_next_at_waypoint(path_, next_waypoint_, running_.left(), lead, period);
-    if (running_.to_turn() > lead) return;
     BasicRunningProfile<S> until = running_;
     until.advance(until.to_turn());
     const BasicState<S> turn = until.state();
