@@ -16,10 +16,10 @@ namespace {
 
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
-junction::Side side(const path::Segment<3>& segment, bool at_end) {
+junction::Side side(const path::Segment<3>& segment, plan::PathEnd joint) {
   const Block<3> block{.path = segment};
-  return plan::tool_side<Machine<3>>(block.path, block.rapid, plan::PathEnds(block.path), at_end,
-                                     tool_axes(mill));
+  return plan::tool_side(block.path, junction::Kind::line, plan::PathEnds(block.path), joint,
+                         tool_axes(mill));
 }
 
 // The cells of blocks whose joints a policy alone judges.
@@ -51,7 +51,7 @@ TEST_CASE("tangents and curvature vectors at both ends are those of differences 
   for (int draws = 0; draws < 3000; ++draws) {
     const auto arc = test::random_arc<double>(random, test::arc_kinds[random.integer(0, 5)]);
     for (const bool at_end : {false, true}) {
-      const auto here = side(arc, at_end);
+      const auto here = side(arc, at_end ? plan::PathEnd::end : plan::PathEnd::start);
       // of the unit tangent over arc length, one-sided, four points
       const double u0 = at_end ? arc.parameter_end() : 0.0;
       const double h = (at_end ? -1.0 : 1.0) * 1e-3 * std::min(1.0, arc.parameter_end());
@@ -78,7 +78,7 @@ TEST_CASE("tangents and curvature vectors at both ends are those of differences 
 }
 
 TEST_CASE("a line shows its direction and no curvature") {
-  const auto end = side(path::Line<3>({1, 2, 3}, {1, 2, 8}), true);
+  const auto end = side(path::Line<3>({1, 2, 3}, {1, 2, 8}), plan::PathEnd::end);
   CHECK(end.kind == junction::Kind::line);
   CHECK(end.tangent == Vector3(0, 0, 1));
   CHECK(end.chord == Vector3(0, 0, 5));
@@ -92,7 +92,7 @@ TEST_CASE("a full circle is closed, a turn of a helix too") {
     g.start_radius = g.end_radius = 5.0;
     g.angle = 2.0 * std::numbers::pi;
     g.turn = Turn::counterclockwise;
-    CHECK(side(path::Arc(g), false).closed);
+    CHECK(side(path::Arc(g), plan::PathEnd::start).closed);
   }
 }
 

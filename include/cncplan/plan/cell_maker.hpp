@@ -221,13 +221,14 @@ class CellMaker {
       wanted_ = plan::wanted_speed(block, machine_, counted);
       entry_ = Scalar(0);
       joint_.after = ends.start.first;
-      joint_.tool.after = tool_side<M>(path, block.rapid, ends, false, tool_);
+      const auto kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
+      joint_.tool.after = tool_side(path, kind, ends, PathEnd::start, tool_);
       const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
       if (before_ && counted == before_->counted && passing != Passing::stop)
         entry_ = before_->goes_on || passing == Passing::smooth ? infinity : joint_speed(speed);
       joint_.before = ends.end.first;
       constexpr bool straight = std::same_as<P, typename B::Path::Line>;
-      joint_.tool.before = straight ? joint_.tool.after : tool_side<M>(path, block.rapid, ends, true, tool_);
+      joint_.tool.before = straight ? joint_.tool.after : tool_side(path, kind, ends, PathEnd::end, tool_);
       before_ = Before{speed, counted, block.exact_path, block.goes_on};
       block_ = &block;
       driven_ = driven;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "cncplan/junction/geometry.hpp"
@@ -81,18 +82,23 @@ template <class Vector>
   return v / std::sqrt(norm_sq);
 }
 
-/// One side of a joint, as junction policies see it: a path, with what its axes are at its ends.
-template <MachineModel M, Path P>
-[[nodiscard]] junction::BasicSide<typename M::Scalar> tool_side(const P& path, bool rapid,
+/// Where a path meets a joint.
+enum class PathEnd : std::uint8_t { start, end };
+
+/// One side of a joint, as junction policies see it: a path of a kind (an arc is told by the path itself),
+/// with what its axes are at its ends.
+template <Path P>
+[[nodiscard]] junction::BasicSide<typename P::Scalar> tool_side(const P& path, junction::Kind kind,
                                                                 const PathEnds<typename P::Vector>& ends,
-                                                                bool at_end, const std::array<int, 3>& tool) {
-  using S = typename M::Scalar;
+                                                                PathEnd joint,
+                                                                const std::array<int, 3>& tool) {
+  using S = typename P::Scalar;
   using Vector3 = BasicVector3<S>;
   if constexpr (requires { path.visit([](const auto&) {}); }) {
-    return path.visit([&](const auto& inside) { return tool_side<M>(inside, rapid, ends, at_end, tool); });
+    return path.visit([&](const auto& inside) { return tool_side(inside, kind, ends, joint, tool); });
   } else {
     junction::BasicSide<S> side;
-    side.kind = rapid ? junction::Kind::rapid : junction::Kind::line;
+    side.kind = kind;
     const auto set = [&](const Vector3& first, const Vector3& second, const Vector3& chord) {
       side.tangent = unit(first);
       side.curvature = second;
@@ -101,10 +107,10 @@ template <MachineModel M, Path P>
     if constexpr (tells_tool<P>) {
       const auto start = tool_point(path, S(0), tool);
       const auto end = tool_point(path, path.length(), tool);
-      const auto& at = at_end ? end : start;
+      const auto& at = joint == PathEnd::end ? end : start;
       set(at.first, at.second, end.position - start.position);
     } else {
-      const auto& at = at_end ? ends.end : ends.start;
+      const auto& at = joint == PathEnd::end ? ends.end : ends.start;
       set(in_space(at.first, tool), in_space(at.second, tool),
           in_space(ends.end.position, tool) - in_space(ends.start.position, tool));
     }
