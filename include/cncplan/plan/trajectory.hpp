@@ -109,10 +109,7 @@ class Trajectory {
 
   /// The set point at any time: before the start, the start; after the end, the end.
   [[nodiscard]] SetPoint at(Scalar time) const {
-    if (phases_.empty()) return at_rest(time);
-    const auto later = [](Scalar t, const Phase& phase) { return t < phase.phase.time; };
-    const auto behind = std::upper_bound(phases_.begin() + 1, phases_.end(), time, later);
-    return in_phase(static_cast<std::size_t>(behind - phases_.begin()) - 1, time);
+    return phases_.empty() ? at_rest(time) : in_phase(phase_at(time), time);
   }
 
   /// The set points at k period while that is before the end, and one at the end. A range.
