@@ -191,14 +191,11 @@ class Executor {
   // Time.
 
   /// Moves on by `period` seconds, > 0.
-  SetPoint tick(Scalar period) {
-    return tick(
-        period, [](const Part&) {}, false);
-  }
+  SetPoint tick(Scalar period) { return tick(period, plan::Untold{}); }
 
   /// The same, and tells what the axes do over the tick, part by part; rests are none.
   template <std::invocable<const Part&> Visit>
-  SetPoint tick(Scalar period, Visit&& visit, bool tell = true) {
+  SetPoint tick(Scalar period, Visit&& visit) {
     if (player_.finished() && player_.rested() >= longest_wait_) feed_.let_go();
     if (!background_) plan(cells_in_tick);
     const std::int64_t ready = feed_.ready();
@@ -209,13 +206,7 @@ class Executor {
       if (returns_ && !find_path()) tell_words(ready - 1);  // of blocks that do not move
       return tick_of_jog(period, visit);
     }
-    const plan::BasicPlayed<Scalar> now = player_.tick(
-        period,
-        [&](const plan::BasicPlayedPart<Scalar>& part) {
-          const Cell& cell = player_[part.block];
-          visit(Part(feed_.path(cell.block), part.phase, cell.from + part.along, part.direction));
-        },
-        tell);
+    const plan::BasicPlayed<Scalar> now = play(period, visit);
     std::int64_t reached = -1;
     if (now.block >= 0) {
       const Cell& cell = player_[now.block];
@@ -273,6 +264,17 @@ class Executor {
     const auto path = feed_.path(cell.block);
     path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
     return true;
+  }
+
+  template <class Visit>
+  plan::BasicPlayed<Scalar> play(Scalar period, Visit& visit) {
+    if constexpr (plan::wants_parts<Visit>)
+      return player_.tick(period, [&](const plan::BasicPlayedPart<Scalar>& part) {
+        const Cell& cell = player_[part.block];
+        visit(Part(feed_.path(cell.block), part.phase, cell.from + part.along, part.direction));
+      });
+    else
+      return player_.tick(period);
   }
 
   template <class Visit>

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "cncplan/core/phase.hpp"
 #include "cncplan/plan/caps.hpp"
@@ -48,5 +49,15 @@ struct BasicPlayedPart {
   S along{};             ///< mm from the block's start to where the part begins
   int direction = 1;     ///< -1 towards the block's start
 };
+
+/// Takes the parts of a tick and tells nobody: they need not be made for it.
+struct Untold {
+  template <class Part>
+  void operator()(const Part&) const {}
+};
+
+/// Whether a visitor of parts wants them.
+template <class Visit>
+inline constexpr bool wants_parts = !std::same_as<std::remove_cvref_t<Visit>, Untold>;
 
 }  // namespace cncplan::plan

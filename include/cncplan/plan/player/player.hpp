@@ -114,16 +114,16 @@ class BasicPlayer {
   /// Moves on by `period` seconds. What it plans on the way is bounded, for each millisecond begun: a few
   /// waypoints of the next plan, four plans to their end where that is too little, and an answer to requests,
   /// over the blocks that coming to rest takes, no more than `most_short_blocks`.
-  BasicPlayed<S> tick(S period) {
-    return tick(
-        period, [](const BasicPlayedPart<S>&) {}, false);
-  }
+  BasicPlayed<S> tick(S period) { return tick(period, Untold{}); }
 
   /// The same, and tells the parts that the tick is made of, in order; rests are none.
   template <std::invocable<const BasicPlayedPart<S>&> Visit>
-  BasicPlayed<S> tick(S period, Visit&& visit, bool tell = true) {
+  BasicPlayed<S> tick(S period, Visit&& visit) {
     const auto advance = [&](S seconds, S left) {
-      tell ? drive(path_, at_, running_, seconds, period - left, visit) : running_.advance(seconds);
+      if constexpr (wants_parts<Visit>)
+        drive(path_, at_, running_, seconds, period - left, visit);
+      else
+        running_.advance(seconds);
     };
     look();
     const std::size_t begun_ms = milliseconds_begun(period);
