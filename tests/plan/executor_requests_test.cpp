@@ -13,6 +13,7 @@
 #include "cncplan/plan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
+#include "support/executor_machines.hpp"
 #include "support/no_heap.hpp"
 #include "support/shared.hpp"
 
@@ -239,6 +240,22 @@ TEST_CASE("hold, jog away, return, resume", "[executor]") {
     before = point;
   }
   CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("a program is over only behind the last cell of its last block", "[executor]") {
+  using Waves = Executor<Machine<3>, 4, test::WaveBlock>;
+  const auto executor =
+      std::make_unique<Waves>(test::slow_axes<double>, Waves::Options{.tolerance = 0, .background = true});
+  const auto wave = path::measured(test::Wave{Vector3::Zero(), {6, 3, 0}, 1});
+  REQUIRE(wave);
+  REQUIRE(executor->push({.path = *wave, .feed = 30}));
+  executor->end_of_program();
+  for (int tick = 0; tick < 100'000 && !executor->finished(); ++tick) {
+    if (tick % 300 == 299) executor->plan(4);  // the thread that plans is late
+    executor->tick(period);
+  }
+  CHECK(executor->finished());
+  CHECK(executor->tick(period).along.position == Approx(wave->length()));
 }
 
 TEST_CASE("axes are jogged before a program, which waits until they are at its start", "[executor]") {

@@ -115,7 +115,7 @@ class Executor {
     if (!player_.finished() || (away_ && player_.oldest() != player_.end())) return false;
     if (feed_.failed()) return true;
     const std::int64_t end = end_.load(std::memory_order_acquire);
-    return end != not_ended && told_ >= end;
+    return end != not_ended && told_ >= end && feed_.ready() >= end;
   }
   /// Why the program ended before its end, with line and column; nothing where all is well.
   [[nodiscard]] std::optional<ProgramError> error() const {
