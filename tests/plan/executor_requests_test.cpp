@@ -242,6 +242,48 @@ TEST_CASE("hold, jog away, return, resume", "[executor]") {
   CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
 }
 
+TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "[executor]") {
+  Runner executor(mill, {.quick_stop_share = 3});
+  load(executor, {"G1 X20 F1200", "Y20"});
+  run(executor, 0.5);
+  executor.feed_hold();
+  run(executor, 0.5);
+  REQUIRE(executor.jog({0, 0, 10}));
+  auto before = run(executor, 1.0);
+  SECTION("resume takes the axes back while they move") {
+    executor.resume();
+    CHECK((run(executor).position - Vector3(20, 20, 0)).norm() < 1e-12);
+    CHECK(executor.finished());
+  }
+  SECTION("a hold on the way back rests there, and resume goes on") {
+    executor.resume();
+    run(executor, 0.3);
+    executor.feed_hold();
+    const auto held = run(executor, 0.5);
+    CHECK(held.velocity.isZero());
+    CHECK(held.position[2] > 0.1);
+    CHECK(run(executor, 0.5).position == held.position);
+    executor.resume();
+    CHECK((run(executor).position - Vector3(20, 20, 0)).norm() < 1e-12);
+  }
+  SECTION("hold, stop and quick stop") {
+    const int how = GENERATE(0, 1, 2);
+    const double share = how == 2 ? 3 : 1;
+    how == 0 ? executor.feed_hold() : how == 1 ? executor.stop() : executor.quick_stop();
+    int ticks = 0;
+    for (; ticks < 1000 && !before.velocity.isZero(); ++ticks) {
+      CHECK_FALSE(executor.finished());
+      executor.feed_hold();  // asked again and again: no less for it
+      const auto point = executor.tick(period);
+      CHECK(std::abs(point.acceleration[2] - before.acceleration[2]) <= share * 5000 * period * (1 + 1e-9));
+      before = point;
+    }
+    // from v under J, with an acceleration that peaks at sqrt(v J)
+    CHECK(ticks * period == Approx(2 * std::sqrt(10 / (share * 5000))).margin(1.01 * period));
+    CHECK(executor.finished() == (how == 1));
+  }
+}
+
 TEST_CASE("a program is over only behind the last cell of its last block", "[executor]") {
   using Waves = Executor<Machine<3>, 4, test::WaveBlock>;
   const auto executor =

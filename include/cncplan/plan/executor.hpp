@@ -111,7 +111,7 @@ class Executor {
   /// Whether the program is over: all blocks have been run and nothing will follow, or it was stopped, or
   /// came to rest before a block that cannot be planned.
   [[nodiscard]] bool finished() const {
-    if (player_.stopped()) return true;
+    if (player_.stopped()) return !jog_.moves();
     if (!player_.finished() || (away_ && player_.oldest() != player_.end())) return false;
     if (feed_.failed()) return true;
     const std::int64_t end = end_.load(std::memory_order_acquire);
@@ -125,8 +125,12 @@ class Executor {
 
   // Requests. They act at the next tick.
 
-  /// Comes to rest as soon as the limits allow; `resume` goes on from there, and behind every other rest.
-  void feed_hold() { player_.hold(); }
+  /// Comes to rest as soon as the limits allow, a jog too; `resume` goes on from there, and behind every
+  /// other rest.
+  void feed_hold() {
+    player_.hold();
+    end_jog(Scalar(1));
+  }
   void resume() {
     player_.resume();
     if (away_) returns_ = true;
@@ -136,9 +140,15 @@ class Executor {
   /// Share of the rapid rate, 0 to 1.
   void rapid_override(Scalar share) { player_.rapid_override(share); }
   /// Comes to rest as `feed_hold` does, and the program ends there.
-  void stop() { player_.stop(); }
+  void stop() {
+    player_.stop();
+    end_jog(Scalar(1));
+  }
   /// Comes to rest as `feed_hold` does, with `quick_stop_share` times the limits of acceleration and jerk.
-  void quick_stop() { player_.quick_stop(quick_stop_share_); }
+  void quick_stop() {
+    player_.quick_stop(quick_stop_share_);
+    end_jog(quick_stop_share_);
+  }
   /// Runs back along the path, as far as blocks are kept, or forwards again. It comes to rest in between.
   void reverse(bool wanted) { player_.backwards(wanted); }
   /// Rests behind every block until it is resumed.
@@ -168,7 +178,9 @@ class Executor {
   /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
   Expected<void> return_to_path() {
     if (!away_ || !find_path()) return {};
-    return jogged(jog_.to_positions(last_.position, path_place_, machine_), returns_);
+    const auto done = jogged(jog_.to_positions(last_.position, path_place_, machine_), returns_);
+    goes_back_ = done.has_value();
+    return done;
   }
 
   /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
@@ -252,8 +264,12 @@ class Executor {
   }
   Expected<void> jogged(const Expected<void>& done, bool returns) {
     away_ = away_ || done.has_value();
-    if (done) returns_ = returns;
+    if (done) returns_ = returns, goes_back_ = false;
     return done;
+  }
+  void end_jog(Scalar share) {
+    jog_.to_rest(machine_, share);
+    goes_back_ = false;
   }
 
   // Where the program goes on; false while it has no blocks.
@@ -279,7 +295,8 @@ class Executor {
 
   template <class Visit>
   SetPoint tick_of_jog(Scalar period, Visit& visit) {
-    if (returns_ && !player_.held() && !jog_.moves() && !return_to_path()) returns_ = false;
+    const bool begins = returns_ && !player_.held() && !(jog_.moves() && goes_back_);
+    if (begins && !return_to_path()) returns_ = false;
     if (jog_.moves()) {
       const bool rests = jog_.advance(period);
       const AxisMotion<Vector> axes = jog_.at(Scalar(0));
@@ -353,6 +370,7 @@ class Executor {
   Vector path_place_ = Vector::Zero();  // where the program goes on
   bool away_ = false;                   // the axes are not on the path
   bool returns_ = false;                // and are to go back to it
+  bool goes_back_ = false;              // the jog leads there
   SetPoint last_{};
   std::int64_t told_ = 0;  // blocks whose words have been told
   std::atomic<std::int64_t> end_{not_ended};

@@ -25,6 +25,18 @@ class Jog {
   Expected<void> to_positions(const Vector& place, const Vector& positions, const M& machine) {
     return follow(move_to(now(place), row(positions), machine));
   }
+  /// Begins to come to rest with so many times the limits of acceleration and jerk, where it does not brake
+  /// as hard already.
+  void to_rest(const M& machine, Scalar share) {
+    if (!moves_ || share <= brakes_) return;
+    Axes stronger{machine.axes};
+    for (auto& axis : stronger.axes) {
+      axis.acceleration *= share;
+      axis.acceleration_down *= share;
+      axis.jerk *= share;
+    }
+    if (follow(reach_velocity(move_.state(), typename States::Row{}, stronger))) brakes_ = share;
+  }
 
   [[nodiscard]] bool moves() const { return moves_; }
 
@@ -59,6 +71,12 @@ class Jog {
  private:
   using Moved = BasicAxesMove<Scalar, M::axis_count>;
 
+  struct Axes {
+    using Scalar = typename M::Scalar;
+    static constexpr int axis_count = M::axis_count;
+    decltype(M::axes) axes;
+  };
+
   static typename States::Row row(const Vector& vector) {
     typename States::Row result;
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = vector[static_cast<Eigen::Index>(i)];
@@ -74,11 +92,13 @@ class Jog {
     if (!move) return tl::unexpected(move.error());
     move_ = *move;
     moves_ = true;
+    brakes_ = Scalar(0);
     return {};
   }
 
   Moved move_{};
   bool moves_ = false;
+  Scalar brakes_{};  // share of the limits with which it comes to rest; 0: it does not
 };
 
 }  // namespace cncplan::plan
