@@ -32,10 +32,10 @@ struct BasicExecutorOptions {
   S junction_deviation = S(0.01);
   bool exact_between_rapids_and_feeds{};  ///< keeps the joints of rapids with feed moves exact
   S longest_wait = S(0.05);   ///< s at rest for which blocks are held back for the ones that follow them
-  S quick_stop_share = S(1);  ///< >= 1: how many times its limits of acceleration and jerk the tool and each
-                              ///< axis may use in a quick stop; what drives and mechanics bear beyond the
-                              ///< limits that machining has
-  bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+  S quick_stop_share = S(1);  ///< 1 to 1000: how many times its limits of acceleration and jerk the tool and
+                              ///< each axis may use in a quick stop; what drives and mechanics bear beyond
+                              ///< the limits that machining has
+  bool background = false;  ///< another thread, or the main loop, calls `plan`; else `tick` does its work
 };
 
 using ExecutorOptions = BasicExecutorOptions<double>;
@@ -75,7 +75,7 @@ class Executor {
   explicit Executor(const M& machine, const Options& options = {})
       : machine_(machine),
         tool_(tool_axes(machine)),
-        quick_stop_share_(options.quick_stop_share),
+        quick_stop_share_(plan::brake_share(options.quick_stop_share)),
         background_(options.background),
         longest_wait_(options.longest_wait),
         feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},

@@ -19,6 +19,13 @@ namespace cncplan::plan {
 template <std::floating_point S>
 inline constexpr S path_rounding = std::max(S(1e-9), S(512) * std::numeric_limits<S>::epsilon());
 
+/// How many times the limits of acceleration and jerk a brake may use: no less than once, also where that is
+/// no number, and no more than a thousand times.
+template <std::floating_point S>
+[[nodiscard]] S brake_share(S wanted) {
+  return wanted > S(1) ? std::min(wanted, S(1000)) : S(1);
+}
+
 /// What is asked of a machine that runs, and stands until something else is asked.
 template <std::floating_point S>
 struct BasicRequests {

@@ -68,12 +68,12 @@ class BasicPlayer {
     ask(path_.asked.stopped, true);
   }
 
-  /// Comes to rest as by a hold, with so many times the limits of acceleration and jerk, at least once; then
+  /// Comes to rest as by a hold, with so many times the limits of acceleration and jerk (`brake_share`); then
   /// it is held.
   void quick_stop(S share) {
     hold();
     if (idle_) return;
-    path_.brake_share = share > S(1) ? share : S(1);
+    path_.brake_share = brake_share(share);
     pending_ = true;
   }
 
