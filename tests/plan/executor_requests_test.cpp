@@ -95,6 +95,12 @@ TEST_CASE("a gap in the path, no feed and a bad machine are errors", "[executor]
   };
   CHECK(code(mill, {.path = path::Line<3>({2, 0, 0}, {3, 0, 0})}) == ErrorCode::discontinuous);
   CHECK(code(mill, {.path = path::Line<3>({1, 0, 0}, {3, 0, 0}), .feed = 0.0}) == ErrorCode::not_positive);
+  const auto line = [](double to) { return path::Line<3>({1, 0, 0}, {to, 0, 0}); };
+  CHECK(code(mill, {.path = line(NAN)}) == ErrorCode::not_finite);
+  CHECK(code(mill, {.path = line(3), .feed = NAN}) == ErrorCode::not_finite);
+  CHECK(code(mill, {.path = line(3), .pause = INFINITY}) == ErrorCode::not_finite);
+  CHECK(code(mill, {.path = line(1), .pause = NAN}) == ErrorCode::not_finite);
+  CHECK(code(mill, {.path = line(3), .pause = -1}) == ErrorCode::negative);
   auto bad = mill;
   bad.axes[1].jerk = -1;
   CHECK(code(bad, {.path = path::Line<3>({1, 0, 0}, {3, 0, 0})}) == ErrorCode::not_positive);
@@ -169,6 +175,37 @@ TEST_CASE("a quick stop is harder than a hold, and goes on when resumed", "[exec
   const double held = way([](Runner& e) { e.feed_hold(); });
   CHECK(held == Approx(30 * std::sqrt(30.0 / 10000)).epsilon(0.02));  // v sqrt(v / j)
   CHECK(way([](Runner& e) { e.quick_stop(); }) < held / 3);
+}
+
+TEST_CASE("the share of a quick stop is one to a thousand, whatever is asked", "[executor]") {
+  const double share = GENERATE(-1.0, 0.0, 0.5, NAN, 1e300, INFINITY);
+  Runner executor(mill, {.quick_stop_share = share});
+  load(executor, {"G1 X20 F1200"});
+  run(executor, 0.5);
+  executor.quick_stop();
+  const auto held = run(executor, 0.5);
+  CHECK(held.velocity.isZero());
+  CHECK((held.position[0] > 8 && held.position[0] < 12));
+  REQUIRE(executor.jog({0, 5, 0}));
+  run(executor, 0.5);
+  executor.quick_stop();
+  CHECK(run(executor, 0.5).velocity.isZero());
+  executor.resume();
+  CHECK((run(executor).position - Vector3(20, 0, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("the tool keeps the feed limit on smoothed paths too", "[executor]") {
+  auto slow = mill;
+  slow.feed_limit = 5;
+  Runner executor(slow, {.tolerance = 0.05});
+  for (const auto& block :
+       test::blocks_of({"G17 F3000", "G3 X1 Y1 R0.8", "G3 X0 Y2 R0.8", "G1 Y2.3 X-0.3"}, slow))
+    REQUIRE(executor.push(block));
+  executor.end_of_program();
+  double fastest = 0;
+  while (!executor.finished()) fastest = std::max(fastest, executor.tick(period).velocity.norm());
+  CHECK(fastest <= 5 * (1 + 1e-9));
+  CHECK(fastest > 4.9);
 }
 
 TEST_CASE("a program that was stopped begins anew at a line, from a place on it", "[executor]") {

@@ -135,8 +135,10 @@ class CellMaker {
   }
 
   /// Begins with the next block, which is to stay until all its cells are made; one of no length has none.
-  /// Errors: below_limit and above_limit where an axis would leave its travel; unreachable where the machine
-  /// has no position for a place; discontinuous where the block begins elsewhere than the one before it ends.
+  /// Errors: not_finite for a length, pause or feed that is no finite number (the feed may be infinite),
+  /// negative for a pause, not_positive for a feed; below_limit and above_limit where an axis would leave its
+  /// travel; unreachable where the machine has no position for a place; discontinuous where the block begins
+  /// elsewhere than the one before it ends.
   [[nodiscard]] Expected<void> begin(const B& block) {
     return begin(block, Driven(block.path, {}, Scalar(0)), Passing::policy);
   }
@@ -206,19 +208,25 @@ class CellMaker {
   template <Path P>
   [[nodiscard]] Expected<void> begin_on(const P& path, const B& block, const Driven& driven,
                                         Passing passing) {
+    const Scalar length = path.length();
+    if (!std::isfinite(length)) return refusal(ErrorCode::not_finite, "length", length);
+    if (!std::isfinite(block.pause)) return refusal(ErrorCode::not_finite, "pause", block.pause);
+    if (block.pause < Scalar(0)) return refusal(ErrorCode::negative, "pause", block.pause);
     const PathEnds ends(path);
     if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
     if (auto ok = within_travel(path, machine_); !ok) return ok;
     if constexpr (EnclosedPath<typename B::Path>)
       if (!driven.exact() && has_ends(machine_))
         if (auto ok = within_travel(driven, machine_); !ok) return ok;
-    const Scalar length = path.length();
     end_ = length > Scalar(0) ? ends.end.position : ends.start.position;
     paused_ = std::exchange(pause_, Scalar(0));
     if (length > Scalar(0)) {
       const LengthOf counted = length_of(path, machine_);
       counted_ = counted;
       wanted_ = plan::wanted_speed(block, machine_, counted);
+      if (!(wanted_ > Scalar(0)))
+        return refusal(std::isnan(wanted_) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed",
+                       wanted_);
       entry_ = Scalar(0);
       joint_.after = ends.start.first;
       const auto kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
@@ -290,7 +298,7 @@ class CellMaker {
     constexpr Scalar apart = Scalar(0.5);  // shorter pieces would gain little
     const Scalar to = std::min(driven_.next_change(from, apart), turnings_.next());
     cut_.begin(*block_, driven_, machine_, from, to, wanted_,
-               block_->rapid ? rapid_speed(machine_) : machine_.limits.velocity);
+               block_->rapid ? rapid_speed(machine_) : feed_speed(machine_));
   }
 
   M machine_;
