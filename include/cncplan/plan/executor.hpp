@@ -35,7 +35,7 @@ struct BasicExecutorOptions {
   S quick_stop_share = S(1);  ///< 1 to 1000: how many times its limits of acceleration and jerk the tool and
                               ///< each axis may use in a quick stop; what drives and mechanics bear beyond
                               ///< the limits that machining has
-  bool background = false;  ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+  bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
 };
 
 using ExecutorOptions = BasicExecutorOptions<double>;
