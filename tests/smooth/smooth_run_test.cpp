@@ -107,6 +107,16 @@ Found differences(const Run& run, const Program& program) {
   return found;
 }
 
+// The highest share of its block's feed that any phase reaches.
+double feed_share(const Run& run, const Program& program) {
+  double most = 0;
+  for (const auto& [phase, piece] : run.phases)
+    for (int i = 0; i <= 8; ++i)
+      most =
+          std::max(most, phase.at(phase.duration * i / 8).velocity / program.feeds[run.pieces[piece].block]);
+  return most;
+}
+
 void check(const Run& run, const Program& program) {
   CHECK(run.use.slow_down() <= 1);
   CHECK(run.deviation <= 1);
@@ -116,6 +126,7 @@ void check(const Run& run, const Program& program) {
   CHECK(found.jerk <= 1 + 1e-4);
   CHECK(found.off <= program.tolerance * (1 + 1e-9));
   CHECK(found.missed <= program.tolerance * (1 + 1e-6));
+  CHECK(feed_share(run, program) <= 1 + 1e-9);
   // From the first point to the last, piece after piece.
   REQUIRE(!run.pieces.empty());
   CHECK((run.pieces.front().path.position_at(0) - program.paths.front().position_at(0)).norm() < 1e-9);
@@ -245,6 +256,22 @@ TEST_CASE("a slow line between rapids costs its ramps and no more") {
   const double least = 1 / slow + 40.0 / 30 + 2 * loss(0) + 2 * loss(slow);
   CHECK(run.duration > least * (1 - 1e-6));
   CHECK(run.duration < least + 0.015);
+}
+
+TEST_CASE("no block is entered or left above its feed") {
+  test::Random random;
+  for (const double slow : {0.01, 0.1, 1.0, 5.0, 29.0}) {
+    Program program;
+    program.limits.tool = {30, 1000, 1e4};
+    double x = 0;
+    for (int i = 0; i < 5; ++i) {
+      const double next = x + random.uniform(3, 10);
+      program.line(Vector3(x, 0, 0), Vector3(next, 0, 0), i % 2 == 0 ? 30 : slow);
+      x = next;
+    }
+    INFO("seed " << test::seed() << " slow feed " << slow);
+    check(smooth_run<Segment>(program.blocks(), program.limits), program);
+  }
 }
 
 }  // namespace

@@ -74,6 +74,14 @@ class Band {
     return static_cast<std::size_t>(next - starts_.begin()) - 1;
   }
   [[nodiscard]] S block_start(std::size_t block) const { return starts_[block]; }
+  /// What holds throughout a cell: the lowest feed of the blocks that it lies in.
+  [[nodiscard]] S feed(std::size_t cell) const {
+    const S end = knots_[cell + 1];
+    std::size_t block = block_at(knots_[cell]);
+    S least = blocks_[block].feed;
+    while (++block < blocks_.size() && starts_[block] < end) least = std::min(least, blocks_[block].feed);
+    return least;
+  }
 
   [[nodiscard]] BasicCubic<S, axis_count> cubic(std::size_t cell) const {
     return {cubic_start(cells_[cell].weights, std::span<const Vector>(points_).subspan(cell, 4)),
@@ -86,7 +94,7 @@ class Band {
     const std::size_t cells = cell_count();
     std::vector<char> slow(points_.size(), 0);
     for (std::size_t cell = 0; cell < cells; ++cell) {
-      const S feed = blocks_[block_at(knots_[cell] + lengths_[cell] / S(2))].feed;
+      const S feed = this->feed(cell);
       const S v = std::sqrt(speeds_sq[cell]);
       cells_[cell].price = v * v * v * feed * feed * feed * lengths_[cell];
       if (v < S(0.998) * feed)
@@ -125,7 +133,7 @@ class Band {
     std::vector<S> feeds(cells), speeds(points_.size(), S(0));
     std::vector<char> moves(points_.size(), 0);
     for (std::size_t cell = 0; cell < cells; ++cell) {
-      feeds[cell] = blocks_[block_at(knots_[cell] + lengths_[cell] / S(2))].feed;
+      feeds[cell] = feed(cell);
       speeds[cell + 1] = speeds_sq[cell];
       if (speeds_sq[cell] < S(0.9995) * feeds[cell] * feeds[cell])
         for (std::size_t k = cell >= reach_ ? cell - reach_ : 0;

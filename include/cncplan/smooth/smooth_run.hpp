@@ -72,16 +72,16 @@ class SpeedPlanner {
 
   /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it.
   template <Path P>
-  void take(const Band<P>& band, std::span<const S> feeds) {
+  void take(const Band<P>& band) {
     cells_.clear();
     origins_.clear();
     const std::size_t count = band.cell_count();
-    const S start = rest_length(band, feeds, false), end = rest_length(band, feeds, true);
+    const S start = rest_length(band, false), end = rest_length(band, true);
     S at = start;  // the next cut
     for (std::size_t cell = 0; cell < count; ++cell) {
       const BasicCubic<S, N> curve = band.cubic(cell);
       const S from = band.cell_start(cell), h = curve.length();
-      const S feed = feeds[band.block_at(from + h / S(2))];
+      const S feed = band.feed(cell);
       S x = S(0);
       const auto cut = [&](S to) {
         add(curve.part(x, to), feed, {cell, x});
@@ -160,9 +160,9 @@ class SpeedPlanner {
 
   // So short that what motion from rest has come to at its end is well below what the cells near by allow.
   template <Path P>
-  [[nodiscard]] S rest_length(const Band<P>& band, std::span<const S> feeds, bool at_end) const {
+  [[nodiscard]] S rest_length(const Band<P>& band, bool at_end) const {
     const std::size_t count = band.cell_count();
-    const S feed = at_end ? feeds.back() : feeds.front();
+    const S feed = band.feed(at_end ? count - 1 : 0);
     const BasicSpeedCell<S, N> first = speed_cell(band.cubic(at_end ? count - 1 : 0), feed);
     const S jerk = tangential_limits(std::span(&first, 1), limits_).jerk;
     S speed = S(0.02) * feed, length = S(0);
@@ -202,25 +202,23 @@ template <Path P>
   using S = typename P::Scalar;
   constexpr int N = P::Vector::RowsAtCompileTime;
   BasicSmoothRun<S, N> run;
-  std::vector<S> feeds;
-  for (const auto& block : blocks) feeds.push_back(block.feed);
   typename Band<P>::Options geometry;
   geometry.along = limits.tool;
   geometry.window = options.band_window;
   Band<P> band(blocks, geometry);
   detail::SpeedPlanner<S, N> planner(limits, options.speed_window);
   for (int pass = 0; pass < options.passes; ++pass) {
-    planner.take(band, std::span<const S>(feeds));
+    planner.take(band);
     static_cast<void>(planner.plan(options.coarse_gap, false));
     band.smoothen(planner.speeds_sq(band.cell_count()));
   }
   for (int round = 0; round < options.joint_rounds; ++round) {
-    planner.take(band, std::span<const S>(feeds));
+    planner.take(band);
     static_cast<void>(planner.plan(options.coarse_gap, false));
     band.improve(planner.uncut_speeds_sq(band.cell_count()), limits, options.joint);
   }
   run.deviation = band.settle();
-  planner.take(band, std::span<const S>(feeds));
+  planner.take(band);
   run.speed = planner.plan(options.gap, true);
   const S slow = run.speed.slow_down;
   run.use = {run.speed.use.velocity / slow, run.speed.use.acceleration / (slow * slow),
