@@ -121,9 +121,9 @@ class Row {
 }  // namespace
 
 std::vector<Event> read_events(const std::string& file) {
+  const Failure unreadable(Exit::bad_input, fmt::format("{}: cannot be read", file));
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+  if (!stream || std::filesystem::is_directory(file)) throw unreadable;
   std::vector<Event> events;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
@@ -132,6 +132,7 @@ std::vector<Event> read_events(const std::string& file) {
     if (line.empty() || (number == 1 && line == header)) continue;
     events.push_back(Row(file, number, line).event(events.empty() ? 0.0 : events.back().time));
   }
+  if (stream.bad()) throw unreadable;
   return events;
 }
 

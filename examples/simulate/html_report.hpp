@@ -102,7 +102,7 @@ template <class M, class Trajectory>
                                          const Program<M>& program, const Measures& measures,
                                          const Trajectory& trajectory) {
   report::Report result{.file = program.file,
-                        .text = report::read_text(program.file),
+                        .text = program.kept ? *program.kept : report::read_text(program.file),
                         .summary = summary_rows(program, options, measures),
                         .warnings = program.warnings,
                         .limits = options.limits,

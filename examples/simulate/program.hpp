@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Origin {
 
 struct ProgramText {
   std::string file;
+  std::optional<std::string> kept;     ///< the text, of standard input or a pipe: there is no second reading
   std::vector<Origin> motions;         ///< the first one is the start: no way
   std::vector<std::size_t> motion_of;  ///< of each block; one that rests has the motion before it
   std::size_t lines = 0;

@@ -273,14 +273,19 @@ template <class M>
 [[nodiscard]] Program<M> read_program(const Options& options, const support::Machine& file, const M& machine,
                                       Problems& problems) {
   namespace gcode = cncplan::gcode;
+  const auto unreadable = [&] {
+    return support::Failure(support::Exit::bad_input, fmt::format("{}: cannot be read", options.program));
+  };
   std::ifstream file_stream;
-  const bool piped = options.program == "-";
-  if (!piped) file_stream.open(options.program, std::ios::binary);
-  if (!piped && (!file_stream || std::filesystem::is_directory(options.program)))
-    throw support::Failure(support::Exit::bad_input, fmt::format("{}: cannot be read", options.program));
-  std::stringstream whole;  // of standard input, which subprograms cannot go back in
-  if (piped) whole << std::cin.rdbuf();
-  std::istream& stream = piped ? static_cast<std::istream&>(whole) : file_stream;
+  const bool standard = options.program == "-";
+  if (!standard) file_stream.open(options.program, std::ios::binary);
+  if (!standard && (!file_stream || std::filesystem::is_directory(options.program))) throw unreadable();
+  std::istream& given = standard ? std::cin : file_stream;
+  // Subprograms go back in the text, and a report shows it: what can be read once only is kept.
+  const bool kept = standard || !std::filesystem::is_regular_file(options.program);
+  std::stringstream whole;
+  if (kept) whole << given.rdbuf();
+  std::istream& stream = kept ? static_cast<std::istream&>(whole) : file_stream;
   Program<M> program;
   program.file = options.program;
   gcode::Reader reader(file.dialect);
@@ -301,6 +306,8 @@ template <class M>
         return problems.has_room();
       });
   problems.stand_in({});
+  if (given.bad() || (standard && std::ferror(stdin) != 0)) throw unreadable();
+  if (kept) program.kept = whole.str();
   program.lines = static_cast<std::size_t>(reader.line());
   if (!problems.found().empty()) return program;
   build.finish();

@@ -74,9 +74,9 @@ class Taker {
 }  // namespace
 
 Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
+  const Failure unreadable(Exit::bad_input, fmt::format("{}: cannot be read", file));
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Failure(Exit::bad_input, fmt::format("{}: cannot be read", file));
+  if (!stream || std::filesystem::is_directory(file)) throw unreadable;
   Artwork artwork{file, {}};
   gcode::Reader reader(dialect);
   BlockBuilder<Machine<3>> builder(Machine<3>{}, dialect);
@@ -94,6 +94,7 @@ Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
     Taker take(file, builder, line);
     for (const gcode::Item& item : items) std::visit(take, item);
   }
+  if (stream.bad()) throw unreadable;
   return artwork;
 }
 

@@ -123,6 +123,7 @@ TEST_CASE("a file that is missing or a folder is an error with its name", "[prog
   REQUIRE(!missing);
   CHECK(to_text(missing.error()).find("cncplan_no_such_file.nc: error: file") != std::string::npos);
   CHECK(!plan_file(folder, mill));
+  CHECK(!plan_file("/proc/self/mem", mill));  // it can be opened, and reading it fails
   const auto path = folder / "cncplan_plan_program_test.nc";
   std::ofstream(path) << "G1 X10 F600\nG1 Q\n";
   const auto faulty = plan_file(path, mill);

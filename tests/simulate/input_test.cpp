@@ -1,5 +1,6 @@
 // Where a program comes from, and what it is read with: standard input, tools, dialects.
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include "simulate/run.hpp"
@@ -19,6 +20,52 @@ TEST_CASE("a program from standard input (-) is the one of the file") {
   CHECK(folder.run("- --check <part.ngc").out == "no problems\n");
   folder.write("bad.ngc", "G1 X1\n!\n");
   CHECK(folder.run("- --json <bad.ngc").err == "-:2:1: error: !: unknown character\n");
+}
+
+TEST_CASE("what cannot be read to its end is refused") {
+  if (!std::filesystem::exists("/proc/self/mem")) {
+    WARN("SKIPPED: there is no /proc/self/mem, whose first byte is a read error");
+    return;
+  }
+  const test::Folder folder;
+  folder.write("part.ngc", "G1 X10 F600\n");
+  const auto refused = [&](const std::string& arguments, const std::string& name) {
+    INFO(arguments);
+    const auto run = folder.run(arguments);
+    CHECK(run.exit == 2);
+    CHECK(run.err == "error: " + name + ": cannot be read\n");
+  };
+  refused("/proc/self/mem --quiet", "/proc/self/mem");
+  refused("/proc/self/mem --check", "/proc/self/mem");
+  refused("- --quiet </proc/self/mem", "-");
+  refused("- --quiet <&-", "-");
+  refused("part.ngc --quiet --events /proc/self/mem", "/proc/self/mem");
+  refused("part.ngc --quiet --machine /proc/self/mem", "/proc/self/mem");
+}
+
+TEST_CASE("a program from a pipe has subprograms and a report as that of a file") {
+  const test::Folder folder;
+  folder.write("part.ngc", "o1 sub\nG1 X[#1] F600 (a comment to be found)\no1 endsub\no1 call [10]\n");
+  const auto file = folder.run("part.ngc --json --report file.html");
+  if (file.err.find("--report: built without") != std::string::npos) {
+    WARN("SKIPPED: built without the report's libraries");
+    return;
+  }
+  REQUIRE(file.exit == 0);
+  const auto shell = [&](const std::string& command) {
+    return folder.run_program("sh", "-c " + test::quoted(command)).exit;
+  };
+  REQUIRE(shell("mkfifo pipe && (timeout 60 cat part.ngc >pipe &)") == 0);
+  for (const char* const program : {"pipe", "- <part.ngc"}) {
+    INFO(program);
+    const auto run =
+        folder.run_program("timeout", "60 " + test::quoted(CNCPLAN_SIMULATE) +
+                                          " --json --report piped.html " + program);  // a pipe may hang
+    INFO(run.err);
+    REQUIRE(run.exit == 0);
+    CHECK(run.json()["length_mm"] == file.json()["length_mm"]);
+    CHECK(folder.read("piped.html").find("a comment to be found") != std::string::npos);
+  }
 }
 
 TEST_CASE("the diameter of a tool is what G41 keeps off the path") {

@@ -1,4 +1,6 @@
 // What the program refuses: one line, exit code 2, nothing left behind.
+#include <filesystem>
+
 #include "run.hpp"
 #include "support/catch.hpp"
 
@@ -93,6 +95,9 @@ TEST_CASE("missing arguments and files", "[tire_mold]") {
         "error: none.dxf: cannot be read\n");
   CHECK(folder.run("wall.dxf none.nc --tool-length 20 --start-radius 150").err ==
         "error: none.nc: cannot be read\n");
+  if (std::filesystem::exists("/proc/self/mem"))  // it can be opened, and reading it fails
+    CHECK(folder.run("wall.dxf /proc/self/mem --tool-length 20 --start-radius 150").err ==
+          "error: /proc/self/mem: cannot be read\n");
   CHECK(folder.run("--help").exit == 0);
   CHECK(folder.run("--version").out.starts_with("cncplan "));
   const auto unwritable = folder.run("wall.dxf art.nc --tool-length 20 --start-radius 150 --out none/out.nc");

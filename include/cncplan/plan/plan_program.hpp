@@ -151,18 +151,22 @@ template <MachineModel M>
   return plan::plan_program(gcode::TextLines(text), machine, options, {});
 }
 
-/// Plans a file, with the files of its folder as subprograms. Errors as for `plan_text`, and `unreachable`
-/// for a file that cannot be read.
+/// Plans a file, with the files of its folder as subprograms. Errors as for `plan_text`, and `unreadable`
+/// for a file that cannot be read, or not to its end.
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_file(
     const std::filesystem::path& file, const M& machine, const PlanOptions& options = {}) {
+  const auto unreadable = [&] {
+    return tl::unexpected(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file.string()});
+  };
   std::ifstream stream(file, std::ios::binary);
   std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(file, ignored))
-    return tl::unexpected(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file.string()});
+  if (!stream || std::filesystem::is_directory(file, ignored)) return unreadable();
   PlanOptions here = options;
   if (!here.subprograms) here.subprograms = gcode::files_of(file.parent_path());
-  return plan::plan_program(gcode::StreamLines(stream), machine, here, file.string());
+  auto trajectory = plan::plan_program(gcode::StreamLines(stream), machine, here, file.string());
+  if (stream.bad()) return unreadable();
+  return trajectory;
 }
 
 }  // namespace cncplan
