@@ -19,8 +19,9 @@ Overview overview_of(const ProgramText& program, const Measures& measures, doubl
     const bool rapid = motion.kind == cncplan::junction::Kind::rapid;
     Share& share = rapid ? result.rapid : result.cutting;
     ++share.motions;
-    share.length += motion.length;
     share.time += measures.motions[i].duration;
+    if (motion.turns) continue;
+    share.length += motion.length;
     if (rapid) continue;
     result.feeds.push_back(motion.feed);
     if (!(motion.feed > limit * (1.0 + rounding))) continue;

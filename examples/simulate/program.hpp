@@ -21,6 +21,7 @@ struct Origin {
   ToolPath path{};                                     ///< of the tool; of a row, straight between its ends
   double feed{};                                       ///< mm/s as programmed; of a rapid the rapid rate
   double length{};                                     ///< mm along the path
+  bool turns{};  ///< no axis but rotary ones moves: length and feed are in rad
 };
 
 struct ProgramText {

@@ -160,6 +160,7 @@ class Builder {
       }
       return followed && within;
     } else {
+      origin.turns = cncplan::length_of(block.path, machine_) == cncplan::LengthOf::rotary_axes;
       if constexpr (coordinates == 3)
         origin.path = block.path;
       else if (const auto* arc = block.path.arc())

@@ -71,6 +71,22 @@ TEST_CASE("the summary has all keys, each of its kind") {
   CHECK(json["arcs"] == 7);
 }
 
+TEST_CASE("what only rotary axes do is no length and no feed of the tool in the summary") {
+  const test::Folder folder;
+  folder.write("m.toml",
+               "[[axis]]\nletter = \"X\"\n[[axis]]\nletter = \"Y\"\n[[axis]]\nletter = \"Z\"\n"
+               "[[axis]]\nletter = \"A\"\nkind = \"rotary\"\nsteps_per_unit = 10\n"
+               "velocity = 6000\nacceleration = 100000\njerk = 1000000\n");
+  const auto json =
+      folder.run_text("G1 X10 F600\nA9000 F6000\nG0 A0\nX0\n", "--json --machine m.toml").json();
+  CHECK(json["length_mm"].get<double>() == Approx(20));
+  CHECK(json["cutting"]["length_mm"].get<double>() == Approx(10));
+  CHECK(json["cutting"]["motions"] == 2);
+  CHECK(json["rapid"]["length_mm"].get<double>() == Approx(10));
+  CHECK(json["feeds"] == std::vector<double>{10});
+  CHECK(json["capped"]["motions"] == 0);
+}
+
 TEST_CASE("the summary says where the tool goes, how far, how fast, with which tools") {
   const test::Folder folder;
   const auto run =
