@@ -280,7 +280,8 @@ Machine interpret(const std::string& file, const toml::table& root) {
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
   if (const toml::node* dialect = top.find("dialect")) {
     const auto control = gcode::find_control(top.text(*dialect, "dialect"));
-    if (!control) top.refuse(*dialect, "dialect must be \"linuxcnc\", \"grbl\", \"fanuc\" or \"marlin\"");
+    if (!control)
+      top.refuse(*dialect, "dialect must be \"linuxcnc\", \"grbl\", \"fanuc\", \"marlin\" or \"mach3\"");
     machine.dialect = gcode::with(machine.dialect, *control);
   }
   if (const toml::node* node = top.find("g18")) {
