@@ -148,7 +148,7 @@ class Compensation {
       way.turn = sign(motion.turn);
       const double radius = std::abs(end - way.center);
       way.radius = radius - way.turn * motion.tool_radius;
-      if (!(way.radius > 0.0))
+      if (!(radius > 0.0 && way.radius > 0.0))
         return refuse(motion, "radius of an arc under G41, G42", radius, std::abs(motion.tool_radius));
       way.start_tangent = way.turn * left_of(start - way.center) / std::abs(start - way.center);
       way.end_tangent = way.turn * left_of(end - way.center) / radius;
