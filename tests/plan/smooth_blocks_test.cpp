@@ -117,6 +117,16 @@ TEST_CASE("best: lines and arcs, rapids and feed moves", "[smooth-blocks]") {
   }
 }
 
+TEST_CASE("best: a corner that the level fast passes sooner is left to it", "[smooth-blocks]") {
+  Machine<3> quick{.limits = {.velocity = 100, .acceleration = 2000, .jerk = 40000}};  // tools/soak smooth
+  quick.axes[0] = {.letter = 'X', .velocity = 85.0625, .acceleration = 2037.61, .jerk = 42556.1};
+  quick.axes[1] = {.letter = 'Y', .velocity = 58.3689, .acceleration = 1521.62, .jerk = 45000.5};
+  quick.axes[2] = {.letter = 'Z', .velocity = 73.6935, .acceleration = 1589.64, .jerk = 16465.1};
+  check(
+      blocks_of("F285.871721\nG1 X2.129050 Y0.051285 Z-0.181512\nG1 X3.554507 Y1.531524 Z-0.646122\n", quick),
+      0.0140819, quick);
+}
+
 TEST_CASE("best: narrow bends at a high feed", "[smooth-blocks]") {
   const Machine<3> quick{.limits = {.velocity = 100, .acceleration = 2000, .jerk = 40000}};
   for (const double radius : {0.05, 0.3, 2.6})

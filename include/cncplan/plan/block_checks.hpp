@@ -12,15 +12,20 @@
 
 namespace cncplan::plan {
 
+/// The most that the tool may do on a block, mm/s.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] typename M::Scalar top_speed(const B& block, const M& machine) {
+  return block.rapid ? rapid_speed(machine) : feed_speed(machine);
+}
+
 /// The speed that a program asks of a block, or a share of its feed: mm/s, or rad/s where the tool stands
 /// still.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] typename M::Scalar wanted_speed(const B& block, const M& machine, LengthOf counted,
                                               typename M::Scalar share = 1) {
   using S = typename M::Scalar;
-  const bool in_space = counted == LengthOf::tool;
-  if (block.rapid) return in_space ? rapid_speed(machine) : std::numeric_limits<S>::infinity();
-  return in_space ? std::min(share * block.feed, feed_speed(machine)) : share * block.feed;
+  const S asked = block.rapid ? std::numeric_limits<S>::infinity() : share * block.feed;
+  return counted == LengthOf::tool ? std::min(asked, top_speed(block, machine)) : asked;
 }
 
 /// Whether the travel of any axis has an end.

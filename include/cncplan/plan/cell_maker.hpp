@@ -297,8 +297,7 @@ class CellMaker {
     }
     constexpr Scalar apart = Scalar(0.5);  // shorter pieces would gain little
     const Scalar to = std::min(driven_.next_change(from, apart), turnings_.next());
-    cut_.begin(*block_, driven_, machine_, from, to, wanted_,
-               block_->rapid ? rapid_speed(machine_) : feed_speed(machine_));
+    cut_.begin(*block_, driven_, machine_, from, to, wanted_, top_speed(*block_, machine_));
   }
 
   M machine_;

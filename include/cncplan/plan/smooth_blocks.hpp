@@ -111,12 +111,7 @@ class SmoothPlanner {
 
   [[nodiscard]] bool moves(std::size_t i) const { return blocks_[i].path.length() > S(0); }
 
-  [[nodiscard]] S speed(std::size_t i) const {
-    return std::min(wanted_speed(blocks_[i], machine_, LengthOf::tool), top_speed(i));
-  }
-  [[nodiscard]] S top_speed(std::size_t i) const {
-    return blocks_[i].rapid ? rapid_speed(machine_) : machine_.limits.velocity;
-  }
+  [[nodiscard]] S speed(std::size_t i) const { return wanted_speed(blocks_[i], machine_, LengthOf::tool); }
 
   [[nodiscard]] bool smooth(std::size_t i) const {
     return best_ && tolerance_of(blocks_[i], rules_) > S(0) && speed(i) > S(0) &&
@@ -191,7 +186,7 @@ class SmoothPlanner {
       smooth::BasicMotionLimits<S, n> limits = motion_limits();
       for (std::size_t i = first; i < end; ++i) {
         if (!moves(i)) continue;
-        limits.tool.velocity = std::max(limits.tool.velocity, top_speed(i));
+        limits.tool.velocity = std::max(limits.tool.velocity, top_speed(blocks_[i], machine_));
         run.push_back({&blocks_[i].path, speed(i), tolerances(blocks_[i])});
         sources.push_back(i);
       }
@@ -205,13 +200,8 @@ class SmoothPlanner {
     }
   }
 
-  // Whether the level `fast` takes less time; not asked where there is little to gain.
+  // Whether the level `fast` takes less time.
   [[nodiscard]] bool fast_is_faster(S duration, std::size_t first, std::size_t end) const {
-    constexpr S little = S(1.1);
-    S at_feed{};  // s, without corners
-    for (std::size_t i = first; i < end; ++i)
-      if (moves(i)) at_feed += blocks_[i].path.length() / speed(i);
-    if (!(duration > little * at_feed)) return false;
     const auto planned = plan_blocks(blocks_.subspan(first, end - first), machine_, options_);
     return planned && planned->duration() < duration;
   }

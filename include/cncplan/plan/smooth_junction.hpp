@@ -91,7 +91,7 @@ template <MachineModel M, BlockModel B>
   using S = typename M::Scalar;
   return limits_along(block.path.bounds(S(0), block.path.length()), machine,
                       wanted_speed(block, machine, length_of(block.path, machine)),
-                      block.rapid ? rapid_speed(machine) : machine.limits.velocity);
+                      top_speed(block, machine));
 }
 
 }  // namespace detail
