@@ -209,14 +209,18 @@ class Reader {
     const auto pass = [&](char letter) {
       if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
     };
-    if (speed) pass('$'), pass('S');  // the $ of a tap comes out with its motion
+    if (speed) {
+      pass('$');  // with what it names only: that of a tap does not come out
+      pass('S');
+    }
     pass('T');
     if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);
     change_tool(emit);
-    const bool apart = !speed || block_.code(Group::tool_change) == code(6);  // from the $ above
-    if (block_.has(Group::spindle) && apart) pass('$');
+    // Once more behind a tool change, which ends what was said before it.
+    const bool told = speed && block_.code(Group::tool_change) != code(6);
+    if (block_.has(Group::spindle) && !told) pass('$');
     for (const Group group : {Group::spindle, Group::coolant, Group::override_control}) hand_out(group, emit);
     spindle_.take(block_, modal_.millimetres_per_unit);
     const Code non_modal = block_.code(Group::non_modal);

@@ -128,8 +128,8 @@ class Smoothed {
 
   /// The next length beyond s at which a correction begins or ends or changes its form; the end if there is
   /// none. Between two of them all derivatives are smooth. On a path that is shorter than a correction's
-  /// reach, its changes nearer to s or to the end than `apart` of its sizes are passed over; so is, on any
-  /// path, what is only rounding away from them.
+  /// reach, its changes nearer to s or to the end than `apart` of its sizes are passed over. Changes that are
+  /// only rounding away from these are passed over on any path.
   [[nodiscard]] Scalar next_change(Scalar s, Scalar apart = Scalar(0)) const {
     const Scalar rounding = 64 * std::numeric_limits<Scalar>::epsilon() * length();
     Scalar next = length();
@@ -152,9 +152,9 @@ class Smoothed {
   };
   using Enclosed = std::array<Range, 4>;  // by the order of the derivative; the first is not used
 
-  // Whether the path lies before the junction.
   // From the path's start to the junction.
   [[nodiscard]] Scalar from_start(const Correction& c) const { return static_cast<Scalar>(c.at - start_); }
+  // Whether the path lies before the junction.
   [[nodiscard]] bool before(const Correction& c) const { return length() / Scalar(2) < from_start(c); }
 
   // From the junction, in sizes, never negative.

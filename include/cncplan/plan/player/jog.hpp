@@ -71,6 +71,7 @@ class Jog {
  private:
   using Moved = BasicAxesMove<Scalar, M::axis_count>;
 
+  // Axes with other limits than the machine's.
   struct Axes {
     using Scalar = typename M::Scalar;
     static constexpr int axis_count = M::axis_count;
