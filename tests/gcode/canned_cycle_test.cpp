@@ -95,11 +95,11 @@ TEST_CASE("a stop on the line of a cycle or a spline is behind all of its motion
 TEST_CASE("a cycle is asked for step by step, and the next line waits for it") {
   gcode::Reader reader;
   std::array<gcode::Item, gcode::max_items_per_line> items;
-  CHECK(test::read("F1 G83 X1 Z-1000 R0 Q.0001").error == "1:21: Q is below the limit 0.001");
+  CHECK(test::read("F1 G83 X1 Z-1000 R0 Q.0099").error == "1:21: Q is below the limit 0.01");
   CHECK(test::read("F1 G83 X1 Z1000000000 R1000000001 Q.0000001").error.find("Q is below the limit") !=
         std::string::npos);
-  REQUIRE(reader.read_line("F1 G99 G83 X1 Z-1e3 R0 Q.001 L1000", items.data()).error().column == 18);
-  REQUIRE(reader.read_line("F1 G99 G83 X1 Z-1000 R0 Q.001 L1000", items.data()).value() == items.data());
+  REQUIRE(reader.read_line("F1 G99 G83 X1 Z-1e3 R0 Q1 L100", items.data()).error().column == 18);
+  REQUIRE(reader.read_line("F1 G99 G83 X1 Z-1000 R0 Q1 L100", items.data()).value() == items.data());
   CHECK(reader.busy());
   CHECK(reader.read_line("G0 X5", items.data()).error().error.code == ErrorCode::unfinished);
   long motions = 0;

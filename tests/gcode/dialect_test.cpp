@@ -149,6 +149,12 @@ TEST_CASE("controls differ in what a dwell counts and where a cycle goes back to
   const auto fanuc = gcode::find_control("fanuc");
   REQUIRE(fanuc);
   const Dialect dialect = gcode::with({}, *fanuc);
+  for (const std::string look_ahead : {"G05.1 Q1", "G05 P10000", "G08 P1"}) {  // no splines, no radii
+    const auto reading = test::read("G1 F100\n" + look_ahead + "\nX7", dialect);
+    CHECK(reading.error.empty());
+    CHECK(reading.all<gcode::Word>().size() == 2);
+    CHECK(reading.motions().size() == 1);
+  }
   const auto reading = test::read("G0 Z9\nG82 X1 Z-1 R2 P500 F1\nG4 P1500\n", dialect);
   REQUIRE(reading.error.empty());
   const auto dwells = reading.all<gcode::Dwell>();

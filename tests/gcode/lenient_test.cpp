@@ -64,6 +64,12 @@ TEST_CASE("a rapid where no motion code holds") {
 
 TEST_CASE("printers' words") {
   CHECK(read("G4 S2").all<gcode::Dwell>()[0].seconds == 2.0);
+  CHECK(read("G1 F1\nG4 X2.5").all<gcode::Dwell>()[0].seconds == 2.5);  // Fanuc's
+  CHECK(read("G1 F1\nG4 X2.5").motions().empty());
+  CHECK(read("G4 P2 X3 G1 F1").motions().size() == 1);
+  CHECK(read("G4 X-1").error == "1:4: X must not be negative");
+  CHECK(read("G1 F1 G4 X1 Y2").error == "1:7: P: a required word is missing");
+  CHECK(test::read("G1 F1 G4 X2").error == "1:7: P: a required word is missing");
   CHECK(read("G4 S2\nM3").all<gcode::Word>().size() == 1);  // S is no speed
   CHECK(read("G0 X5 Y5 Z5\nG28 X Y\nM117 Printing 50%\nG29").error.empty());
   CHECK(read("G0 X5 Y5 Z5\nG28 XY").motions().back().end == gcode::Position{0, 0, 5});

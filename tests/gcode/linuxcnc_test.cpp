@@ -187,6 +187,10 @@ TEST_CASE("rotated systems, shifts and polar coordinates as LinuxCNC's interpret
            "G1 @5 ^30\n@7\n^60\nG91 @1\n^5\n@1 ^-10 Z1\nG90 X5\n",
            "G1 X5\nG91 G99 G81 R.1 Z-.5 ^60 L3\nG90 G0 X0\n",
            "G10 L10 P1 Z3\nG43 H1\nG0 X1 Z1\nG10 L11 P1 Z2\nG43 H1\nG0 X2 Z2\nG49 X3 Z3\n",
+           "G10 L1 P1 X.5 Y-2 Z3\nG43 H1\nG0 X1 Y1 Z1\nG2 X3 I1 F9\nG43.2 H1\nG0 X1\nG49 X3 Y3\n",
+           "G10 L1 P1 X5 Y-2\nT1 M6 G43\nG0 X4 Y1\nG10 L2 P1 R30\nG0 X1 Y5\nX2\nG49 X3\n",
+           "G0 X7 Y8\nG10 L10 P1 X3 Y1\nG43 H1\nG0 X1 Y1\nG10 L11 P1 X2\nG43 H1\nG0 X2 Y2\n",
+           "G7 G10 L1 P1 X3\nG43 H1\nG0 X1\nM70\nG49\nM72\nG0 X2\n",
            "G1 X3 Y4\nG28.1\nG1 X9\nG28 Z1\nG30.1\nG1 X0 Y0\nG30\n",
        })
     compare(program);

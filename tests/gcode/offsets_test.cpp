@@ -59,6 +59,9 @@ TEST_CASE("G10 sets lengths and radii of tools from where the axes stand") {
   check_end("G10 L2 P9 Z1\nG0 Z10\nG10 L11 P1 Z4\nG43 H1\nG0 Z0", 0.0, 0.0, 5.0);  // 10 - 1 - 4
   check_end("G92 Z1\nG0 Z10\nG10 L10 P1 Z4\nG43 H1\nG0 Z0", 0.0, 0.0, 5.0);  // 9 + 1 - 4, less the 1 of G92
   check_end("G10 L1 P1 Z6\nG10 L1 P2 Z2\nG43 H1\nG43.2 H2\nG0 Z0", 0.0, 0.0, 8.0);
+  check_end("G10 L1 P1 X6 Y-2 Z1\nG43 H1\nG0 X1 Y1 Z1", 7.0, -1.0, 2.0);
+  check_end("G0 X7 Y8\nG10 L10 P1 X3 Y1\nG43 H1\nG0 X0 Y0", 4.0, 7.0, 0.0);
+  check_end("G10 L1 P1 X6\nG10 L2 P1 R90\nG43 H1\nG0 X1 Y2", 4.0, 1.0, 0.0);  // the tool is not turned
   check_end("G10 L1 P1 R2\nF1 G41 D1 G1 X10\nX20\nM2", 20.0, 2.0, 0.0);
 }
 

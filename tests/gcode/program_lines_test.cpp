@@ -147,6 +147,18 @@ TEST_CASE("a loop that never ends is told with its line") {
         "1:1 4:1: error: number of times that the program goes back is above the limit 1000");
 }
 
+TEST_CASE("loops and calls that move nothing end soon") {
+  const std::string refused = "1: error: number of lines run while nothing moves is above the limit 1000000";
+  CHECK(run("o1 while [1]\n#1=2\no1 endwhile\n") == "3:" + refused);
+  CHECK(run("o1 repeat [9999999]\nM8\no1 endrepeat\n") == "3:" + refused);
+  CHECK(run("M98 P1 L9999999\nM30\nO1\nM99\n") == "4:" + refused);
+  CHECK(run("o1 do\no2 if [0]\n" + std::string(300'000, '\n') + "o2 endif\no1 while [1]\n") ==
+        "300004:" + refused);
+  // What moves is let run: here and back, a million and a half lines.
+  const std::string back_and_forth = "G90 G0\no1 repeat [500000]\nX1\nX2\no1 endrepeat\n";
+  CHECK(run(back_and_forth).find("error") == std::string::npos);
+}
+
 TEST_CASE("a call that is refused leaves no subprogram open") {
   CHECK(problems("o1 sub\nG0 X1\no1 endsub\no1 call\no1 call\nX[1/0]\no1 endsub\n", 1) ==
         "5:1: error: number of times that the program goes back is above the limit 1\n"

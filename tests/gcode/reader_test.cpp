@@ -245,7 +245,9 @@ TEST_CASE("the shell of a program") {
   CHECK(read("O100 sub").error == "1:1: O-word is not supported");
   CHECK(read("G0 X1\nO100\nX2").motions().size() == 2);  // names what follows, and does no more
   CHECK(read("G0 X1\nG1 O100").error == "2:4: O-word is not supported");
-  CHECK(read("00001").error == "1:1: 0: unknown character");  // no tape's beginning: no program's number
+  CHECK(
+      read("00001").error ==
+      "1:1: 0 belongs to no letter, or a blank is in a number");  // no tape's beginning: no program's number
   CHECK(read("% G0 X1").error == "1:1: % is used by nothing on this line");
 }
 

@@ -61,8 +61,8 @@ TEST_CASE("what is no word is told with its column") {
   CHECK(error("Xinf") == "1: X has no number: 'i' follows");
   CHECK(error("Y-nan") == "1: Y has no number: 'n' follows");
   CHECK(error("X(1)2") == "1: X has no number: '(' follows");
-  CHECK(error("X1.2.3") == "5: .: unknown character");
-  CHECK(error("X1 2") == "4: 2: unknown character");
+  CHECK(error("X1.2.3") == "5: . belongs to no letter, or a blank is in a number");
+  CHECK(error("X1 2") == "4: 2 belongs to no letter, or a blank is in a number");
   CHECK(error("X0x10") == "");  // X0 X10: whether a letter may come twice is the block's affair
   CHECK(error("X1e5") == "");   // X1 E5: E is refused later on
   CHECK(error("X1\x01") == "3: byte 1: unknown character");

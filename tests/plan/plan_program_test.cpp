@@ -117,6 +117,19 @@ TEST_CASE("motion that no limit bounds is an error", "[program]") {
   CHECK(error_of("G0 Y1\n", axis_only) != "no error");
 }
 
+TEST_CASE("an axis that moves alone without limits is named", "[program]") {
+  Machine<5> tilted{.limits = {.velocity = 10, .acceleration = 100, .jerk = 1000}};
+  CHECK(error_of("G1 X1 A9 F60\nG1 B5\n", tilted) ==
+        "2:4: error: axis B: moves alone, without limits of its own");
+  tilted.axes[4].velocity = 1;
+  CHECK(error_of("G0 X1\nG0 X2\nB5\n", tilted) ==
+        "3:1: error: axis B: moves alone, without limits of its own");
+  tilted.axes[4].acceleration = 1;
+  CHECK(error_of("G0 B5\n", tilted) == "no error");
+  CHECK(error_of("G0 A5 B5\n", tilted) == "no error");
+  CHECK(error_of("G0 A5 B5\n\nA2\n", tilted) == "3:1: error: axis A: moves alone, without limits of its own");
+}
+
 TEST_CASE("a file that is missing or a folder is an error with its name", "[program]") {
   const auto folder = std::filesystem::temp_directory_path();
   const auto missing = plan_file(folder / "cncplan_no_such_file.nc", mill);

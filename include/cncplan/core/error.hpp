@@ -55,6 +55,9 @@ enum class ErrorCode : std::uint8_t {
   handed_on,
   no_such_axis,
   taken_as_rapid,
+  unlimited,
+  missing_letter,
+  needs_operator,
   count_,  // number of codes
 };
 
@@ -102,6 +105,9 @@ enum class ErrorCode : std::uint8_t {
       "is not known here: it is handed on",
       "names an axis that the machine lacks: it is left out",
       "is a rapid: no motion code holds here",
+      "moves alone, without limits of its own",
+      "belongs to no letter, or a blank is in a number",
+      "needs the operator's hand or the spindle at an angle: it is not planned",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -195,7 +195,10 @@ class Block {
       passes_code_ = true;
       return pass(word);
     }
-    if (group == Group::none) return tl::unexpected(fail(ErrorCode::not_supported));
+    if (group == Group::none) {
+      const bool by_hand = word.letter == 'G' && (word.number == 87.0 || word.number == 88.0);
+      return tl::unexpected(fail(by_hand ? ErrorCode::needs_operator : ErrorCode::not_supported));
+    }
     const bool ends_cycle = group == Group::motion && code == gcode::code(80);
     if (ends_cycle && has(group)) return {};  // G0 G80, as CAM programs begin: the other code holds
     if (has(group) && !(group == Group::motion && this->code(group) == gcode::code(80))) {

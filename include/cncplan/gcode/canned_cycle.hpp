@@ -36,8 +36,8 @@ struct CycleWords {
   double peck{};   ///< mm, above 0
 };
 
-/// Most pecks of a hole.
-inline constexpr double max_pecks = 1e6;
+/// Most repetitions that one line may ask for: the pecks of all its holes, the passes of a thread.
+inline constexpr int max_passes = 100'000;
 
 /// One step of a cycle; places in the plane's first, second and third coordinate. A lift is a rapid of the
 /// third one alone.

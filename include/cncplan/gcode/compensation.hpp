@@ -31,11 +31,12 @@ inline constexpr std::size_t max_held = 32;
 class Compensation {
  public:
   /// Whether an item without a radius would come out as it is.
-  [[nodiscard]] bool idle() const { return !last_ && !beside_; }
+  [[nodiscard]] bool idle() const { return !last_ && !beside_ && !lost_; }
 
   /// Errors, at the motion: `below_limit` for a lead-in that is not longer than the radius, an arc that is
   /// not larger, and a motion that is too short beside an inner corner, each with what there is and what it
-  /// takes; `above_limit` for more than `max_held` items between two motions.
+  /// takes; `above_limit` for more than `max_held` items between two motions. What is at fault is left out,
+  /// and what comes behind it is only asked about itself.
   template <class Emit>
   Expected<void, Diagnostic> take(const Item& item, Emit&& emit) {
     const auto* motion = std::get_if<Motion>(&item);
@@ -45,12 +46,15 @@ class Compensation {
       Motion next = *motion;
       if (beside_) put(next.start, *beside_, next);
       beside_.reset();
+      lost_ = false;
       emit(Item(next));
       return {};
     }
     if (!is_arc(*motion) && plane_point(motion->start, *motion) == plane_point(motion->end, *motion) && last_)
       return hold(item, emit);
-    return lead(*motion, emit);
+    auto done = lead(*motion, emit);
+    if (!done) forget();
+    return done;
   }
 
   /// Gives on what is held: the program ends, or compensation does.
@@ -162,10 +166,21 @@ class Compensation {
 
   template <class Emit>
   Expected<void, Diagnostic> lead(const Motion& motion, Emit& emit) {
-    if (!last_) return lead_in(motion);
+    if (!last_ && !lost_) return lead_in(motion);
     const auto next = beside(motion);
     if (!next) return tl::unexpected(next.error());
-    return join(*next, emit);
+    if (!lost_) return join(*next, emit);
+    last_ = *next;
+    lost_ = false;
+    return {};
+  }
+
+  /// The way ends here for what was wrong with it.
+  void forget() {
+    last_.reset();
+    beside_.reset();
+    held_count_ = 0;
+    lost_ = true;
   }
 
   /// From where the tool is to beside the end; an arc keeps its tangent there.
@@ -351,6 +366,7 @@ class Compensation {
 
   std::optional<Way> last_;
   std::optional<Point> beside_;  ///< where the centre is, if that is not where the program is
+  bool lost_{};                  ///< under compensation, behind a motion in error
   std::array<Item, max_held> held_{};
   std::size_t held_count_{};
 };

@@ -39,7 +39,8 @@ class Cycles {
     if (r < bottom) return tl::unexpected(Diagnostic{{ErrorCode::below_limit, "R", r, bottom}, 0, at('R')});
     const double rounding =
         4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(r), std::abs(bottom));
-    const double shortest = std::max((r - bottom) / max_pecks, rounding);
+    const double holes = block.has('L') ? block.number('L') : 1.0;
+    const double shortest = std::max(holes * (r - bottom) / max_passes, rounding);
     if (is_peck(motion) && words.peck < shortest)
       return tl::unexpected(Diagnostic{{ErrorCode::below_limit, "Q", words.peck, shortest}, 0, at('Q')});
     return {};

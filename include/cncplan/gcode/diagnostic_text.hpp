@@ -33,11 +33,11 @@ inline std::string word_text(const Error& error) {
 [[nodiscard]] inline std::string to_text(const Diagnostic& diagnostic) {
   const Error& error = diagnostic.error;
   const std::string_view sentence = message(error.code);
-  const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
-                        sentence.starts_with("has ") || sentence.starts_with("does ") ||
-                        sentence.starts_with("says ") || sentence.starts_with("goes ") ||
-                        sentence.starts_with("finds ") || sentence.starts_with("belongs ") ||
-                        sentence.starts_with("moves ") || sentence.starts_with("names ");
+  const bool has_verb =
+      sentence.starts_with("is ") || sentence.starts_with("must ") || sentence.starts_with("has ") ||
+      sentence.starts_with("does ") || sentence.starts_with("says ") || sentence.starts_with("goes ") ||
+      sentence.starts_with("finds ") || sentence.starts_with("belongs ") || sentence.starts_with("moves ") ||
+      sentence.starts_with("names ") || sentence.starts_with("needs ");
   std::string text = detail::word_text(error);
   text += has_verb ? " " : ": ";
   text += sentence;

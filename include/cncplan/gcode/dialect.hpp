@@ -27,11 +27,12 @@ struct Axis {
   friend bool operator==(const Axis&, const Axis&) = default;
 };
 
-/// A tool; its length shifts Z under G43.
+/// A tool. G43 shifts Z by its length, and the other axes by what it stands beside the spindle's axis.
 struct Tool {
   int number{};
   double length{};    ///< mm
   double diameter{};  ///< mm
+  Position beside{};  ///< along the dialect's axes, mm or rad; that of Z is the length, and is not read here
 
   friend bool operator==(const Tool&, const Tool&) = default;
 };
@@ -93,11 +94,16 @@ inline constexpr std::array takes_axis_words{0.0,  1.0,  2.0,  3.0,  5.2,  6.2, 
 /// Most tools that a program may add to the dialect's table (G10 L1).
 inline constexpr std::size_t max_set_tools = 64;
 
-/// mm; 0 of a tool that the table lacks.
-[[nodiscard]] inline double tool_length(const Dialect& dialect, int number) {
-  for (const Tool& tool : dialect.tools)
-    if (tool.number == number) return tool.length;
-  return 0.0;
+/// By how much a tool shifts each axis, mm or rad; 0 of a tool that the table lacks.
+[[nodiscard]] inline Position tool_offset(const Dialect& dialect, int number) {
+  for (const Tool& tool : dialect.tools) {
+    if (tool.number != number) continue;
+    Position offset = tool.beside;
+    for (std::size_t i = 0; i < dialect.axes.size(); ++i)
+      if (dialect.axes[i].letter == 'Z') offset[i] = tool.length;
+    return offset;
+  }
+  return {};
 }
 
 /// mm; 0 of a tool that the table lacks.
@@ -128,7 +134,11 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
     if ((bit(axis.letter) & seen) != 0) return fail(ErrorCode::duplicate_word, name(axis.letter));
     seen |= bit(axis.letter);
   }
+  const auto finite = [](const Position& position) {
+    return std::all_of(position.begin(), position.end(), [](double x) { return std::isfinite(x); });
+  };
   for (const Tool& tool : dialect.tools) {
+    if (!finite(tool.beside)) return fail(ErrorCode::not_finite, "tool offset");
     if (!std::isfinite(tool.length)) return fail(ErrorCode::not_finite, "tool length", tool.length);
     if (!std::isfinite(tool.diameter)) return fail(ErrorCode::not_finite, "tool diameter", tool.diameter);
     if (tool.length != 0.0 && (seen & bit('Z')) == 0) return fail(ErrorCode::missing_word, "Z");
@@ -140,9 +150,6 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
     if (((seen | bit('F')) & bit(passed.letter)) != 0)
       return fail(ErrorCode::not_to_pass, name(passed.letter));
   }
-  const auto finite = [](const Position& position) {
-    return std::all_of(position.begin(), position.end(), [](double x) { return std::isfinite(x); });
-  };
   if (!std::isfinite(dialect.peck_clearance) || dialect.peck_clearance < 0.0)
     return fail(ErrorCode::negative, "peck clearance", dialect.peck_clearance);
   if (!std::isfinite(dialect.dwell_unit) || dialect.dwell_unit <= 0.0)

@@ -369,9 +369,11 @@ class Reader {
   /// What words alone do not tell: a feed per revolution needs a spindle that turns.
   [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion, Code before) {
     if (auto ok = spindle_.check(block_, modal, motion); !ok) return ok;
-    if (block_.code(Group::non_modal) == code(10) && sets_tool() &&
-        !has_room_for(dialect_, static_cast<int>(block_.number('P'))))
-      return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
+    if (block_.code(Group::non_modal) == code(10) && sets_tool()) {
+      if (!has_room_for(dialect_, static_cast<int>(block_.number('P'))))
+        return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
+      if (auto ok = check_measured(block_, place_); !ok) return ok;
+    }
     if (place_.rotated())
       if (auto ok = check_rotated(block_, modal, motion); !ok) return ok;
     if (auto ok = check_polar(block_, modal, motion, position()); !ok) return ok;
@@ -523,7 +525,7 @@ class Reader {
 
   [[nodiscard]] bool sets_tool() const { return block_.number('L') != 2.0 && block_.number('L') != 20.0; }
 
-  /// G10 L1, L10, L11: the length and the radius of tool P; L2, L20: the origin of work coordinate system P
+  /// G10 L1, L10, L11: the offsets and the radius of tool P; L2, L20: the origin of work coordinate system P
   /// (0: the one in force), in machine coordinates, or such that the axes stand at the coordinates named.
   void set_table() {
     const int number = static_cast<int>(block_.number('P'));
@@ -531,23 +533,22 @@ class Reader {
     std::optional<double> r;
     if (block_.has('R')) r = block_.number('R');
     if (!sets_tool()) return place_.set_origin(number, named_coordinates(), kind == 20.0, r);
-    std::optional<double> length;
+    NamedCoordinates offset = named_coordinates();
     for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i); value && dialect_.axes[i].letter == 'Z')
-        length = kind == 1.0 ? *value : place_.tool_for(i, *value, kind == 11.0);
+      if (offset[i] && kind != 1.0) offset[i] = place_.tool_for(i, *offset[i], kind == 11.0);
     if (r) *r *= modal_.millimetres_per_unit;
-    set_tool(dialect_, number, length, r);
+    set_tool(dialect_, number, offset, r);
   }
 
   void set_tool_length() {
     const Code how = block_.code(Group::tool_length);
     if (how == code(43.1)) return place_.set_tool(named_coordinates());
     const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
-    NamedCoordinates lengths;
-    for (std::size_t i = 0; i < axis_count(); ++i)
-      lengths[i] = how != code(49) && dialect_.axes[i].letter == 'Z' ? tool_length(dialect_, number) : 0.0;
-    if (how == code(43.2)) return place_.add_tool(lengths);
-    place_.set_tool(lengths);
+    const Position offset = how == code(49) ? Position{} : tool_offset(dialect_, number);
+    NamedCoordinates named;
+    std::copy(offset.begin(), offset.end(), named.begin());
+    if (how == code(43.2)) return place_.add_tool(named);
+    place_.set_tool(named);
   }
 
   /// G41, G42: the radius of tool D, or of the loaded one; G41.1, G42.1: half of D. A negative one changes

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -16,11 +17,12 @@
 #include "cncplan/gcode/polar.hpp"
 #include "cncplan/gcode/threading.hpp"
 #include "cncplan/gcode/word.hpp"
+#include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
 
-/// Most turns of one arc (P).
-inline constexpr int max_turns = 1'000'000;
+/// Most turns of one arc (P): the fastest motion within a tolerance takes 2.5 MB for a small one.
+inline constexpr int max_turns = 1000;
 
 /// Largest whole number of a T, H or N word.
 inline constexpr int max_count = 1'000'000'000;
@@ -77,8 +79,14 @@ struct Alphabet {
   return block.code(Group::non_modal) == code(4) && !block.has('P') && block.has('S') &&
          !block.has(Group::spindle_mode);  // G96 and G97 have an S of their own
 }
+/// G4 X: seconds, where a dialect has them (Fanuc); X is no axis then.
+[[nodiscard]] inline bool dwells_by_x(const Block& block, const Alphabet& alphabet) {
+  return alphabet.lenient && block.code(Group::non_modal) == code(4) && !block.has('P') &&
+         !dwells_by_s(block) && (block.letters() & (alphabet.axes | polar_words)) == bit('X');
+}
 [[nodiscard]] inline double dwell_seconds(const Block& block, const Dialect& dialect) {
-  return dwells_by_s(block) ? block.number('S') : block.number('P') * dialect.dwell_unit;
+  if (dwells_by_s(block)) return block.number('S');
+  return block.has('P') ? block.number('P') * dialect.dwell_unit : block.number('X');
 }
 
 /// Letter of the centre word along an axis of space: I, J or K.
@@ -236,8 +244,6 @@ using Check = Expected<void, Diagnostic>;
                                        bool begins, int column) {
   if (!alphabet.has_arcs || !alphabet.has_radius)
     return tl::unexpected(Diagnostic{{ErrorCode::not_supported, "G", modal.motion / 10.0, 0.0}, 0, column});
-  if (modal.feed_mode == FeedMode::inverse_time)
-    return conflict(Diagnostic{{{}, "G", modal.motion / 10.0, 0.0}, 0, column}, "G", 93);
   const char depth = "XYZ"[axes(modal.plane).third];
   for (const char letter : {depth, 'R', 'P', 'Q'}) {
     const bool takes = letter == 'P' ? dwells(modal.motion) : letter == 'Q' ? is_peck(modal.motion) : true;
@@ -245,7 +251,7 @@ using Check = Expected<void, Diagnostic>;
   }
   if (is_peck(modal.motion) && block.has('Q') && block.number('Q') <= 0.0)
     return tl::unexpected(block.error(ErrorCode::not_positive, 'Q'));
-  return whole(block, 'L', 1, max_count);
+  return whole(block, 'L', 1, max_passes);
 }
 
 /// The words that a line's code of a group may have. R is none where it names an axis.
@@ -265,8 +271,9 @@ using Check = Expected<void, Diagnostic>;
     if (!block.has(group)) continue;
     const Letters may = words_of(group, block, alphabet);
     const Letters lacking = facts(group, block.code(group)).must & ~block.letters();
-    const bool by_s = group == Group::non_modal && alphabet.lenient && dwells_by_s(block);
-    if (lacking != 0 && !by_s) return missing(name(first_of(lacking)), block.column(group));
+    const bool by_other = group == Group::non_modal &&
+                          ((alphabet.lenient && dwells_by_s(block)) || dwells_by_x(block, alphabet));
+    if (lacking != 0 && !by_other) return missing(name(first_of(lacking)), block.column(group));
     if (const Letters twice = taken & may & block.letters(); twice != 0)
       return conflict(block.error(ErrorCode::conflicting_words, first_of(twice)), "two codes use it");
     taken |= may;
@@ -275,7 +282,7 @@ using Check = Expected<void, Diagnostic>;
   return {};
 }
 
-/// G10: L1, L10 and L11 of a tool's length along Z and of its radius; L2 and L20 of a work coordinate system,
+/// G10: L1, L10 and L11 of a tool's offsets and of its radius; L2 and L20 of a work coordinate system,
 /// which L2 rotates by R where its axes begin with X Y Z.
 [[nodiscard]] inline Check check_setting(const Block& block, const Alphabet& alphabet) {
   const double kind = block.number('L');
@@ -285,8 +292,6 @@ using Check = Expected<void, Diagnostic>;
     return tl::unexpected(block.error(ErrorCode::not_supported, 'R'));
   if (tool)
     if (auto ok = not_negative(block, 'R'); !ok) return ok;
-  if (const Letters others = block.letters() & alphabet.axes & ~bit('Z'); tool && others != 0)
-    return tl::unexpected(block.error(ErrorCode::not_supported, first_of(others)));
   return tool ? whole(block, 'P', 0, max_count) : whole(block, 'P', 0, work_systems);
 }
 
@@ -312,7 +317,6 @@ using Check = Expected<void, Diagnostic>;
 [[nodiscard]] inline Check check_synchronised(const Block& block, const Modal& modal,
                                               const Alphabet& alphabet, Code motion, int column) {
   const Diagnostic about{{ErrorCode::not_supported, "G", motion / 10.0, 0.0}, 0, column};
-  if (modal.feed_mode == FeedMode::inverse_time) return conflict(about, "G", 93);
   const auto positive = [&block, column](char letter) -> Check {
     if (!block.has(letter)) return missing(name(letter), column);
     if (block.number(letter) <= 0.0) return tl::unexpected(block.error(ErrorCode::not_positive, letter));
@@ -333,15 +337,15 @@ using Check = Expected<void, Diagnostic>;
     if (auto ok = not_negative(block, letter); !ok) return ok;
   if (block.has('Q') && block.number('Q') >= 90.0)
     return tl::unexpected(block.error(ErrorCode::above_limit, 'Q', 90.0));
-  if (!(ThreadWords::of(block, modal).passes() <= max_thread_passes))
-    return tl::unexpected(Diagnostic{
-        {ErrorCode::above_limit, "number of passes", max_thread_passes + 1, max_thread_passes}, 0, column});
-  if (auto ok = whole(block, 'H', 0, static_cast<int>(max_thread_passes)); !ok) return ok;
+  if (!(ThreadWords::of(block, modal).passes() <= max_passes))
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::above_limit, "number of passes", max_passes + 1, max_passes}, 0, column});
+  if (auto ok = whole(block, 'H', 0, max_passes); !ok) return ok;
   return whole(block, 'L', 0, 3);
 }
 
 /// Cutter compensation begins in XY or ZX, when it is off, with a tool that has no orientation; while it is
-/// on, only G0 to G3 move, and nothing shifts the coordinates.
+/// on, from its line, only G0 to G3 move, and nothing shifts the coordinates.
 [[nodiscard]] inline Check check_compensation(const Block& block, const Modal& before, const Modal& modal,
                                               const Alphabet& alphabet, Code motion) {
   if (modal.compensation == code(40)) return {};
@@ -354,11 +358,11 @@ using Check = Expected<void, Diagnostic>;
     if (block.has('L') && block.number('L') != 0.0)
       return tl::unexpected(block.error(ErrorCode::not_supported, 'L'));
     if (modal.compensation == code(41) || modal.compensation == code(42))
-      return whole(block, 'D', 0, max_count);
-    return {};
+      if (auto ok = whole(block, 'D', 0, max_count); !ok) return ok;
+  } else {
+    for (const Group group : {Group::plane, Group::tool_length, Group::coordinates})
+      if (block.has(group)) return conflict(block.error(ErrorCode::conflicting_words, group), "G", how);
   }
-  for (const Group group : {Group::plane, Group::tool_length, Group::coordinates})
-    if (block.has(group)) return conflict(block.error(ErrorCode::conflicting_words, group), "G", how);
   if (block.has(Group::non_modal) && block.code(Group::non_modal) != code(4))
     return conflict(block.error(ErrorCode::conflicting_words, Group::non_modal), "G", how);
   if (motion != no_code && motion > code(3))
@@ -412,7 +416,8 @@ using Check = Expected<void, Diagnostic>;
   const Code requested = block.code(Group::motion);
   const Code non_modal = block.code(Group::non_modal);
   const bool homes = non_modal == code(28) || non_modal == code(30);
-  const bool shifts = non_modal == code(92) || non_modal == code(52) || non_modal == code(10);
+  const bool shifts =
+      non_modal == code(92) || non_modal == code(52) || non_modal == code(10) || dwells_by_x(block, alphabet);
   const bool sets_length = block.code(Group::tool_length) == code(43.1);
   const bool takes_axes = homes || shifts || sets_length;
 
@@ -424,6 +429,8 @@ using Check = Expected<void, Diagnostic>;
   Code motion = no_code;
   if (takes_axes) {  // these use the axis words, so nothing else on the line can; G0 says no more than G28
                      // does
+    if (non_modal == code(4))
+      if (auto ok = not_negative(block, 'X'); !ok) return tl::unexpected(ok.error());
     const Group taker = homes || shifts ? Group::non_modal : Group::tool_length;
     if ((homes || shifts) && sets_length)
       return conflict(block.error(ErrorCode::conflicting_words, Group::tool_length), "G", non_modal / 10.0);
@@ -464,6 +471,10 @@ using Check = Expected<void, Diagnostic>;
   if (turns && block.has('$') && block.number('$') != 0.0)  // the feed is made of spindle 0
     return tl::unexpected(block.error(ErrorCode::not_supported, '$'));
   if (auto ok = check_polar(block, modal, alphabet, motion); !ok) return tl::unexpected(ok.error());
+  // The time of a line is not that of each motion that it may give.
+  const bool curves = is_spline(motion) || is_nurbs(motion) || motion == code(5.3);
+  if (modal.feed_mode == FeedMode::inverse_time && (curves || is_cycle(motion) || is_synchronised(motion)))
+    return conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, column}, "G", 93);
   Letters taken = 0;
   if (is_arc(motion)) {
     if (auto ok = check_arc(block, modal, alphabet, column); !ok) return tl::unexpected(ok.error());
@@ -527,6 +538,16 @@ using Check = Expected<void, Diagnostic>;
   const double plane = modal.plane == Plane::yz ? 19.0 : 18.0;
   return detail::conflict(Diagnostic{{{}, "G", plane, 0.0}, 0, detail::motion_column(block)},
                           "rotation of G10 R");
+}
+
+/// G10 L10 and L11, of a line of G10, measure along the machine's axes: not X and Y of a rotated work system.
+[[nodiscard]] inline Expected<void, Diagnostic> check_measured(const Block& block,
+                                                               const WorkCoordinates& place) {
+  const double kind = block.number('L');
+  const Letters turned = block.letters() & (bits("XY") | polar_words);
+  const std::size_t system = kind == 11.0 ? work_systems - 1 : place.system();
+  if ((kind != 10.0 && kind != 11.0) || turned == 0 || place.rotation(system) == 0.0) return {};
+  return detail::conflict(block.error(ErrorCode::conflicting_words, first_of(turned)), "rotation of G10 R");
 }
 
 /// The origin has no angle: a motion from `here` that names polar coordinates needs one of its own there.

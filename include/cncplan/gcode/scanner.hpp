@@ -174,7 +174,9 @@ class Scanner {
 
   [[nodiscard]] Diagnostic unknown() const {
     const char c = *at_;
-    return unsupported_or(ErrorCode::unknown_character, name(c), column(), static_cast<unsigned char>(c));
+    const bool number = is_digit(c) || c == '.';
+    return unsupported_or(number ? ErrorCode::missing_letter : ErrorCode::unknown_character, name(c),
+                          column(), static_cast<unsigned char>(c));
   }
 
   [[nodiscard]] Diagnostic no_number(char letter, int column) const {

@@ -18,9 +18,6 @@ namespace cncplan::gcode {
   return motion == code(33) || motion == code(33.1) || motion == code(76);
 }
 
-/// Most passes of one thread.
-inline constexpr double max_thread_passes = 1e5;
-
 /// The words of G76, mm and rad, in the ZX plane. All depths count from the drive line, which is where the
 /// cycle begins; they are not negative.
 struct ThreadWords {

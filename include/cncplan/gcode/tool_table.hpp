@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 
 #include "cncplan/gcode/dialect.hpp"
+#include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
 
@@ -20,12 +22,13 @@ namespace cncplan::gcode {
   return dialect.tools.size() < dialect.tools.capacity() || find_tool(dialect, number) != nullptr;
 }
 
-/// Sets what is given of a tool, mm; `has_room_for` has said that it can.
-inline void set_tool(Dialect& dialect, int number, std::optional<double> length,
+/// Sets what is given of a tool, mm or rad along the axes; `has_room_for` has said that it can.
+inline void set_tool(Dialect& dialect, int number, const NamedCoordinates& offset,
                      std::optional<double> radius) {
   Tool* tool = find_tool(dialect, number);
-  if (tool == nullptr) tool = &dialect.tools.emplace_back(Tool{number, 0.0, 0.0});
-  if (length) tool->length = *length;
+  if (tool == nullptr) tool = &dialect.tools.emplace_back(Tool{.number = number});
+  for (std::size_t i = 0; i < dialect.axes.size(); ++i)
+    if (offset[i]) (dialect.axes[i].letter == 'Z' ? tool->length : tool->beside[i]) = *offset[i];
   if (radius) tool->diameter = 2.0 * *radius;
 }
 

@@ -14,9 +14,14 @@
 
 namespace cncplan::gcode {
 
-/// What the warning of a G64 with P names: the reader hands the tolerance out with each motion, and whether
-/// it has an effect is for the planner to say.
-inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64";
+/// What the warnings of a G64 with P and Q name.
+inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64", merging_of_g64 = "Q of G64";
+
+/// Whether a warning is void where paths are smoothed: the reader hands P and Q of G64 out with each motion,
+/// and whether they have an effect is for the planner to say.
+[[nodiscard]] inline bool void_if_smoothed(const Diagnostic& warning) {
+  return warning.error.field == tolerance_of_g64 || warning.error.field == merging_of_g64;
+}
 
 /// The warnings of a program, each told at its first line.
 class Warnings {
@@ -34,7 +39,8 @@ class Warnings {
     if (block.code(Group::path_control) == code(64)) {
       if (block.has('P') && first(tolerance_))
         about(ErrorCode::ignored, tolerance_of_g64, 0.0, block.column('P'));
-      if (block.has('Q') && first(merging_)) about(ErrorCode::ignored, "Q of G64", 0.0, block.column('Q'));
+      if (block.has('Q') && first(merging_))
+        about(ErrorCode::ignored, merging_of_g64, 0.0, block.column('Q'));
     }
     if (const auto& own = block.unknown_code())
       if (const auto number = static_cast<std::size_t>(own->number); !own_codes_[number]) {

@@ -119,8 +119,9 @@ class WorkCoordinates {
     update();
   }
 
-  /// G10 L10 and, if `fixture`, L11: the length of a tool along an axis with which the axes stand at a
-  /// coordinate, of the system in force or of G59.3 without G92.
+  /// G10 L10 and, if `fixture`, L11: the offset of a tool along an axis with which the axes stand at a
+  /// coordinate, of the system in force or of G59.3 without G92; that is not rotated, or the axis is not X,
+  /// Y.
   [[nodiscard]] double tool_for(std::size_t axis, double coordinate, bool fixture) const {
     const double shift = fixture ? 0.0 : shift_[axis];
     return machine_[axis] - systems_[fixture ? work_systems - 1 : system_][axis] - shift - coordinate;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/plan/machine_block.hpp"
@@ -56,6 +57,28 @@ template <MachineModel M, Path P>
     if (!(box.high[i] <= axis.high + rounding)) return refuse(ErrorCode::above_limit, box.high[i], axis.high);
   }
   return {};
+}
+
+/// Nothing, or the first axis that moves where the tool stands still, and neither the program nor an axis
+/// that moves says how fast, or no such axis how quickly the speed may change.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] Expected<void> limited(const B& block, const M& machine) {
+  using S = typename M::Scalar;
+  if (!(block.path.length() > S(0))) return {};
+  const LengthOf counted = length_of(block.path, machine);
+  if (counted == LengthOf::tool) return {};
+  const auto bounds = block.path.bounds(S(0), block.path.length());
+  bool speed = std::isfinite(wanted_speed(block, machine, counted)), change = false;
+  std::string_view first;
+  for (int i = 0; i < M::axis_count; ++i) {
+    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    if (!(bounds.first[i] > S(0))) continue;
+    if (first.empty()) first = axis_name(axis.letter);
+    speed = speed || std::isfinite(least_velocity(axis));
+    change = change || std::isfinite(least_acceleration(axis)) || std::isfinite(axis.jerk);
+  }
+  if (speed && change) return {};
+  return tl::unexpected(Error{ErrorCode::unlimited, first, 0.0, 0.0});
 }
 
 /// Nothing, or the first axis that would have to jump from the end of a block to the start of the next one,

@@ -137,8 +137,8 @@ class CellMaker {
   /// Begins with the next block, which is to stay until all its cells are made; one of no length has none.
   /// Errors: not_finite for a length, pause or feed that is no finite number (the feed may be infinite),
   /// negative for a pause, not_positive for a feed; below_limit and above_limit where an axis would leave its
-  /// travel; unreachable where the machine has no position for a place; discontinuous where the block begins
-  /// elsewhere than the one before it ends.
+  /// travel; unlimited where axes without limits move alone; unreachable where the machine has no position
+  /// for a place; discontinuous where the block begins elsewhere than the one before it ends.
   [[nodiscard]] Expected<void> begin(const B& block) {
     return begin(block, Driven(block.path, {}, Scalar(0)), Passing::policy);
   }
@@ -227,6 +227,8 @@ class CellMaker {
       if (!(wanted_ > Scalar(0)))
         return refusal(std::isnan(wanted_) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed",
                        wanted_);
+      if (counted != LengthOf::tool)
+        if (auto ok = limited(block, machine_); !ok) return ok;
       entry_ = Scalar(0);
       joint_.after = ends.start.first;
       const auto kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;

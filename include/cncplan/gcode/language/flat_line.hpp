@@ -91,6 +91,10 @@ class FlatLine {
     expression.expect('=');
     const double value = expression.value();
     if (expression.problem()) return tl::unexpected(*expression.problem());
+    const std::size_t next = line.find_first_not_of(" \t", expression.at());
+    if (next != std::string_view::npos && std::string_view("+-*/").find(line[next]) != std::string_view::npos)
+      return tl::unexpected(Diagnostic{
+          {ErrorCode::not_supported, "expression without [ ]", 0.0, 0.0}, 0, static_cast<int>(next) + 1, {}});
     settings_.push_back({std::move(name), value, static_cast<int>(at) + 1});
     return expression.at();
   }

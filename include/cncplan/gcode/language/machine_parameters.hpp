@@ -125,7 +125,7 @@ inline constexpr std::array machine_names{
   }
   const int tool = reader.loaded_tool();
   if (number == 5400) return static_cast<double>(tool);
-  if (number == 5403) return tool_length(reader.dialect(), tool);
+  if (const auto axis = among(5401)) return kept(tool_offset(reader.dialect(), tool), *axis);
   if (number == 5410) return tool_diameter(reader.dialect(), tool);
   if (number > 5400 && number <= 5413) return 0.0;
   if (const auto axis = among(5420)) return here(place.current(), *axis);

@@ -88,7 +88,9 @@ inline void append_word(std::string& text, char letter, double number) {
   if (saved.tool != reader.place().tool()) {
     line = " G43.1";
     for (std::size_t i = 0; i < axes.size(); ++i)
-      put(axes[i].letter, saved.tool[i] / (axes[i].kind == AxisKind::rotary ? radians_per_degree : unit));
+      put(axes[i].letter, saved.tool[i] / (axes[i].kind == AxisKind::rotary       ? radians_per_degree
+                                           : to.diameter && axes[i].letter == 'X' ? unit / 2.0
+                                                                                  : unit));
     finish();
   }
   return lines;

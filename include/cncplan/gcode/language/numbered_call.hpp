@@ -1,6 +1,8 @@
 // Calls of numbered subprograms, M98 and M99, as controls other than LinuxCNC write them (set-up).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -38,6 +40,22 @@ namespace detail {
   if (line.find_first_of("oO") == std::string_view::npos) return std::nullopt;
   const auto word = detail::only_word(line, 'O');
   return word ? std::optional(static_cast<long long>(word->number)) : std::nullopt;
+}
+
+/// The column at which a line says IF, WHILE, GOTO, as the macros of Fanuc's controls do; 0 where it does
+/// not.
+[[nodiscard]] inline int macro_word_column(std::string_view line) {
+  std::size_t at = line.find_first_not_of(" \t/");
+  if (at != std::string_view::npos && (line[at] == 'N' || line[at] == 'n'))
+    at = line.find_first_not_of("0123456789. \t", at + 1);
+  if (at == std::string_view::npos) return 0;
+  for (const std::string_view word : {"IF", "WHILE", "GOTO"}) {
+    const std::string_view text = line.substr(at, word.size());
+    if (std::equal(text.begin(), text.end(), word.begin(), word.end(),
+                   [](char has, char wanted) { return has == wanted || has == wanted + ('a' - 'A'); }))
+      return static_cast<int>(at) + 1;
+  }
+  return 0;
 }
 
 /// Whether the line is M99.

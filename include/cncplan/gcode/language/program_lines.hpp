@@ -26,6 +26,9 @@ namespace cncplan::gcode {
 /// How often loops and calls of one program may go back, all together: none that ends comes near it.
 inline constexpr int max_jumps = 10'000'000;
 
+/// Most lines that loops and calls run or pass over, one after another, while the axes stand still.
+inline constexpr int max_idle_lines = 1'000'000;
+
 /// Runs O-words, sets parameters, and gives every line that is left as the reader takes it. M98 and M99 call
 /// subprograms as other controls have them: O and a number alone on a line begin one. Flat lines come out as
 /// they stand. Memory: one line, the parameters, the files called, and where subprograms begin.
@@ -50,6 +53,7 @@ class ProgramLines {
   [[nodiscard]] std::optional<std::string_view> next() {
     problem_.reset();
     flat_ = nullptr;
+    if (jumps_ != 0) watch_motion();
     for (;;) {
       if (!restoring_.empty()) {
         restored_ = std::move(restoring_.front());
@@ -124,6 +128,7 @@ class ProgramLines {
     before_ = place_;
     place_.offset = place_.file == 0 ? main_.place() : files_[place_.file - 1].lines.place();
     ++place_.line;
+    ++idle_lines_;
     // % stands around the text of a file, and would end the program.
     if (place_.file != 0 && line->starts_with('%')) return "";
     return line;
@@ -140,7 +145,16 @@ class ProgramLines {
     if (++jumps_ > most_jumps_)
       return fail(ErrorCode::above_limit, "number of times that the program goes back", column, jumps_,
                   most_jumps_);
+    if (idle_lines_ > max_idle_lines)
+      return fail(ErrorCode::above_limit, "number of lines run while nothing moves", column, idle_lines_,
+                  max_idle_lines);
     go_to(place);
+  }
+
+  void watch_motion() {
+    if (reader_.position() == here_) return;
+    here_ = reader_.position();
+    idle_lines_ = 0;
   }
 
   void fail(ErrorCode code, std::string_view field, int column, double value = 0.0, double bound = 0.0) {
@@ -186,6 +200,10 @@ class ProgramLines {
       else
         obey(word, line);
       return problem_ ? std::optional<std::string_view>("") : std::nullopt;
+    }
+    if (const int column = macro_word_column(line)) {
+      fail(ErrorCode::not_supported, "control by IF, WHILE, GOTO", column);
+      return "";
     }
     const std::string_view flat = flatten(line);
     if (problem_) return flat;
@@ -509,6 +527,7 @@ class ProgramLines {
     if (indexed_) return;
     indexed_ = true;
     const Place back = place_;
+    const int idle_lines = idle_lines_;
     go_to({});
     while (const auto line = read_line()) {
       bool deleted = false;
@@ -519,6 +538,7 @@ class ProgramLines {
       const ControlWord word = read_control_word(expression);
       if (!expression.problem() && word.keyword == Keyword::sub) subprograms_.try_emplace(word.label, place_);
     }
+    idle_lines_ = idle_lines;
     go_to(back);
   }
 
@@ -539,6 +559,8 @@ class ProgramLines {
   Place before_;  ///< of the line that came last
   Place place_;   ///< of the one behind it
   int jumps_{};
+  Position here_{};   ///< where the axes stood when a line was last asked for, since the first jump
+  int idle_lines_{};  ///< read since the axes moved
   bool ended_{};
   std::optional<Diagnostic> problem_;
 };
