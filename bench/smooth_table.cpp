@@ -88,6 +88,7 @@ std::optional<std::vector<Block>> blocks_of(const Case& c, const Mill& machine, 
     block.exact_stop = block.exact_path = false;
     block.pause = 0;
     block.tolerance.reset();
+    block.merge = 0;
     if (std::isfinite(c.feed)) block.feed = c.feed;
     blocks.push_back(block);
   }

@@ -157,7 +157,7 @@ TEST_CASE("one corner: limits, tolerance, and the time of the study") {
     const auto run = smooth_run<Segment>(program.blocks(), program.limits);
     check(run, program);
     const double ends = 2 * std::sqrt(30 / 1e4);
-    CHECK(run.duration - 100.0 / 30 - ends < loss + 0.009);
+    CHECK(run.duration - 100.0 / 30 - ends < loss + 0.0005);
     CHECK(run.duration - 100.0 / 30 - ends > 0);
   }
 }
@@ -254,8 +254,20 @@ TEST_CASE("a slow line between rapids costs its ramps and no more") {
   // A ramp from v to 30 takes 2 sqrt((30 - v) / J), at the mean of both speeds.
   const auto loss = [](double v) { return 2 * std::sqrt((30 - v) / 1e4) * (1 - (30 + v) / 60); };
   const double least = 1 / slow + 40.0 / 30 + 2 * loss(0) + 2 * loss(slow);
-  CHECK(run.duration > least * (1 - 1e-6));
-  CHECK(run.duration < least + 0.015);
+  // Within the tolerance the tool may be fast as far into the slow line, at both ends.
+  const double ahead = 2 * 0.01;
+  CHECK(run.duration > least - ahead / slow + ahead / 30);
+  CHECK(run.duration < least + 0.003);
+}
+
+TEST_CASE("ramps take the whole jerk") {
+  Program program;
+  program.limits.tool = {30, 1000, 1e4};
+  program.line(Vector3(0, 0, 0), Vector3(50, 0, 0), 30);
+  const double least = 50.0 / 30 + 2 * std::sqrt(30 / 1e4);  // the acceleration limit is not reached
+  const Run run = smooth_run<Segment>(program.blocks(), program.limits);
+  CHECK(run.duration > least);
+  CHECK(run.duration < least + 0.0012);
 }
 
 TEST_CASE("no block is entered or left above its feed") {

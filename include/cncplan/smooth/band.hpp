@@ -125,17 +125,19 @@ class Band {
     return rounds;
   }
 
-  /// Moves curve and speed together. `speeds_sq`: for each cell the middle coefficient of b, as
-  /// `BasicCellSpeed` has it, of a law that keeps all limits; 0 in cells that stay. Returns the Newton steps.
-  int improve(std::span<const S> speeds_sq, const BasicMotionLimits<S, axis_count>& limits,
-              const BasicJointOptions<S>& solver) {
+  /// Moves curve and speed together where it is slow. `speeds_sq`: for each cell the middle coefficient of b,
+  /// as `BasicCellSpeed` has it, of a law of these skews that keeps all limits; 0 in cells that stay. Returns
+  /// the Newton steps.
+  int improve(std::span<const S> speeds_sq, std::span<const S> skews,
+              const BasicMotionLimits<S, axis_count>& limits, const BasicJointOptions<S>& solver) {
+    constexpr S slow = S(0.9);
     const std::size_t cells = cell_count();
     std::vector<S> feeds(cells), speeds(points_.size(), S(0));
     std::vector<char> moves(points_.size(), 0);
     for (std::size_t cell = 0; cell < cells; ++cell) {
       feeds[cell] = feed(cell);
       speeds[cell + 1] = speeds_sq[cell];
-      if (speeds_sq[cell] < S(0.9995) * feeds[cell] * feeds[cell])
+      if (speeds_sq[cell] < slow * feeds[cell] * feeds[cell])
         for (std::size_t k = cell >= reach_ ? cell - reach_ : 0;
              k < std::min(cell + 4 + reach_, moves.size()); ++k)
           moves[k] = 1;
@@ -149,7 +151,7 @@ class Band {
     std::vector<VectorN<S, axis_count + 1>> gradient(options_.window), step(options_.window),
         trial(options_.window + 6);
     const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
-    const BasicJointProblem<S, axis_count> problem{&curve, feeds, &limits};
+    const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits};
     int rounds = 0;
     const std::size_t end = points_.size() - 4;
     for (std::size_t k = 4; k < end;) {
@@ -310,9 +312,13 @@ class Band {
   // and short where the feed changes, for from a low speed to a high one b grows by decades on a short
   // length.
   void make_knots() {
-    S feed = S(0);
-    for (const auto& block : blocks_) feed = std::max(feed, block.feed);
-    const S widest = std::min(S(0.1) * ramp_length(feed), length() / S(8));
+    S feed = S(0), tolerance = std::numeric_limits<S>::infinity();
+    for (const auto& block : blocks_) {
+      feed = std::max(feed, block.feed);
+      tolerance = std::min(tolerance, block.tolerance.minCoeff());
+    }
+    // Where the feed is so low that ramps are shorter than the tolerance, no more of them is gained.
+    const S widest = std::min(std::max(S(0.1) * ramp_length(feed), S(4) * tolerance), length() / S(8));
     constexpr S growth = S(0.12);
     constexpr int halvings = 6;
     std::vector<Fine> fine;

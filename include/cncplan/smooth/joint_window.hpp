@@ -24,7 +24,7 @@ struct BasicJointMemory {
 
 template <std::floating_point S>
 struct BasicJointOptions {
-  S gap = S(0.03);  ///< of the time, by the barrier
+  S gap = S(0.01);  ///< of the time, by the barrier
   int rounds = 40;
 };
 
@@ -34,6 +34,7 @@ template <std::floating_point S, int N>
 struct BasicJointProblem {
   const BasicBandProblem<S, N>* curve{};
   std::span<const S> feeds;  ///< of each cell
+  std::span<const S> skews;  ///< of each cell, see `BasicCellShape`
   const BasicMotionLimits<S, N>* limits{};
 };
 
@@ -76,12 +77,17 @@ BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, 
   const auto visit = [&](std::size_t cell, std::span<const Both> at, auto&& time, auto&& with) {
     const auto& here = curve.cells[cell];
     const Both* four = &at[cell - low];
-    const auto length_of = [&](std::size_t k) { return curve.cells[k].length; };
-    const S before = length_of(cell - 1), h = here.length, after = length_of(cell + 1);
-    const BasicCellSpeed<S> law{at_knot(four[0][N], four[1][N], before, h), four[1][N],
-                                at_knot(four[1][N], four[2][N], h, after)};
-    const S a = before / (before + h), z = h / (h + after);
-    const auto places = detail::places(h);
+    const auto shape_of = [&](std::size_t k) {
+      return BasicCellShape<S>{curve.cells[k].length, problem.skews[k]};
+    };
+    const BasicCellShape<S> shape = shape_of(cell);
+    const S h = shape.length, before = shape_of(cell - 1).from_middle(),
+            after = shape_of(cell + 1).to_middle();
+    const S a = before / (before + shape.to_middle()),
+            z = shape.from_middle() / (shape.from_middle() + after);
+    const BasicCellSpeed<S> law{four[0][N] + a * (four[1][N] - four[0][N]), four[1][N],
+                                four[1][N] + z * (four[2][N] - four[1][N])};
+    const auto places = detail::places(shape);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto w = moved(here.weights, h * static_cast<S>(i) / S(2));
       const auto to_speeds = [&](const std::array<S, 3>& r) {

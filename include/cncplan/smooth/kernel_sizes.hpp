@@ -24,13 +24,14 @@ struct BasicSizing {
   S tool{};       ///< length of the jump in space
   S others{};     ///< largest jump of another axis, over the tolerance of that axis
   S tolerance{};  ///< mm, > 0: how far the tool may leave the path here
+  S left = 1;     ///< share of the tolerances of other axes that there is here, > 0
   S widest{};     ///< mm, of the kernel if it were alone; by `fit_sizes`
   S sum{};        ///< what the widest kernels deviate here, over the tolerance; by `fit_sizes`
   S size{};       ///< mm, by `fit_sizes`
 
-  /// What a kernel of this size deviates at its centre over a tolerance of the tool.
-  [[nodiscard]] S deviation(S kernel_size, S of_tool) const {
-    return largest<S>(jump) * std::max(tool / of_tool, others) *
+  /// What a kernel of this size deviates at its centre over the tolerances at a place.
+  [[nodiscard]] S deviation(S kernel_size, const BasicSizing& there) const {
+    return largest<S>(jump) * std::max(tool / there.tolerance, others / there.left) *
            (jump == Jump::direction ? kernel_size : kernel_size * kernel_size);
   }
 };
@@ -75,7 +76,7 @@ template <std::floating_point S>
     for (std::size_t k = j; k != i && place == all[j].at;) place = all[k < i ? ++k : --k].at;
   const S x = static_cast<S>(std::abs(own.at - place));
   if (!(x < size * reach<S>(own.jump))) return S(0);
-  const S most = own.deviation(size, all[j].tolerance);
+  const S most = own.deviation(size, all[j]);
   if (own.jump == Jump::curvature) return most;
   return most * kernel(Jump::direction, x / size)[0] / largest<S>(Jump::direction);
 }
@@ -86,7 +87,7 @@ template <std::floating_point S>
 /// and as the tolerance allows.
 template <std::floating_point S>
 void set_widest(BasicSizing<S>& own) {
-  const S share = own.deviation(S(1), own.tolerance);
+  const S share = own.deviation(S(1), own);
   // A curvature's correction leaves half of the tolerance to those of directions.
   const S most = own.jump == Jump::direction ? S(1) / share : std::sqrt(S(0.5) / share);
   own.widest = own.size = std::min({own.wanted, most, own.room / reach<S>(own.jump)});

@@ -84,10 +84,10 @@ void emit_phases(std::span<const BasicSpeedCell<S, N>> cells, std::span<const S>
     emit(cell, phase);
   };
   at_time(0, {S(0), start.duration(), S(0), S(0), S(0), start.jerk});
+  const BasicSpeedProblem<S, N> inner{cells.subspan(1, cells.size() - 2), {}, nullptr};
   for (std::size_t cell = 1; cell + 1 < cells.size(); ++cell)
-    emit_cell(cell_speed(law, cell - 1, cell > 1 ? cells[cell - 1].length : S(0), cells[cell].length,
-                         cell + 2 < cells.size() ? cells[cell + 1].length : S(0)),
-              cells[cell].length, [&](const BasicPhase<S>& phase) { at_time(cell, phase); });
+    emit_cell(inner.speed(law, cell - 1), cells[cell].shape(),
+              [&](const BasicPhase<S>& phase) { at_time(cell, phase); });
   at_time(cells.size() - 1, {S(0), end.duration(), S(0), end.speed, -end.acceleration, end.jerk});
 }
 

@@ -37,8 +37,9 @@ struct BasicPiecePhase {
 
 template <std::floating_point S>
 struct BasicSmoothOptions {
-  int passes = 2;        ///< of geometry, each followed by one of speed
-  int joint_rounds = 0;  ///< of geometry and speed together: a little faster, at several times the work
+  int passes = 1;          ///< of geometry, each after one of speed
+  int joint_rounds = 4;    ///< the most of geometry and speed together
+  S joint_gain = S(3e-3);  ///< of the time by a round, for which there is another
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
@@ -70,7 +71,8 @@ class SpeedPlanner {
     forces_.resize(3 * limit_count(limits) * room);
   }
 
-  /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it.
+  /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it. The law of speed has
+  /// the skews of the last one.
   template <Path P>
   void take(const Band<P>& band) {
     cells_.clear();
@@ -105,6 +107,12 @@ class SpeedPlanner {
       }
       cut(h);
     }
+    std::size_t knot = 0;
+    for (std::size_t i = 1; i + 1 < cells_.size() && !knots_.empty(); ++i) {
+      const S from = band.cell_start(origins_[i].first) + origins_[i].second;
+      const S before = last_speed(from, knot), after = last_speed(from + cells_[i].length, knot);
+      cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
+    }
     const std::size_t n = cells_.size();
     paces_.resize(n);
     levels_.resize(n);
@@ -115,8 +123,17 @@ class SpeedPlanner {
   BasicSpeedPlan<S> plan(S gap, bool proven) {
     options_.window.gap = gap;
     options_.window.proven = proven;
-    return plan_speed<S, N>(cells_, limits_, options_,
-                            {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}});
+    const auto plan = plan_speed<S, N>(cells_, limits_, options_,
+                                       {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}});
+    const std::span<const BasicSpeedCell<S, N>> inner(cells_.data() + 1, cells_.size() - 2);
+    S at = cells_.front().length;
+    knots_.assign(1, {at, plan.start.speed});
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+      at += inner[i].length;
+      const BasicSpeedProblem<S, N> problem{inner, {}, nullptr};
+      knots_.push_back({at, std::sqrt(problem.speed(law(), i).end)});
+    }
+    return plan;
   }
 
   /// b of the last plan in each cell of the curve.
@@ -140,6 +157,14 @@ class SpeedPlanner {
     return result;
   }
 
+  /// The skews of those cells, 0 in those that are cut.
+  [[nodiscard]] std::vector<S> uncut_skews(std::size_t curve_cells) const {
+    std::vector<S> result(curve_cells, S(0));
+    for (std::size_t i = 1; i + 1 < cells_.size(); ++i)
+      if (origins_[i].second == S(0)) result[origins_[i].first] = cells_[i].skew;
+    return result;
+  }
+
   [[nodiscard]] std::span<const BasicSpeedCell<S, N>> cells() const { return cells_; }
   [[nodiscard]] std::span<const S> law() const { return std::span<const S>(law_).first(cells_.size()); }
   /// The curve's cell in which cell i lies, and how far into it.
@@ -150,12 +175,20 @@ class SpeedPlanner {
 
   [[nodiscard]] static BasicSpeedCell<S, N> speed_cell(const BasicCubic<S, N>& curve, S feed) {
     const auto& start = curve.start();
-    return {curve.length(), feed, start.first, start.second, start.third, S(0)};
+    return {curve.length(), feed, start.first, start.second, start.third, S(0), S(0)};
   }
   void add(const BasicCubic<S, N>& curve, S feed, std::pair<std::size_t, S> origin) {
     if (!(curve.length() > S(0))) return;
     cells_.push_back(speed_cell(curve, feed));
     origins_.push_back(origin);
+  }
+
+  // The speed of the last plan at a place; `knot` goes on from call to call.
+  [[nodiscard]] S last_speed(S at, std::size_t& knot) const {
+    while (knot + 2 < knots_.size() && knots_[knot + 1].first < at) ++knot;
+    const auto [from, slow] = knots_[knot];
+    const auto [to, fast] = knots_[std::min(knot + 1, knots_.size() - 1)];
+    return to > from ? slow + std::clamp((at - from) / (to - from), S(0), S(1)) * (fast - slow) : slow;
   }
 
   // So short that what motion from rest has come to at its end is well below what the cells near by allow.
@@ -184,6 +217,7 @@ class SpeedPlanner {
   std::vector<BasicSpeedCell<S, N>> cells_;
   std::vector<std::pair<std::size_t, S>> origins_;
   std::vector<BasicPace<S>> paces_;
+  std::vector<std::pair<S, S>> knots_;  // of the last plan: places and speeds
   std::vector<S> levels_, law_, numbers_;
   std::vector<BasicSpeedShare<S>> speeds_;
   std::vector<BasicForceShare<S>> forces_;
@@ -207,17 +241,29 @@ template <Path P>
   geometry.window = options.band_window;
   Band<P> band(blocks, geometry);
   detail::SpeedPlanner<S, N> planner(limits, options.speed_window);
-  for (int pass = 0; pass < options.passes; ++pass) {
+  // The time that the curve takes, about.
+  const auto coarse_time = [&] {
+    run.deviation = band.settle();
     planner.take(band);
-    static_cast<void>(planner.plan(options.coarse_gap, false));
+    return planner.plan(options.coarse_gap, false).duration;
+  };
+  S time = coarse_time();
+  for (int pass = 0; pass < options.passes; ++pass) {
     band.smoothen(planner.speeds_sq(band.cell_count()));
+    time = coarse_time();
   }
   for (int round = 0; round < options.joint_rounds; ++round) {
-    planner.take(band);
-    static_cast<void>(planner.plan(options.coarse_gap, false));
-    band.improve(planner.uncut_speeds_sq(band.cell_count()), limits, options.joint);
+    const auto before = band.points();
+    const S last = time;
+    band.improve(planner.uncut_speeds_sq(band.cell_count()), planner.uncut_skews(band.cell_count()), limits,
+                 options.joint);
+    time = coarse_time();
+    if (!(time < last)) {
+      band.set_points(before);
+      time = coarse_time();
+    }
+    if (!(time < (S(1) - options.joint_gain) * last)) break;
   }
-  run.deviation = band.settle();
   planner.take(band);
   run.speed = planner.plan(options.gap, true);
   const S slow = run.speed.slow_down;

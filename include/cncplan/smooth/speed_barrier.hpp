@@ -65,7 +65,7 @@ struct BasicSpeedShare {
 /// after those of the other.
 template <std::floating_point S>
 struct BasicCellShares {
-  S length{};
+  BasicCellShape<S> shape{};
   std::span<BasicSpeedShare<S>> speeds;
   std::span<BasicForceShare<S>> forces;
 
@@ -84,12 +84,20 @@ struct Place {
 
 /// Start, middle and end.
 template <std::floating_point S>
-[[nodiscard]] constexpr std::array<Place<S>, 3> places(S length) {
-  const S h = S(1) / length, hh = S(2) * h * h;
-  const std::array<S, 3> bend{hh, S(-2) * hh, hh};
-  return {{{{S(1), S(0), S(0)}, {S(-2) * h, S(2) * h, S(0)}, bend},
-           {{S(0.25), S(0.5), S(0.25)}, {-h, S(0), h}, bend},
-           {{S(0), S(0), S(1)}, {S(0), S(-2) * h, S(2) * h}, bend}}};
+[[nodiscard]] constexpr std::array<Place<S>, 3> places(const BasicCellShape<S>& shape) {
+  const S length = shape.length, skew = shape.skew;
+  const S first = S(1) / shape.to_middle(), last = S(1) / shape.from_middle();
+  const auto bend = [&](S share) {
+    const S k = share / length;
+    return std::array<S, 3>{k * first, -k * (first + last), k * last};
+  };
+  // At the middle: by b' at the start and the mean of b''.
+  const S b = length * (S(0.125) - skew / S(12)), slope = S(0.5) - skew / S(4);
+  return {{{{S(1), S(0), S(0)}, {-first, first, S(0)}, bend(S(1) - skew)},
+           {{S(1) + (b - length / S(2)) * first, (length / S(2) - b) * first - b * last, b * last},
+            {(slope - S(1)) * first, (S(1) - slope) * first - slope * last, slope * last},
+            bend(S(1))},
+           {{S(0), S(0), S(1)}, {S(0), -last, last}, bend(S(1) + skew)}}};
 }
 
 template <std::floating_point S>
@@ -161,7 +169,7 @@ template <std::floating_point S, int N>
                                       const BasicCellSpeed<S>& law) {
   constexpr S none = std::numeric_limits<S>::infinity();
   BasicUse<S> use;
-  const auto places = detail::places(cell.length);
+  const auto places = detail::places(cell.shape());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const S at = cell.length * static_cast<S>(i) / S(2), b = detail::row(places[i].b, law);
     if (!(b > S(0))) return {none, none, none};
@@ -190,7 +198,7 @@ struct BasicCellCost {
 template <std::floating_point S>
 [[nodiscard]] BasicCellCost<S> cell_cost(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law) {
   constexpr S none = std::numeric_limits<S>::infinity();
-  const auto places = detail::places(shares.length);
+  const auto places = detail::places(shares.shape);
   BasicCellCost<S> cost;
   S room = S(1);   // the product of what is left of all limits
   S least = S(1);  // of what is left of one
@@ -207,7 +215,7 @@ template <std::floating_point S>
       take(force.acceleration(b, slope));
       take(force.jerk(b, slope, bend));
     }
-    cost.time += (i == 1 ? S(4) : S(1)) * shares.length / (S(6) * std::sqrt(b));
+    cost.time += (i == 1 ? S(4) : S(1)) * shares.shape.length / (S(6) * std::sqrt(b));
     if (!(least > S(0))) return {none, none};
     if (room < S(1e-30)) {
       if (!(room > S(0))) return {none, none};
@@ -227,7 +235,7 @@ template <std::floating_point S>
 template <std::floating_point S>
 [[nodiscard]] BasicCellModel<S> cell_model(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law,
                                            S weight, S spread) {
-  const auto places = detail::places(shares.length);
+  const auto places = detail::places(shares.shape);
   BasicCellModel<S> model;
   const auto settle = [&](S& price, S pressure) {
     price = std::clamp(price, pressure / spread, pressure * spread);
@@ -240,7 +248,7 @@ template <std::floating_point S>
     // By b, b' and b''.
     std::array<S, 3> g{};
     std::array<S, 6> H{};
-    const S w = (i == 1 ? S(4) : S(1)) * shares.length / S(6), root = S(1) / std::sqrt(b);
+    const S w = (i == 1 ? S(4) : S(1)) * shares.shape.length / S(6), root = S(1) / std::sqrt(b);
     g[0] = -w * root / (S(2) * b);
     S own = S(0.75) * w * root / (b * b);
     const S cap = shares.speeds[i].speed_sq, left = S(1) / (S(1) - b * cap);
@@ -295,7 +303,7 @@ template <std::floating_point S>
 template <std::floating_point S>
 void move_prices(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law,
                  const BasicCellSpeed<S>& step, S weight, S part) {
-  const auto places = detail::places(shares.length);
+  const auto places = detail::places(shares.shape);
   const auto move = [&](S& price, S left, S rise) {
     price += part * ((weight + price * rise) / left - price);
   };

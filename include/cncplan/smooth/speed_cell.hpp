@@ -4,6 +4,7 @@
 #include <concepts>
 
 #include "cncplan/core/vector.hpp"
+#include "cncplan/smooth/speed_law.hpp"
 
 namespace cncplan::smooth {
 
@@ -24,7 +25,9 @@ struct BasicSpeedCell {
   Vector second = Vector::Zero();
   Vector third = Vector::Zero();
   S spread{};
+  S skew{};  ///< of the law of speed, see `BasicCellShape`
 
+  [[nodiscard]] BasicCellShape<S> shape() const { return {length, skew}; }
   [[nodiscard]] Vector first_at(S s) const { return first + s * (second + (s / S(2)) * third); }
   [[nodiscard]] Vector second_at(S s) const { return second + s * third; }
 };

@@ -1,4 +1,4 @@
-// The square of a speed over length, a quadratic B-spline, and the motion that it means.
+// The square of a speed over length, a spline with one coefficient a cell, and the motion that it means.
 #pragma once
 
 #include <algorithm>
@@ -13,37 +13,64 @@
 
 namespace cncplan::smooth {
 
-/// b(s) = v^2 within one cell, mm^2/s^2, by its Bezier coefficients. Along the path the acceleration is b'/2
-/// and the jerk sqrt(b) b''/2.
+/// How b'' goes through a cell: it is in the proportion of 1 + skew (2 u - 1) over the share u of the length.
+/// At a constant jerk b'' = 2 j / v, so a cell in which the speed goes from v0 to v1 has little less than the
+/// whole jerk throughout if its skew is (v0 - v1) / (v0 + v1).
+template <std::floating_point S>
+struct BasicCellShape {
+  S length{};
+  S skew{};  ///< in (-1, 1); 0: b'' is constant
+
+  /// To where the tangents of b at both ends meet, from the start.
+  [[nodiscard]] constexpr S to_middle() const { return length * (S(0.5) + skew / S(6)); }
+  /// From there to the end.
+  [[nodiscard]] constexpr S from_middle() const { return length * (S(0.5) - skew / S(6)); }
+};
+
+/// b(s) = v^2 within one cell, mm^2/s^2, by its values at both ends and where the tangents there meet. Along
+/// the path the acceleration is b'/2 and the jerk sqrt(b) b''/2.
 template <std::floating_point S>
 struct BasicCellSpeed {
   S start{};
   S middle{};
   S end{};
 
-  [[nodiscard]] constexpr S at(S share) const {
-    const S other = S(1) - share;
-    return other * other * start + S(2) * share * other * middle + share * share * end;
+  /// b at a share of the length.
+  [[nodiscard]] constexpr S at(S share, const BasicCellShape<S>& shape) const {
+    const auto [first, bend] = derivatives(shape);
+    const S x = share * shape.length;
+    return start + x * (first + x * bend * (S(0.5) - shape.skew * (S(0.5) - share / S(3))));
   }
-  /// The acceleration at a place of a cell of this length.
-  [[nodiscard]] constexpr S acceleration(S share, S length) const {
-    return ((S(1) - share) * (middle - start) + share * (end - middle)) / length;
+  [[nodiscard]] constexpr S acceleration(S share, const BasicCellShape<S>& shape) const {
+    const auto [first, bend] = derivatives(shape);
+    return (first + share * shape.length * bend * (S(1) - shape.skew * (S(1) - share))) / S(2);
+  }
+
+ private:
+  // b' at the start and the mean of b''.
+  [[nodiscard]] constexpr std::array<S, 2> derivatives(const BasicCellShape<S>& shape) const {
+    const S first = (middle - start) / shape.to_middle(), last = (end - middle) / shape.from_middle();
+    return {first, (last - first) / shape.length};
   }
 };
 
-/// b at the knot between two cells, between the coefficients of the one and the other.
+/// b at the knot between two cells, between the coefficients of the one and the other, which stand at these
+/// distances from it.
 template <std::floating_point S>
-[[nodiscard]] constexpr S at_knot(S before, S after, S length_before, S length_after) {
-  return (length_after * before + length_before * after) / (length_before + length_after);
+[[nodiscard]] constexpr S at_knot(S before, S after, S distance_before, S distance_after) {
+  return (distance_after * before + distance_before * after) / (distance_before + distance_after);
 }
 
 /// b over the cells of a path: one coefficient for each cell, its middle one, and one more at each end, the
-/// values of b there. b and b' are continuous, so speed and acceleration are.
+/// values of b there. b and b' are continuous, so speed and acceleration are. Beyond the ends there is no
+/// length.
 template <std::floating_point S>
 [[nodiscard]] constexpr BasicCellSpeed<S> cell_speed(std::span<const S> law, std::size_t cell,
-                                                     S length_before, S length, S length_after) {
-  return {at_knot(law[cell], law[cell + 1], length_before, length), law[cell + 1],
-          at_knot(law[cell + 1], law[cell + 2], length, length_after)};
+                                                     const BasicCellShape<S>& before,
+                                                     const BasicCellShape<S>& shape,
+                                                     const BasicCellShape<S>& after) {
+  return {at_knot(law[cell], law[cell + 1], before.from_middle(), shape.to_middle()), law[cell + 1],
+          at_knot(law[cell + 1], law[cell + 2], shape.from_middle(), after.to_middle())};
 }
 
 /// Two phases of equal duration and constant jerk from one speed and acceleration to another, over a length:
@@ -69,7 +96,8 @@ template <std::floating_point S>
 /// Calls `emit(phase)` for the phases that drive a law of speed through a cell; time and position count from
 /// the cell's start. Where the speed changes much the cell is cut, so that their jerk is close to the law's.
 template <std::floating_point S, class Emit>
-void emit_cell(const BasicCellSpeed<S>& b, S length, Emit&& emit) {
+void emit_cell(const BasicCellSpeed<S>& b, const BasicCellShape<S>& shape, Emit&& emit) {
+  const S length = shape.length;
   constexpr S change = S(0.1);
   constexpr int most = 8;
   const S v0 = std::sqrt(b.start), v1 = std::sqrt(b.end);
@@ -77,15 +105,16 @@ void emit_cell(const BasicCellSpeed<S>& b, S length, Emit&& emit) {
     emit(BasicPhase<S>{S(0), length / v0, S(0), v0, S(0), S(0)});
     return;
   }
-  const S between = std::sqrt(b.at(S(0.5)));
+  const S between = std::sqrt(b.at(S(0.5), shape));
   const S low = std::min({v0, v1, between}), high = std::max({v0, v1, between});
   const S wanted = std::ceil((high - low) / (change * low));
   const int parts = wanted < static_cast<S>(most) ? std::max(static_cast<int>(wanted), 1) : most;
   const S part_length = length / static_cast<S>(parts);
-  S time = S(0), speed = v0, acceleration = b.acceleration(S(0), length);
+  S time = S(0), speed = v0, acceleration = b.acceleration(S(0), shape);
   for (int part = 1; part <= parts; ++part) {
     const S share = static_cast<S>(part) / static_cast<S>(parts);
-    const S next_speed = part == parts ? v1 : std::sqrt(b.at(share)), next = b.acceleration(share, length);
+    const S next_speed = part == parts ? v1 : std::sqrt(b.at(share, shape)),
+            next = b.acceleration(share, shape);
     for (BasicPhase<S> phase : phases_between(part_length, speed, acceleration, next_speed, next)) {
       phase.position += part_length * static_cast<S>(part - 1);
       phase.time = time;

@@ -197,14 +197,13 @@ void gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> level
   const std::size_t cells = problem.cells.size();
   law[0] = from.speed_sq;
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    const S h = problem.cells[cell].length;
-    // The place at which a B-spline's coefficient stands: the mean of its inner knots.
-    law[cell + 1] = value(at + h / S(2));
-    at += h;
+    // Where the coefficient stands.
+    law[cell + 1] = value(at + problem.cells[cell].shape().to_middle());
+    at += problem.cells[cell].length;
   }
   law[cells + 1] = to.speed_sq;
-  law[1] = from.speed_sq + from.slope * problem.cells.front().length / S(2);
-  law[cells] = to.speed_sq + to.slope * problem.cells.back().length / S(2);
+  law[1] = from.speed_sq + from.slope * problem.cells.front().shape().to_middle();
+  law[cells] = to.speed_sq + to.slope * problem.cells.back().shape().from_middle();
 }
 
 }  // namespace cncplan::smooth

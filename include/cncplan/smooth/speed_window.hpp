@@ -20,10 +20,11 @@ struct BasicSpeedProblem {
   std::span<BasicPace<S>> paces;
   const BasicMotionLimits<S, N>* limits{};
 
-  /// b in a cell, from coefficients as `cell_speed` has them; beyond the ends there is no length.
+  /// b in a cell, from coefficients as `cell_speed` has them.
   [[nodiscard]] BasicCellSpeed<S> speed(std::span<const S> law, std::size_t cell) const {
-    return cell_speed(law, cell, cell > 0 ? cells[cell - 1].length : S(0), cells[cell].length,
-                      cell + 1 < cells.size() ? cells[cell + 1].length : S(0));
+    return cell_speed(law, cell, cell > 0 ? cells[cell - 1].shape() : BasicCellShape<S>{},
+                      cells[cell].shape(),
+                      cell + 1 < cells.size() ? cells[cell + 1].shape() : BasicCellShape<S>{});
   }
 };
 
@@ -113,16 +114,16 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
   const std::size_t cell1 = std::min(first + count, cells);  // cells [cell0, cell1) read what moves
   const std::size_t low = cell0, high = std::min(cell1 + 2, law.size());
   const auto trial = memory.room(5, high - low), step = memory.room(6, high - low);
-  // Of each cell the part of its length in that of it and the cell before.
+  // At each knot how far it is from the coefficient before it to the next.
   const auto parts = memory.room(7, cell1 - cell0 + 1);
   for (std::size_t cell = cell0; cell <= cell1; ++cell) {
-    const S before = cell > 0 ? problem.cells[cell - 1].length : S(0);
-    const S own = cell < cells ? problem.cells[cell].length : S(0);
+    const S before = cell > 0 ? problem.cells[cell - 1].shape().from_middle() : S(0);
+    const S own = cell < cells ? problem.cells[cell].shape().to_middle() : S(0);
     parts[cell - cell0] = before / (before + own);
   }
   const auto shares_of = [&](std::size_t cell) {
     const std::size_t i = cell - cell0;
-    return BasicCellShares<S>{problem.cells[cell].length, memory.speeds.subspan(3 * i, 3),
+    return BasicCellShares<S>{problem.cells[cell].shape(), memory.speeds.subspan(3 * i, 3),
                               memory.forces.subspan(3 * limits * i, 3 * limits)};
   };
   const auto set = [&](std::size_t cell) {
@@ -176,7 +177,7 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
       const BasicUse<S> sampled = sampled_use(problem.cells[cell], *problem.limits, b);
       if (sampled.force() < S(0.8) && sampled.velocity < S(0.99)) continue;  // far from all limits
       BasicUse<S> use;
-      emit_cell(b, problem.cells[cell].length, [&](const BasicPhase<S>& phase) {
+      emit_cell(b, problem.cells[cell].shape(), [&](const BasicPhase<S>& phase) {
         use.include(use_of(phase, problem.cells[cell], *problem.limits));
       });
       proven = proven && use.slow_down() <= S(1);
