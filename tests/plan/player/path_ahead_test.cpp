@@ -133,6 +133,21 @@ TEST_CASE("in float a place is a junction but for rounding too") {
   }
 }
 
+TEST_CASE("a block as short as rounding is passed by from its farther half only, one of no length always") {
+  std::vector<plan::BasicPlayedBlock<float>> memory(4);
+  plan::BasicPathAhead<float> path(memory);
+  constexpr float length = 3e-5F;
+  for (const float own : {1.0F, length, 0.0F, 1.0F})
+    path.ring.push({{own, 30.0F, {30.0F, 1e3F, 1e4F}, 0.0F}, 30.0F});
+  path.ring.take();
+  using Place = plan::BasicPlace<float>;
+  CHECK(path.snapped({0, 1.0F}) == Place{1, 0.0F});
+  CHECK(path.snapped({1, 0.0F}) == Place{1, 0.0F});
+  CHECK(path.snapped({1, 0.4F * length}) == Place{1, 0.0F});
+  CHECK(path.snapped({1, 0.6F * length}) == Place{2, 0.0F});
+  CHECK(path.snapped({2, 0.0F}) == Place{3, 0.0F});
+}
+
 // The oracle: from v to rest, jerk alone binding, the way is v sqrt(v / j).
 TEST_CASE("a brake that would rest behind the last block is none, in both directions") {
   Blocks given(3);

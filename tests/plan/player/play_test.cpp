@@ -31,7 +31,8 @@ std::string first_lines(std::istream& program, int count) {
 std::pair<double, double> durations(const std::string& text, double tolerance) {
   const auto exact = plan_text(text, mill, {.tolerance = 0});
   REQUIRE(exact);
-  const std::vector<Block> blocks(exact->program().begin(), exact->program().end());
+  std::vector<Block> blocks(exact->program().begin(), exact->program().end());
+  merge_lines(std::span(blocks), mill, plan::SmoothingRules<double>{tolerance, 1e-3});
   const auto planned = plan_blocks(blocks, mill, {.tolerance = tolerance});
   REQUIRE(planned);
   const std::span<const Block> all(blocks);

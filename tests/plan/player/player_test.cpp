@@ -4,6 +4,7 @@
 #include <concepts>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cncplan/profile/from_state.hpp"
@@ -120,6 +121,24 @@ TEST_CASE("a hold takes the least time where limits differ from block to block")
   }
   CAPTURE(slower, worst);
   CHECK(slower == 0);
+}
+
+TEST_CASE("a hold rests before a dwell that comes in while it brakes") {
+  for (int later = 1; later < 60; ++later) {
+    CAPTURE(later);
+    Rig rig(16);
+    for (const auto& [length, share] : {std::pair{2.81, 0.8}, {0.41, 1.0}, {0.27, 0.9}})
+      rig.player.push({{length, 1e3, {30.0, 1000.0 * share, 10000.0 * share}, 0.0}, 30.0});
+    run(rig.player, 0.098);
+    rig.player.hold();
+    run(rig.player, 1e-3 * later);
+    constexpr Limits none{1.0, 1.0, 1.0};  // over no length they play no part
+    rig.player.push({{0.0, 0.0, none, 0.5}, 1.0});
+    rig.player.push(straight(3.0));
+    const plan::Played then = run(rig.player, 0.4);
+    CHECK(then.at_rest);
+    CHECK(then.block < 3);  // that is where it would rest if nothing had come
+  }
 }
 
 TEST_CASE("a stop ends the program where it comes to rest") {
@@ -405,6 +424,26 @@ TEST_CASE("in float it holds, goes on, waits for dwells once and ends at the end
     const auto end = rig.player.tick(1e-3F);
     CHECK(end.block == count - 1);
     CHECK(end.along == length(count - 1));
+  }
+}
+
+TEST_CASE("in float a hold brakes on where it comes to other limits at next to no speed") {
+  constexpr float period = 1e-3F, jerk = 8000.0F;  // the highest
+  for (int hold = 1; hold < 30; ++hold) {
+    CAPTURE(hold);
+    BasicRig<float> rig(8);
+    rig.player.push({{0.011F, 1e3F, {30.0F, 400.0F, 5000.0F}, 0.0F}, 30.0F});
+    rig.player.push({{0.024F, 1e3F, {30.0F, 300.0F, 1000.0F}, 0.0F}, 30.0F});
+    rig.player.push({{0.054F, 1e3F, {30.0F, 500.0F, jerk}, 0.0F}, 30.0F});
+    float before = 0.0F;
+    for (int tick = 0; tick < 200; ++tick) {
+      if (tick == hold) rig.player.hold();
+      const auto now = rig.player.tick(period);
+      CHECK(std::abs(now.acceleration - before) <= jerk * period * 1.001F);
+      before = now.acceleration;
+      if (now.at_rest) rig.player.resume();
+    }
+    CHECK(rig.player.finished());
   }
 }
 

@@ -15,9 +15,9 @@
 
 namespace cncplan::plan {
 
-/// mm/s: rest but for rounding.
+/// mm/s: rest but for rounding. A brake that ends faster goes on under the limits behind.
 template <std::floating_point S>
-inline constexpr S negligible_speed = S(1e5) * std::numeric_limits<S>::epsilon();
+inline constexpr S negligible_speed = std::max(S(2e-11), S(1e3) * std::numeric_limits<S>::epsilon());
 
 /// By how much rounding may exceed the cap of a junction.
 template <std::floating_point S>

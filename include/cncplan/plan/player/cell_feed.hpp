@@ -14,6 +14,7 @@
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/plan/cell_maker.hpp"
+#include "cncplan/plan/merge_lines.hpp"
 #include "cncplan/plan/player/block_ring.hpp"
 #include "cncplan/plan/player/nearest.hpp"
 #include "cncplan/plan/player/smoothing_ahead.hpp"
@@ -39,8 +40,13 @@ template <std::floating_point S>
   return std::clamp<std::size_t>(room / 4 > 2 ? (room / 4 - 2) / 4 : 1, 1, smooth::most_neighbours);
 }
 
-/// Keeps blocks by their number, smooths them and cuts them into cells, as far as there is room for those.
-/// One thread pushes and cuts; another one asks for blocks and lets them go.
+/// How many lines a feed with room for so many blocks merges: an eighth of the room waits for the next one.
+[[nodiscard]] constexpr std::int64_t merged_lines_for(std::size_t room) {
+  return std::min(static_cast<std::int64_t>(room / 8), most_merged_lines);
+}
+
+/// Keeps blocks by their number, merges and smooths them and cuts them into cells, as far as there is room
+/// for those. One thread pushes and cuts; another one asks for blocks and lets them go.
 template <MachineModel M, BlockModel B, std::size_t room>
 class CellFeed {
  public:
@@ -52,7 +58,11 @@ class CellFeed {
   using Driven = smooth::Smoothed<typename B::Path>;
 
   CellFeed(const M& machine, const Rules& rules, const SmoothingRules<Scalar>& smoothing)
-      : machine_(machine), tool_(tool_axes(machine)), maker_(machine, rules, true), smoothing_(smoothing) {
+      : machine_(machine),
+        tool_(tool_axes(machine)),
+        maker_(machine, rules, true),
+        merger_(machine_, smoothing, merged_lines_for(room)),
+        smoothing_(smoothing) {
     if (const auto ok = validate(machine); !ok) fail({ok.error(), 0, 0, {}});
   }
 
@@ -67,17 +77,20 @@ class CellFeed {
     slot.start = length_;
     if (block.path.length() > Scalar(0) && length_of(block.path, machine_) != LengthOf::rotary_axes)
       length_ += block.path.length();
-    smoothing_.push(slot.block, machine_);
+    merger_.push(block_at(), merged());
     pushed_.store(number + 1, std::memory_order_release);
     return true;
   }
   /// Behind what has been pushed the motion rests.
-  void end_part() { smoothing_.end_part(); }
+  void end_part() {
+    merger_.end(block_at(), merged());
+    smoothing_.end_part();
+  }
 
   /// Hands at most so many cells to `take`, which says false when there is no room; whether there are more.
   template <class Take>
   bool cut(std::size_t most, Take&& take) {
-    if (waits_.exchange(false, std::memory_order_acquire)) smoothing_.end_part();
+    if (waits_.exchange(false, std::memory_order_acquire)) end_part();
     for (; most > 0; --most) {
       if (!waiting_ && !make()) return false;
       if (waiting_) {
@@ -93,6 +106,7 @@ class CellFeed {
   /// any), passes a place, if one is given. Not while blocks are pushed or asked for.
   void restart(int line, const std::optional<Vector>& place) {
     maker_.restart(std::nullopt);
+    merger_.restart();
     smoothing_.restart();
     waits_ = false;
     waiting_.reset();
@@ -139,6 +153,15 @@ class CellFeed {
 
   [[nodiscard]] const Slot& slot(std::int64_t number) const {
     return slots_[static_cast<std::size_t>(number) % room];
+  }
+
+  // For the merger: a block, and what becomes of one that is done.
+  [[nodiscard]] auto block_at() {
+    return
+        [this](std::int64_t number) -> B& { return slots_[static_cast<std::size_t>(number) % room].block; };
+  }
+  [[nodiscard]] auto merged() {
+    return [this](std::int64_t number) { smoothing_.push(slot(number).block, machine_); };
   }
 
   void fail(const gcode::Diagnostic& fault) {
@@ -196,14 +219,15 @@ class CellFeed {
     return joined(std::optional<Vector>(place), there, machine_);
   }
 
-  // Whether a place is within the tolerance of the path: the axes may have stopped on a corner with the block
-  // before, which is not smoothed now.
+  // Whether a place can be one of the path: the axes may have stopped on a corner with the block before,
+  // which is not smoothed now, or on a line that was merged with others. Both paths are within the tolerance
+  // of the programmed one.
   [[nodiscard]] bool near(const Vector& place, const Vector& there) const {
     for (int i = 0; i < M::axis_count; ++i) {
       const bool rotary = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
       const SmoothingRules<Scalar>& rules = smoothing_.rules();
-      if (!(std::abs(there[i] - place[i]) <= (rotary ? rules.rotary_tolerance : rules.tolerance)))
-        return false;
+      const Scalar apart = Scalar(2) * (rotary ? rules.rotary_tolerance : rules.tolerance);
+      if (!(std::abs(there[i] - place[i]) <= apart)) return false;
     }
     return true;
   }
@@ -252,6 +276,7 @@ class CellFeed {
   M machine_;
   std::array<int, 3> tool_;
   CellMaker<M, B, junction::BasicDeviation<Scalar>> maker_;
+  LineMerger<M, B> merger_;
   SmoothingAhead<M, B, room, neighbours_for(room)> smoothing_;
   std::array<Slot, room> slots_{};
   std::optional<Cell> waiting_;  // for room

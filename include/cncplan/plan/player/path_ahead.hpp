@@ -107,6 +107,11 @@ class BasicPathAhead {
     return direction > 0 ? ring[block].caps.entry : ring[block + 1].caps.entry;
   }
 
+  /// Whether the junction behind a block is passed at rest only.
+  [[nodiscard]] bool rests_behind(std::int64_t block) const {
+    return ring.holds(block + direction) && !(junction_cap(block + direction) > S(0));
+  }
+
   /// A place so much farther on; `along` is below the block's length but where no block follows. A block
   /// behind which the motion rests is not left by rounding, nor is one at whose end a profile ends that has
   /// `left` mm to go: the limits behind it are others. That is for `snapped`, once the profile is over.
@@ -115,8 +120,7 @@ class BasicPathAhead {
     while (ring.holds(from.block) && ring.holds(from.block + direction)) {
       const S over = from.along - ring.length(from.block);
       if (over < S(0) || over + left <= path_rounding<S>) break;
-      const bool stops = stops_behind(from.block) || !(junction_cap(from.block + direction) > S(0));
-      if (stops && over < path_rounding<S>) break;
+      if (over < path_rounding<S> && (stops_behind(from.block) || rests_behind(from.block))) break;
       from.along = over;
       from.block += direction;
     }
@@ -128,10 +132,12 @@ class BasicPathAhead {
     return ring.holds(place.block) && place.along > ring.length(place.block) + path_rounding<S>;
   }
 
-  /// A place that is a junction but for rounding, at the junction.
+  /// A place that is a junction but for rounding, at the junction. In a block as short as that the nearer end
+  /// counts: from its start it is not passed by.
   [[nodiscard]] Place snapped(Place place) const {
     if (!ring.holds(place.block)) return place;
-    if (place.along >= ring.length(place.block) - path_rounding<S>) return {place.block + direction, S(0)};
+    const S left = ring.length(place.block) - place.along;
+    if (left <= path_rounding<S> && left <= place.along) return {place.block + direction, S(0)};
     return {place.block, place.along < path_rounding<S> ? S(0) : place.along};
   }
 
@@ -180,8 +186,9 @@ class BasicPathAhead {
     return count;
   }
 
-  /// The zones of equal limits from a place on, as far as it takes to come to rest from `speed`; how many.
-  /// When `out` (room for one at least) is full, the last goes on under the lowest limits of all that follow.
+  /// The zones of equal limits from a place on, as far as it takes to come to rest from `speed`, and no
+  /// farther than to a rest; how many. When `out` (room for one at least) is full, the last goes on under the
+  /// lowest limits of all that follow.
   std::size_t zones(const Place& from, S speed, std::span<BasicBlockCaps<S>> out) const {
     std::size_t count = 0;
     Horizon<S> horizon;
@@ -196,6 +203,7 @@ class BasicPathAhead {
       zone.length += length;
       zone.limits.acceleration = std::min(zone.limits.acceleration, limits.acceleration);
       zone.limits.jerk = std::min(zone.limits.jerk, limits.jerk);
+      if (rests_behind(at.block)) break;  // limits behind that are no concern of the brake
     }
     return count;
   }

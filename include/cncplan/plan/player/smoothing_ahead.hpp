@@ -96,7 +96,7 @@ class SmoothingAhead {
   struct Mover {
     std::int64_t number{};
     OfBlock own;
-    Scalar tolerance{};
+    Scalar tolerance{}, left{};
     BasicBeside<Scalar> beside;
     std::size_t sizing{};  // the first of the junction, and how many
     std::size_t sizing_count{};
@@ -121,6 +121,7 @@ class SmoothingAhead {
       own = {number,
              {0, 0, place_, passing},
              tolerance_of(block, rules_),
+             Scalar(1) - block.merged,
              {block.path.length(), detail::top_limits(block, machine)},
              sizings_end_,
              0};
@@ -198,12 +199,16 @@ class SmoothingAhead {
     std::int64_t from = at - 1, to = at + 1;
     while (from > left && mover(from).sizing_count == 0) --from;
     while (to < right && mover(to).sizing_count == 0) ++to;
-    Scalar tolerance = std::numeric_limits<Scalar>::infinity();
-    for (std::int64_t i = from; i < to; ++i) tolerance = std::min(tolerance, mover(i).tolerance);
+    Scalar tolerance = std::numeric_limits<Scalar>::infinity(), left_over = Scalar(1);
+    for (std::int64_t i = from; i < to; ++i) {
+      tolerance = std::min(tolerance, mover(i).tolerance);
+      left_over = std::min(left_over, mover(i).left);
+    }
     for (std::size_t k = own.sizing; k < own.sizing + own.sizing_count; ++k) {
       auto& sizing = sizings_[k];
       sizing.room = static_cast<Scalar>(std::min(sizing.at - mover(left).own.start, end - sizing.at));
       sizing.tolerance = tolerance;
+      sizing.left = left_over;
       smooth::set_widest(sizing);
     }
   }
