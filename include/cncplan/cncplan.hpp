@@ -130,6 +130,7 @@
 #include "cncplan/plan/live_steps.hpp"
 #include "cncplan/plan/machine.hpp"
 #include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/merge_lines.hpp"
 #include "cncplan/plan/motion_table.hpp"
 #include "cncplan/plan/motor_edge.hpp"
 #include "cncplan/plan/move_to.hpp"

@@ -52,7 +52,7 @@ TEST_CASE("every line's blocks come at once: motions, dwells, stops and words", 
 
 TEST_CASE("errors have their place, and travel is checked", "[reader]") {
   BlockReader reader(mill);
-  CHECK(fault(reader, "G1 X5..") == "1:7: error: .: unknown character");
+  CHECK(fault(reader, "G1 X5..") == "1:7: error: . belongs to no letter, or a blank is in a number");
   CHECK(fault(reader, "G1 X101 F100") == "2:4: error: axis X is above the limit 100");
   BlockReader anywhere(mill, {.start = {10, 20, 30}});
   const auto blocks = *anywhere.read_line("G0 X11");

@@ -40,6 +40,17 @@ class BasicLine {
     tool_rate_ = tool_length / length_;
   }
 
+  /// The part that begins at a parameter; of the same direction, bit for bit.
+  [[nodiscard]] BasicLine part(S from, S length) const {
+    const Vector start = position(from);
+    if (!(length > S(0))) return {start, start};
+    BasicLine result = *this;
+    result.start_ = start;
+    result.end_ = position(from + length);
+    result.length_ = length;
+    return result;
+  }
+
   [[nodiscard]] const Vector& start() const { return start_; }
   [[nodiscard]] const Vector& end() const { return end_; }
   /// The derivative by the length: a unit vector where no more than three axes move; zero if length() is.

@@ -189,6 +189,7 @@ class BlockBuilder {
       result.tolerance = Scalar(0);  // from its start on, where the block before may be smoothed
     else if (motion.tolerance && *motion.tolerance > 0)
       result.tolerance = static_cast<Scalar>(*motion.tolerance);
+    result.merge = static_cast<Scalar>(motion.merge_tolerance);
     result.path = path_of(*programmed);
     if constexpr (MappedModel<M>)
       if (result.rapid)

@@ -66,7 +66,8 @@ class BlockReader {
   [[nodiscard]] bool finished() const { return reader_.finished(); }
   /// Lines read.
   [[nodiscard]] int line() const { return reader_.line(); }
-  /// What the last line has that is without effect.
+  /// What the last line has that is without effect. P and Q of G64 are told, too: they have one where the
+  /// executor has a tolerance.
   [[nodiscard]] const Warnings& warnings() const { return warnings_; }
 
  private:

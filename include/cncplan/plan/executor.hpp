@@ -46,10 +46,11 @@ using ExecutorOptions = BasicExecutorOptions<double>;
 /// blocks, and at joints that are smoothed; at another one the velocity jumps, at no more than `plan_blocks`
 /// allows.
 ///
-/// Within a tolerance the path is smoothed, as by `plan_blocks`; no request changes it. What a block's path
-/// is depends on the blocks that follow: half of `capacity`, 66 at most, hold it back until they
-/// come, until a rest is known, or until the machine has rested for `longest_wait` (then the part ends at
-/// rest). Under a map paths stay exact.
+/// Within a tolerance lines are merged and the path is smoothed, as by `plan_blocks`; no request changes it.
+/// What a block's path is depends on the blocks that follow: half of `capacity`, 66 at most, hold it back
+/// until they come, until a rest is known, or until the machine has rested for `longest_wait` (then the part
+/// ends at rest). One that is merged waits for the next line that is not, too: a line is made of a quarter of
+/// `capacity`, 64 at most. Under a map paths stay exact.
 ///
 /// Look-ahead reaches over `capacity` cells: one for a line on the exact path, one or two for a block that is
 /// smoothed, more for a long curve (docs/real-time.md has figures). As many blocks are kept behind to run
@@ -186,8 +187,8 @@ class Executor {
   /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
   /// block of a line (0: nothing is), and the motion begins where that block passes the place at which the
   /// axes stand; where it does not pass within 1e-6, the error is discontinuous. Within a tolerance the block
-  /// is smoothed with those that follow only: the axes go to it first, where it passes within the tolerance.
-  /// False, and nothing done, where the machine moves.
+  /// is merged and smoothed with those that follow only: the axes go to it first, where it passes within
+  /// twice the tolerance. False, and nothing done, where the machine moves.
   bool restart(int line, const Vector& position) {
     if (jog_.moves() || !player_.skip_to(0)) return false;
     feed_.restart(line, position);

@@ -24,11 +24,14 @@ struct BasicBlock {
   bool exact_stop{};                            ///< at rest at its end
   bool exact_path{};                            ///< at rest at its end if the tool's way turns there (G61)
   bool goes_on{};                               ///< the next block is cut from the same motion
+  bool straight_on{};                           ///< the next block that moves is part of the same merged line
   bool rapid{};                                 ///< at the rapid rate, whatever the feed
   int line{};                                   ///< of the program; 0 where there is none
   int column{};
   std::optional<S> tolerance{};  ///< mm from the path; that of the options where there is none
-  gcode::Word word{};            ///< told where the block begins; no letter: none
+  S merge{};   ///< mm: lines that are this near to one line become parts of it (G64 Q); `plan::LineMerger`
+  S merged{};  ///< share of the tolerances that merging has taken of a block that is part of such a line
+  gcode::Word word{};  ///< told where the block begins; no letter: none
 
   /// The same block among those whose paths are of more kinds.
   template <class... More>
@@ -41,10 +44,13 @@ struct BasicBlock {
     block.exact_stop = exact_stop;
     block.exact_path = exact_path;
     block.goes_on = goes_on;
+    block.straight_on = straight_on;
     block.rapid = rapid;
     block.line = line;
     block.column = column;
     block.tolerance = tolerance;
+    block.merge = merge;
+    block.merged = merged;
     block.word = word;
     return block;
   }

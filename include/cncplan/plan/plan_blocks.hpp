@@ -12,6 +12,7 @@
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/plan/cells.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/merge_lines.hpp"
 #include "cncplan/plan/motion_table.hpp"
 #include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
@@ -71,10 +72,10 @@ template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar
 }  // namespace plan
 
 /// The fastest motion along blocks, end to end, from rest to rest, such that the tool and each axis keep
-/// their limits. Within the tolerance of the options the path is smoothed. Joints that are left exact are
-/// passed as fast as ones rounded within the junction deviation would be, where the velocity jumps; under a
-/// map all joints are. Errors: those of `validate` for the machine; a block
-/// that leaves the travel of an axis or that no limit bounds.
+/// their limits. Within the tolerance of the options lines are merged and the path is smoothed. Joints that
+/// are left exact are passed as fast as ones rounded within the junction deviation would be, where the
+/// velocity jumps; under a map all joints are. Errors: those of `validate` for the machine; a block that
+/// leaves the travel of an axis or that no limit bounds.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
@@ -87,9 +88,11 @@ template <std::ranges::contiguous_range R, MachineModel M>
   std::vector<BlockOf<R>> own = plan::own_blocks(std::forward<R>(blocks));
   plan::BasicSmoothing<S, M::axis_count> smoothing;
   if constexpr (EnclosedPath<typename BlockOf<R>::Path> && !MappedModel<M>)
-    if (options.tolerance > 0)
-      smoothing =
-          plan::smoothing(std::span<const BlockOf<R>>(own), machine, plan::smoothing_rules<S>(options));
+    if (options.tolerance > 0) {
+      const auto smoothing_rules = plan::smoothing_rules<S>(options);
+      merge_lines(std::span(own), machine, smoothing_rules);
+      smoothing = plan::smoothing(std::span<const BlockOf<R>>(own), machine, smoothing_rules);
+    }
   return plan::trajectory(std::move(own), machine, rules, plan::SevenPhase{}, std::move(smoothing));
 }
 

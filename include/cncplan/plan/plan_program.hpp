@@ -52,8 +52,8 @@ struct ProgramBlocks {
 namespace plan {
 
 /// Reads what is left of a source and adds it to a program, in the file that the source names, else in
-/// `file`. Where programs are smoothed, G64 P has its effect, and the reader's warning that it is ignored is
-/// left out.
+/// `file`. Where programs are smoothed, P and Q of G64 have their effect, and the reader's warnings that they
+/// are ignored are left out.
 template <MachineModel M, gcode::LineSource Lines>
 [[nodiscard]] Expected<void, ProgramError> read_into(ProgramBlocks<M>& program, Lines& lines,
                                                      gcode::Reader& reader, BlockBuilder<M>& builder,
@@ -68,7 +68,7 @@ template <MachineModel M, gcode::LineSource Lines>
     if (const auto* word = std::get_if<gcode::Word>(&item))
       program.words.push_back({*word, program.blocks.size()});
     if (const auto* warning = std::get_if<gcode::Warning>(&item);
-        warning != nullptr && !(smoothed && warning->about.error.field == gcode::tolerance_of_g64))
+        warning != nullptr && !(smoothed && gcode::void_if_smoothed(warning->about)))
       program.warnings.push_back(gcode::to_text(file_here(), warning->about, "warning"));
     auto block = builder.take(item);
     if (!block) {
@@ -101,7 +101,7 @@ template <MachineModel M, gcode::LineSource Lines>
   BlockBuilder<M> builder(machine, dialect, options.arcs);
   builder.start_at(start);
   ProgramBlocks<M> program;
-  const bool smoothed = options.tolerance > 0;
+  const bool smoothed = options.tolerance > 0 && !MappedModel<M>;
   program.files.push_back({0, file});
   constexpr std::size_t short_line = 24;  // bytes: few programs need more room than that
   if constexpr (requires { lines.byte_count(); }) program.blocks.reserve(lines.byte_count() / short_line);

@@ -220,7 +220,7 @@ class SmoothPlanner {
     VectorN<S, n> result;
     for (int i = 0; i < n; ++i)
       result[i] = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary
-                      ? rules_.rotary_tolerance
+                      ? (S(1) - block.merged) * rules_.rotary_tolerance
                       : tolerance_of(block, rules_);
     return result;
   }
@@ -245,6 +245,7 @@ class SmoothPlanner {
       next = source + 1;
       Out& block = add_block(source);
       block.path = run.pieces[i].path;
+      block.straight_on = false;
       if (!begins) block.word = {};
       block.goes_on = !ends;
       if (!ends) {
@@ -295,16 +296,22 @@ class SmoothPlanner {
 /// first axes, where backlash takes time, and where the tolerance of the options is 0; blocks that move only
 /// rotary axes; and a run for which no curve was found, or one that leaves the travel of an axis.
 ///
-/// Blocks of the trajectory are pieces of those that were given; `source` says of which. In a run that has
-/// rapids and feed moves the tool's velocity may be that of rapids. Errors as for `plan_blocks`.
+/// Blocks of the trajectory are pieces of those that were given, merged as by `plan_blocks`; `source` says of
+/// which. In a run that has rapids and feed moves the tool's velocity may be that of rapids. Errors as for
+/// `plan_blocks`.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, plan::SmoothBlockOf<BlockOf<R>>>, ProgramError> plan_smooth(
     const R& blocks, const M& machine, const PlanOptions& options = {}) {
-  return plan::detail::SmoothPlanner<M, BlockOf<R>>(
-             std::span<const BlockOf<R>>(std::ranges::data(blocks), std::ranges::size(blocks)), machine,
-             options)
-      .run();
+  std::span<const BlockOf<R>> given(std::ranges::data(blocks), std::ranges::size(blocks));
+  std::vector<BlockOf<R>> merged;
+  if constexpr (!MappedModel<M>)
+    if (std::ranges::any_of(given, [](const auto& block) { return block.merge > 0; })) {
+      merged.assign(given.begin(), given.end());
+      merge_lines(std::span(merged), machine, plan::smoothing_rules<typename M::Scalar>(options));
+      given = merged;
+    }
+  return plan::detail::SmoothPlanner<M, BlockOf<R>>(given, machine, options).run();
 }
 
 }  // namespace cncplan

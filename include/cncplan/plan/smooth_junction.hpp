@@ -64,10 +64,10 @@ struct Junction {
 
 }  // namespace detail
 
-/// How far the tool may leave a block, mm; 0 where it may not.
+/// How far smoothing may take the tool from a block, mm; 0 where it may not.
 template <BlockModel B, std::floating_point S>
 [[nodiscard]] S tolerance_of(const B& block, const SmoothingRules<S>& rules) {
-  return block.exact_path ? S(0) : block.tolerance.value_or(rules.tolerance);
+  return block.exact_path ? S(0) : (S(1) - block.merged) * block.tolerance.value_or(rules.tolerance);
 }
 
 /// How the motion passes from one block to the next, both of a length > 0, without a rest between them.

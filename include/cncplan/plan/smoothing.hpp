@@ -58,18 +58,19 @@ class Smoother {
   [[nodiscard]] Result run() {
     result_.blocks.resize(blocks_.size());
     double place = 0;
-    std::size_t before = none;
     bool rests = true;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const B& block = blocks_[i];
       auto& own = result_.blocks[i];
       own.start = place;
       if (block.path.length() > S(0)) {
-        own.passing = rests ? Passing::stop : passing_between(blocks_[before], block, machine_, rules_);
+        own.passing = rests ? Passing::stop : passing_between(blocks_[last_], block, machine_, rules_);
         if (own.passing != Passing::smooth) finish(place);
-        if (own.passing == Passing::smooth) add_junction(before, i);
-        moving_.push_back(i);
-        before = i;
+        if (rests || !blocks_[last_].straight_on) {
+          if (own.passing == Passing::smooth) add_junction(last_, i);
+          moving_.push_back(i);
+        }
+        last_ = i;
         rests = false;
         place += static_cast<double>(block.path.length());
       }
@@ -80,10 +81,12 @@ class Smoother {
   }
 
  private:
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-
-  [[nodiscard]] BasicBeside<S> beside(const B& block) const {
-    return {block.path.length(), top_limits(block, machine_)};
+  // A line that begins with a block.
+  [[nodiscard]] BasicBeside<S> beside(std::size_t first) const {
+    S length = blocks_[first].path.length();
+    for (std::size_t i = first; i < last_ && blocks_[i].straight_on; ++i)
+      length += blocks_[i + 1].path.length();
+    return {length, top_limits(blocks_[first], machine_)};
   }
 
   void add_junction(std::size_t before, std::size_t behind) {
@@ -136,33 +139,40 @@ class Smoother {
       for (std::size_t k = i + 1; k < sizings_.size() && to == right && junctions_[k] < right; ++k)
         if (junctions_[k] > at) to = junctions_[k];
       sizing.tolerance = std::numeric_limits<S>::infinity();
-      for (std::size_t k = from; k < to; ++k)
-        sizing.tolerance = std::min(sizing.tolerance, tolerance_of(blocks_[moving_[k]], rules_));
+      for (std::size_t k = from; k < to; ++k) {
+        const B& block = blocks_[moving_[k]];
+        sizing.tolerance = std::min(sizing.tolerance, tolerance_of(block, rules_));
+        sizing.left = std::min(sizing.left, S(1) - block.merged);
+      }
     }
   }
 
   [[nodiscard]] bool rests_at(std::size_t i) const {
     const std::size_t behind = junctions_[i];
-    return faster_at_rest(BasicJump<S, n>{sizings_[i], steps_[i]}, beside(blocks_[moving_[behind - 1]]),
-                          beside(blocks_[moving_[behind]]));
+    return faster_at_rest(BasicJump<S, n>{sizings_[i], steps_[i]}, beside(moving_[behind - 1]),
+                          beside(moving_[behind]));
   }
 
-  void reach_blocks(std::size_t correction, std::size_t behind) {
+  void reach_blocks(std::size_t correction, std::size_t junction) {
     const auto& own = result_.corrections[correction];
     const auto support = static_cast<double>(own.support());
     const double from = own.at - support, to = own.at + support;
-    const auto use = [&](std::size_t moving) {
-      auto& block = result_.blocks[moving_[moving]];
+    const auto use = [&](std::size_t i) {
+      auto& block = result_.blocks[i];
       if (block.count == 0) block.first = correction;
       block.count = correction + 1 - block.first;
     };
-    for (std::size_t k = behind; k-- > 0;) {
-      use(k);
-      if (!(result_.blocks[moving_[k]].start > from)) break;
+    const auto moves = [&](std::size_t i) { return blocks_[i].path.length() > S(0); };
+    const std::size_t behind = moving_[junction];
+    for (std::size_t i = behind; i-- > moving_.front();) {
+      if (!moves(i)) continue;
+      use(i);
+      if (!(result_.blocks[i].start > from)) break;
     }
-    for (std::size_t k = behind; k < moving_.size(); ++k) {
-      if (k > behind && !(result_.blocks[moving_[k]].start < to)) break;
-      use(k);
+    for (std::size_t i = behind; i <= last_; ++i) {
+      if (!moves(i)) continue;
+      if (i > behind && !(result_.blocks[i].start < to)) break;
+      use(i);
     }
   }
 
@@ -170,7 +180,8 @@ class Smoother {
   const M& machine_;
   SmoothingRules<S> rules_;
   Result result_;
-  std::vector<std::size_t> moving_;  // blocks of the part that is open
+  std::vector<std::size_t> moving_;  // of the part that is open: blocks that move, of a merged line the first
+  std::size_t last_ = 0;             // block of it that moves
   std::vector<smooth::BasicSizing<S>> sizings_;
   std::vector<VectorN<S, n>> steps_;
   std::vector<std::size_t> junctions_;  // of each, the block behind it among those that move

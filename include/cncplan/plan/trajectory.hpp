@@ -74,7 +74,7 @@ class Trajectory {
   }
 
   [[nodiscard]] const M& machine() const { return machine_; }
-  /// The blocks as they were given.
+  /// The blocks as they were given; merged lines as parts of the line that they became.
   [[nodiscard]] std::span<const B> program() const& { return blocks_; }
   /// The path that is driven in place of a block's: a view of this trajectory.
   [[nodiscard]] DrivenPath path(std::size_t block) const& {
