@@ -108,7 +108,7 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   if (options.json)
     support::print(json_summary(program, options, file, measures));
   else if (!options.quiet)
-    support::print(table_summary(program, options, file, measures));
+    support::print(table_summary(program, options, file, measures), options.summary_aside ? stderr : stdout);
   return static_cast<int>(Exit::done);
 }
 

@@ -99,8 +99,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--from-line", options.from_line, "begin at the first motion of this line or behind it")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()));
   app.add_flag("--check", options.check, "say all that is wrong with the program, and plan nothing");
-  app.add_option("--motions", options.motions, "write the program's motions, CSV");
-  app.add_option("--blocks", options.blocks, "write the planned blocks, CSV");
+  app.add_option("--motions", options.motions, "write the program's motions, CSV; - for standard output");
+  app.add_option("--blocks", options.blocks, "write the planned blocks, CSV; - for standard output");
   support::add_run_options(app, options);
   app.add_option("--compare", options.compare,
                  "with --report: a second plan beside the first, within this tolerance, mm")
@@ -121,6 +121,12 @@ std::optional<Options> parse_options(int argc, char** argv) {
                                 {"--samples", options.samples},
                                 {"--steps", options.steps},
                                 {"--report", options.report}});
+  options.summary_aside = support::takes_standard_output({{"--motions", options.motions},
+                                                          {"--blocks", options.blocks},
+                                                          {"--samples", options.samples},
+                                                          {"--steps", options.steps},
+                                                          {"--report", options.report}},
+                                                         options.json);
   support::refuse_shared_files({{"--plot", options.plot}});  // a folder: another output may be in it
   return options;
 }

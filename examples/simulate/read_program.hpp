@@ -30,7 +30,7 @@ namespace simulate {
 template <class M>
 class Builder {
  public:
-  /// `smoothed`: paths are smoothed, and G64 P says how closely. `checked`: nothing is kept of a block that
+  /// `smoothed`: paths are smoothed, and G64 says how closely. `checked`: nothing is kept of a block that
   /// is without a problem, so that a program of any length takes no memory.
   Builder(const support::Machine& file, const M& machine, bool smoothed, bool checked, Program<M>& program,
           Problems& problems)
@@ -76,7 +76,7 @@ class Builder {
     namespace gcode = cncplan::gcode;
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) return move(*motion);
     if (const auto* warning = std::get_if<gcode::Warning>(&item)) {
-      if (smoothed_ && warning->about.error.field == gcode::tolerance_of_g64) return;
+      if (smoothed_ && gcode::void_if_smoothed(warning->about)) return;
       program_.warnings.push_back(gcode::to_text(program_.file, warning->about, "warning"));
       fmt::print(stderr, "{}\n", program_.warnings.back());
       return;
@@ -185,6 +185,10 @@ class Builder {
     const auto within = cncplan::plan::within_travel(block.path, machine_);
     if (!within) {
       refuse_travel(block, within.error());
+      return false;
+    }
+    if (const auto limited = cncplan::plan::limited(block, machine_); !limited) {
+      problems_.add(cncplan::gcode::Diagnostic{limited.error(), block.line, block.column, {}});
       return false;
     }
     program_.blocks.push_back(block);

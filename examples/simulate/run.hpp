@@ -125,14 +125,16 @@ class Run {
     const double to_rad = cncplan::gcode::radians_per_degree;
     const plan::JointRules<double, JunctionChoice> rules{options_.junction, options_.corner_tolerance,
                                                          options_.rotary_tolerance * to_rad};
-    const std::span<const Block> programmed(program_.blocks);
+    std::vector<Block> driven = program_.blocks;
     typename Trajectory::Smoothing smoothing;
     if constexpr (smoothed)
-      if (options_.tolerance > 0.0)
-        smoothing = plan::smoothing(programmed, machine,
-                                    {options_.tolerance, options_.rotary_tolerance * to_rad, false});
+      if (options_.tolerance > 0.0) {
+        const plan::SmoothingRules<double> within{options_.tolerance, options_.rotary_tolerance * to_rad};
+        cncplan::merge_lines(std::span(driven), machine, within);
+        smoothing = plan::smoothing(std::span<const Block>(driven), machine, within);
+      }
     std::vector<Event> events;
-    std::vector<Block> blocks = program_.blocks;
+    std::vector<Block> blocks = driven;
     if (options_.events) {  // limits are made for the highest feed
       events = read_events(*options_.events);
       for (Block& block : blocks) block.feed *= highest_feed(events);
@@ -150,9 +152,9 @@ class Run {
     }
     count_limited(*cells, machine);
     if (options_.events)
-      return Trajectory(machine, program_.blocks, played(*cells, machine, events), std::move(smoothing));
+      return Trajectory(machine, std::move(driven), played(*cells, machine, events), std::move(smoothing));
     const auto spans = spans_of(cells->caps);
-    return Trajectory(machine, program_.blocks,
+    return Trajectory(machine, std::move(driven),
                       plan::block_phases(std::span<const plan::Span>(spans), *cells), std::move(smoothing));
   }
 
@@ -221,9 +223,10 @@ class Run {
 
   // Of a sample from the programmed path: an error where that is driven, else what smoothing takes.
   void measure_distance(std::size_t block, double distance) {
-    bool programmed = trajectory_.path(block).exact();
+    const Block& driven = trajectory_.program()[block];
+    bool programmed = trajectory_.path(block).exact() && !(driven.merged > 0.0);
     if constexpr (requires(const Block& b) { b.source; }) {
-      const auto& path = trajectory_.program()[block].path;
+      const auto& path = driven.path;
       programmed = programmed && (path.line() != nullptr || path.arc() != nullptr ||
                                   path.template as<cncplan::path::Spline<M::axis_count>>() != nullptr);
     }

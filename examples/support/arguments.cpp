@@ -10,6 +10,7 @@
 
 #include "cncplan/version.hpp"
 #include "support/failure.hpp"
+#include "support/output_file.hpp"
 
 namespace support {
 
@@ -43,10 +44,14 @@ void add_period(CLI::App& app, RunOptions& options) {
 
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--machine", options.machine, "machine file, TOML");
-  app.add_option("--samples", options.samples, "write the samples, CSV");
-  app.add_option("--steps", options.steps, "write step and direction signals, VCD");
-  app.add_option("--plot", options.plot, "draw pictures into this folder, SVG");
-  app.add_option("--report", options.report, "write a report that a browser shows, HTML");
+  app.add_option("--samples", options.samples, "write the samples, CSV; - for standard output");
+  app.add_option("--steps", options.steps, "write step and direction signals, VCD; - for standard output");
+  app.add_option("--plot", options.plot, "draw pictures into this folder, SVG")
+      ->check([](const std::string& folder) {
+        return folder == standard_output ? "pictures go into a folder, not to standard output" : "";
+      });
+  app.add_option("--report", options.report,
+                 "write a report that a browser shows, HTML; - for standard output");
   app.add_flag("--json", options.json, "print the summary as JSON");
   app.add_flag("--quiet", options.quiet, "no progress bar and no table");
 }
@@ -70,13 +75,26 @@ void refuse_shared_files(std::initializer_list<NamedFile> files) {
     std::error_code ignored;
     if (file && file->empty())
       throw Failure(Exit::bad_input, fmt::format("{}: the file name is empty", option));
-    if (!file || std::filesystem::is_other(*file, ignored)) continue;
+    if (!file || *file == standard_output || std::filesystem::is_other(*file, ignored)) continue;
     const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(*file), ignored);
     for (const auto& [other, used] : seen)
       if (used == path)
         throw Failure(Exit::bad_input, fmt::format("{} and {} are the same file: {}", other, option, *file));
     seen.emplace_back(option, path);
   }
+}
+
+bool takes_standard_output(std::initializer_list<NamedFile> outputs, bool json) {
+  std::string_view taken = json ? "--json" : "";
+  bool takes = false;
+  for (const auto& [option, file] : outputs) {
+    if (file != standard_output) continue;
+    if (!taken.empty())
+      throw Failure(Exit::bad_input, fmt::format("{} and {} both go to standard output", taken, option));
+    taken = option;
+    takes = true;
+  }
+  return takes;
 }
 
 }  // namespace support

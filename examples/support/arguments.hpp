@@ -23,6 +23,7 @@ struct RunOptions {
   std::optional<std::string> report;
   bool json = false;
   bool quiet = false;
+  bool summary_aside = false;  ///< the table goes to standard error: an output has standard output
 };
 
 void add_period(CLI::App& app, RunOptions& options);
@@ -40,5 +41,9 @@ struct NamedFile {
 
 /// No output may overwrite an input or another output, and no name is empty; throws `Failure` where one is.
 void refuse_shared_files(std::initializer_list<NamedFile> files);
+
+/// Whether one of the outputs goes to standard output. Throws `Failure` where two do, or where the summary as
+/// JSON goes there as well.
+[[nodiscard]] bool takes_standard_output(std::initializer_list<NamedFile> outputs, bool json);
 
 }  // namespace support

@@ -29,7 +29,7 @@ class Section {
     throw Failure(Exit::bad_input, fmt::format("{}:{}:{}: error: {}", file_, at.line, at.column, why));
   }
 
-  void allow(std::initializer_list<std::string_view> keys) const {
+  void allow(const std::vector<std::string_view>& keys) const {
     for (const auto& [key, node] : table_)
       if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
         const auto at = key.source().begin;
@@ -187,7 +187,19 @@ void read_tools(const Section& section, Machine& machine) {
     gcode::Tool tool{.number = number};
     if (node.is_table()) {
       const Section of_tool = section.section(digits, node);
-      of_tool.allow({"length", "diameter"});
+      std::vector<std::string_view> keys{"length", "diameter"};
+      const auto& axes = machine.dialect.axes;
+      for (const gcode::Axis& axis : axes)
+        if (axis.letter != 'Z') keys.push_back(gcode::name(axis.letter));
+      of_tool.allow(keys);
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        const toml::node* beside =
+            axes[i].letter == 'Z' ? nullptr : of_tool.find(gcode::name(axes[i].letter));
+        if (beside != nullptr)
+          tool.beside[i] =
+              of_tool.number(*beside, "tool offset") *
+              (axes[i].kind == gcode::AxisKind::rotary ? gcode::radians_per_degree : machine.unit);
+      }
       if (const toml::node* length = of_tool.find("length"))
         tool.length = of_tool.number(*length, "tool length") * machine.unit;
       if (const toml::node* diameter = of_tool.find("diameter"))

@@ -14,6 +14,7 @@
 #include <ostream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -22,10 +23,16 @@
 
 namespace support {
 
-/// A C file as a stream buffer. The one of libstdc++ 12's ofstream writes past its end where a disk is full.
+/// The name that stands for standard output.
+inline constexpr std::string_view standard_output = "-";
+
+/// A C file as a stream buffer; standard output stays open. The one of libstdc++ 12's ofstream writes past
+/// its end where a disk is full.
 class FileBuffer : public std::streambuf {
  public:
-  explicit FileBuffer(const std::string& path) : file_(std::fopen(path.c_str(), "wb"), &std::fclose) {
+  explicit FileBuffer(const std::string& path)
+      : file_(path == standard_output ? File(stdout, &std::fflush)
+                                      : File(std::fopen(path.c_str(), "wb"), &std::fclose)) {
     setp(memory_.data(), memory_.data() + memory_.size());
   }
 
@@ -34,7 +41,8 @@ class FileBuffer : public std::streambuf {
   /// 0 if all that was put has been written, else the error number of what went wrong first.
   [[nodiscard]] int close() {
     sync();
-    if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
+    const auto end = file_.get_deleter();
+    if (end(file_.release()) != 0 && error_ == 0) error_ = errno;
     return error_;
   }
 
@@ -52,7 +60,9 @@ class FileBuffer : public std::streambuf {
   }
 
  private:
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+  File file_;
   std::vector<char> memory_ = std::vector<char>(std::size_t{1} << 16);
   int error_ = 0;
 };
@@ -103,16 +113,12 @@ class UnfinishedFile {
 };
 
 /// Writes beside the wanted file, and takes its place on `commit`; without that, nothing stays behind. What
-/// is there and is no plain file, a pipe, a device or a link, is written as it stands.
+/// is there and is no plain file, a pipe, a device or a link, is written as it stands, and so is standard
+/// output.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path) : path_(path) {
-    std::error_code ignored;
-    const auto status = std::filesystem::symlink_status(path_, ignored);
-    const bool exists = std::filesystem::exists(status);
-    if (std::filesystem::is_directory(path_, ignored)) throw Failure(Exit::other, path_ + ": is a directory");
-    if (exists && ::access(path_.c_str(), W_OK) != 0) refuse(errno);
-    if (!exists || std::filesystem::is_regular_file(status)) part_.emplace(path_ + ".part");
+    if (path_ != standard_output) look_at_place();
     buffer_ = std::make_unique<FileBuffer>(part_ ? part_->path() : path_);
     if (!buffer_->is_open()) refuse(errno);
     stream_.rdbuf(buffer_.get());
@@ -134,8 +140,18 @@ class OutputFile {
   }
 
  private:
+  void look_at_place() {
+    std::error_code ignored;
+    const auto status = std::filesystem::symlink_status(path_, ignored);
+    const bool exists = std::filesystem::exists(status);
+    if (std::filesystem::is_directory(path_, ignored)) throw Failure(Exit::other, path_ + ": is a directory");
+    if (exists && ::access(path_.c_str(), W_OK) != 0) refuse(errno);
+    if (!exists || std::filesystem::is_regular_file(status)) part_.emplace(path_ + ".part");
+  }
+
   [[noreturn]] void refuse(int error) const {
-    throw Failure(Exit::other, path_ + ": cannot be written: " + std::generic_category().message(error));
+    const std::string name = path_ == standard_output ? "standard output" : path_;
+    throw Failure(Exit::other, name + ": cannot be written: " + std::generic_category().message(error));
   }
 
   std::string path_;

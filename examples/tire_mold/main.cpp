@@ -48,7 +48,6 @@ int run(const Options& options) {
   std::ostream* const samples = files.open(options.samples);
   std::ostream* const steps = files.open(options.steps);
   std::ostream* const page = files.open(options.report);
-  if (out != nullptr) *out << conversion.text;
   std::vector<Sample> drawn;
   if (samples != nullptr) {
     *samples << 't';
@@ -74,14 +73,15 @@ int run(const Options& options) {
   }
   if (page != nullptr)
     report::write(*page, html_report(options, sidewall, conversion, motion, machine, measures));
+  if (out != nullptr) *out << conversion.text;
   files.finish();
   if (options.plot) draw(*options.plot, sidewall, conversion, machine, motion, drawn);
   files.commit();
-  if (out == nullptr && !options.json) support::print(conversion.text);
   if (options.json)
     support::print(json_summary(conversion, motion, machine, measures));
   else if (!options.quiet)
-    support::print(table_summary(conversion, motion, machine, measures), out != nullptr ? stdout : stderr);
+    support::print(table_summary(conversion, motion, machine, measures),
+                   options.summary_aside ? stderr : stdout);
   return static_cast<int>(support::Exit::done);
 }
 

@@ -38,8 +38,10 @@ std::optional<Options> parse_options(int argc, char** argv) {
       ->excludes(tolerance);
   app.add_flag("--approach", options.approach,
                "map the way of the first move too, from where it comes over the profile");
-  app.add_option("--out", options.out,
-                 "write the 4-axis program here; with --json and without this it is not written");
+  app.add_option(
+      "--out", options.out,
+      "write the 4-axis program here, - for standard output; with --json and without this it is not "
+      "written");
   support::add_run_options(app, options);
   if (!support::parse(app, argc, argv)) return std::nullopt;
   if (side == "left") options.side = cncplan::kinematics::Side::left;
@@ -50,6 +52,12 @@ std::optional<Options> parse_options(int argc, char** argv) {
                                 {"--samples", options.samples},
                                 {"--steps", options.steps},
                                 {"--report", options.report}});
+  if (!options.json && !options.out) options.out = "-";
+  options.summary_aside = support::takes_standard_output({{"--out", options.out},
+                                                          {"--samples", options.samples},
+                                                          {"--steps", options.steps},
+                                                          {"--report", options.report}},
+                                                         options.json);
   return options;
 }
 

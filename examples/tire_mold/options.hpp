@@ -21,7 +21,7 @@ struct Options : support::RunOptions {
   double chain_tolerance = 0.001;   ///< mm
   bool approach = false;
   int decimals = 3;
-  std::optional<std::string> out;
+  std::optional<std::string> out;  ///< - for standard output
 };
 
 /// The options of a command line; nothing after `--help` or `--version`, which print what they promise.

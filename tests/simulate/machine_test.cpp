@@ -39,6 +39,19 @@ TEST_CASE("the manual shows the mill's file as it is") {
         std::string::npos);
 }
 
+TEST_CASE("a tool of the machine file may stand beside the spindle's axis") {
+  const test::Folder folder;
+  folder.write("m.toml", "unit = \"inch\"\n[tools]\n1 = { length = 1, X = 2, Y = -0.5 }\n");
+  const auto run = folder.run_text("G43 H1\nG0 X1 Y2 Z3\n", "--quiet --machine m.toml --motions m.csv");
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  const test::Table motions(folder / "m.csv");
+  REQUIRE(motions.rows() == 1);
+  CHECK(motions["x0"][0] == Approx(-50.8));
+  CHECK(motions["y0"][0] == Approx(12.7));
+  CHECK(motions["z0"][0] == Approx(-25.4));
+}
+
 TEST_CASE("samples and motions are in work coordinates, steps in machine coordinates") {
   const test::Folder folder;
   folder.write("m.toml", "[tools]\n1 = 50\n[offsets]\nG54 = [10, 20, -60]\nG55 = [0, 0, 5]\n");
@@ -201,6 +214,8 @@ TEST_CASE("bad machine files: file, line, column and what is wrong") {
            {"[[axis]]\nletter = \"X\"\n", "1:1: error: the axes must be X, Y, Z"},
            {"[tools]\nbig = 1\n", "2:7: error: 'big' is not a tool number"},
            {"[tools]\n1 = 5\n01 = 6\n", "2:5: error: tool 1 is there twice"},
+           {"[tools]\n1 = { length = 5, Z = 5 }\n", "2:19: error: unknown key 'Z' in 1"},
+           {"[tools]\n1 = { X = \"wide\" }\n", "2:11: error: tool offset must be a number"},
            {"[offsets]\nG53 = [0, 0, 0]\n", "2:7: error: 'G53' is not a work coordinate system"},
            {"[offsets]\nG54 = [0, 0]\n", "2:7: error: G54 must be a list of 3 numbers"},
            {"[home]\nG29 = [0, 0, 0]\n", "2:1: error: unknown key 'G29' in home"},

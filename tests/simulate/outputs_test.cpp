@@ -28,6 +28,35 @@ TEST_CASE("headers are the contract's") {
   CHECK(folder.files() == std::set<std::string>{"b", "m", "s", "x"});
 }
 
+TEST_CASE("an output may go to standard output, and the table goes aside") {
+  const test::Folder folder;
+  for (const std::string option : {"--motions", "--blocks", "--samples", "--steps", "--report"}) {
+    CAPTURE(option);
+    const auto run = folder.run(test::example("pocket") + ' ' + option + " -");
+    CHECK(run.exit == 0);
+    const auto filed = folder.run(test::example("pocket") + " --quiet " + option + " out");
+    REQUIRE(filed.exit == 0);
+    if (option != "--report")
+      CHECK(run.out == test::text_of(folder / "out"));  // a report has times of the wall
+    CHECK(run.out.size() > 100);
+    CHECK(run.err.find("time") != std::string::npos);
+    CHECK(folder.files() == std::set<std::string>{"out"});
+    std::filesystem::remove(folder / "out");
+  }
+  const auto piped = folder.run("- --quiet --motions - < " + test::example("pocket"));
+  CHECK(piped.exit == 0);
+  CHECK(piped.out.starts_with("line,kind,"));
+  const auto refused = [&](const std::string& options) {
+    const auto run = folder.run(test::example("pocket") + ' ' + options);
+    CHECK(run.exit == 2);
+    CHECK(run.out.empty());
+    return run.err;
+  };
+  CHECK(refused("--samples - --motions -") == "error: --motions and --samples both go to standard output\n");
+  CHECK(refused("--samples - --json") == "error: --json and --samples both go to standard output\n");
+  CHECK(refused("--plot -") == "error: --plot: pictures go into a folder, not to standard output\n");
+}
+
 TEST_CASE("the summary has all keys, each of its kind") {
   const test::Folder folder;
   const auto run = folder.run(test::example("pocket") +

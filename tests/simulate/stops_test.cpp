@@ -1,8 +1,14 @@
 // What brings the machine to rest: dwells, stops of the program, tools, G61.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
 
+#include "cncplan/core/vector.hpp"
 #include "simulate/table.hpp"
 #include "support/catch.hpp"
+#include "support/random.hpp"
 
 using namespace cncplan;
 
@@ -91,6 +97,54 @@ TEST_CASE("a program's own G64 P wins over --tolerance") {
   CHECK(nearest(150, 5) < 2e-6);  // exact, at rest
   CHECK(nearest(200, 20) > 0.005);
   CHECK(nearest(200, 20) <= 0.0305);
+}
+
+TEST_CASE("G64 Q merges lines, of which each has its row, all within P") {
+  constexpr std::size_t count = 120;
+  constexpr double step = 0.05, P = 0.01;
+  const std::string level = GENERATE("fast", "best");
+  const test::Folder folder;
+  test::Random random;
+  std::string lines;
+  std::vector<double> x{0}, y{0};
+  for (std::size_t i = 1; i <= count; ++i) {
+    x.push_back(step * static_cast<double>(i)), y.push_back(0.001 * random.integer(-2, 2));
+    lines += "G1 X" + std::to_string(x[i]) + " Y" + std::to_string(y[i]) + "\n";
+  }
+  const auto run_with = [&](const std::string& mode) {
+    const auto run = folder.run_text(mode + lines,
+                                     "--json --period 1e-3 --blocks b.csv --samples s.csv --smooth " + level);
+    REQUIRE(run.exit == 0);
+    CHECK(run.err.empty());
+    return run.json();
+  };
+  const auto without = run_with("G64 P0.01\n"), with = run_with("G64 P0.01 Q0.004\n");
+  CHECK(with["time_s"].get<double>() <= without["time_s"].get<double>() * (level == "fast" ? 0.9 : 1.001));
+  CHECK(with["length_mm"] == without["length_mm"]);
+  CHECK(with["deviation_mm"].get<double>() <= P);
+  CHECK(with["contour_error_mm"].get<double>() < 1e-9);
+  CHECK(with["end_error_mm"].get<double>() < 1e-9);
+  const test::Table blocks(folder / "b.csv"), samples(folder / "s.csv");
+  REQUIRE(blocks.rows() == count);
+  double time = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    CHECK(blocks["line"][i] == static_cast<double>(i + 2));
+    CHECK(blocks["length"][i] == Approx(std::hypot(x[i + 1] - x[i], y[i + 1] - y[i])));
+    time += blocks["duration"][i];
+  }
+  CHECK(time == Approx(with["time_s"].get<double>()));
+  double most = 0;
+  for (std::size_t i = 0; i < samples.rows(); ++i) {
+    double nearest = 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vector3 a(x[k], y[k], 0), way = Vector3(x[k + 1], y[k + 1], 0) - a,
+                                      p = Vector3(samples["x"][i], samples["y"][i], samples["z"][i]) - a;
+      nearest = std::min(nearest, (p - std::clamp(p.dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
+    }
+    most = std::max(most, nearest);
+  }
+  CHECK(most <= P);
+  CHECK(most == Approx(with["deviation_mm"].get<double>()).margin(1e-9));
 }
 
 TEST_CASE("option --tolerance: within limits as samples show, within the tolerance, without a jump") {
