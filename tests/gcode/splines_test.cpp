@@ -267,6 +267,22 @@ TEST_CASE("a NURBS goes by the plane, and by way of its own start") {
   CHECK(steps.back().end == gcode::Position{13, 5, 0});
 }
 
+// A spline of order 3 has no third differences. A shift of 1e9 mm leaves axes nowhere nearer than 1e-6 mm,
+// which is more than the pieces beside the cusp are long.
+TEST_CASE("pieces of a spline keep their ends behind a far shift") {
+  const auto motions =
+      test::read("F100\nG92 Y1020022002\nG92 Y13\nG1 Y0\nG5.2\nX0 Y300\nX0 Y303\nX0 Y3\nX0 Y0\nG5.3")
+          .motions();
+  int splines = 0;
+  for (const Motion& motion : motions) {
+    if (motion.kind != MotionKind::spline) continue;
+    const auto c = controls_of(motion);
+    CHECK(std::abs(c[3].y - 3 * c[2].y + 3 * c[1].y - c[0].y) < 1e-12L * 303);
+    ++splines;
+  }
+  CHECK(splines > 10);
+}
+
 TEST_CASE("splines are written as they are read") {
   const auto items =
       test::read(

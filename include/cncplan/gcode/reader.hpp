@@ -488,8 +488,8 @@ class Reader {
     const auto at = [&, i = static_cast<std::size_t>(first),
                      k = static_cast<std::size_t>(second)](const SplineControl& control) {
       Position place = position();
-      place[i] = place_.meet(i, control.first);
-      place[k] = place_.meet(k, control.second);
+      place[i] = place_.nameable(i, control.first);
+      place[k] = place_.nameable(k, control.second);
       return place;
     };
     const auto& [from, one, two, to] = piece.controls;
