@@ -251,8 +251,7 @@ class Reader {
     } else if (is_cycle(motion)) {
       cycles_.begin(block_, modal_, dialect_, motion, position(), named_coordinates());
     } else if (is_spline(motion) || is_nurbs(motion) || motion == code(5.3)) {
-      const Position to = target(splines_.open() ? splines_.start() : position());
-      if (!splines_.run(block_, modal_, motion, position(), to)) modal_.motion = no_code;
+      if (!splines_.run(block_, modal_, motion, position(), control())) modal_.motion = no_code;
     } else if (motion == code(76)) {
       const Position to = target();
       thread_ = ThreadingCycle(ThreadWords::of(block_, modal_), position()[0], position()[2], to[0], to[2]);
@@ -325,15 +324,22 @@ class Reader {
   }
 
   /// Where the axis words lead, in work coordinates.
-  [[nodiscard]] Position target() const { return target(position()); }
-
-  /// The same, with increments from a place.
-  [[nodiscard]] Position target(const Position& from) const {
+  [[nodiscard]] Position target() const {
     Position end = position();
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (const auto value = coordinate(i))
-        end[i] = place_.meet(i, modal_.incremental ? from[i] + *value : *value);
+        end[i] = place_.meet(i, modal_.incremental ? end[i] + *value : *value);
     return end;
+  }
+
+  /// The same for a control of a spline: increments are from its start, and it may be as near as it likes.
+  [[nodiscard]] Position control() const {
+    const Position from = splines_.open() ? splines_.start() : position();
+    Position place = position();
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (const auto value = coordinate(i))
+        place[i] = place_.nameable(i, modal_.incremental ? from[i] + *value : *value);
+    return place;
   }
 
   /// Where they lead as machine coordinates (G53), in work coordinates.
