@@ -1,4 +1,5 @@
 // What is asked of an executor, one thing at a time.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -159,6 +160,51 @@ TEST_CASE("M0 and M1 hold where that is switched on, lines and blocks where it i
   const auto steps = places([](Runner& e) { e.single_step(true); });
   for (const double place : {5.0, 10.0, 15.0, 20.0})
     CHECK(std::count(steps.begin(), steps.end(), place) >= 1);
+}
+
+TEST_CASE("words without end do not stop the blocks behind them", "[executor]") {
+  const double tolerance = GENERATE(0.0, 0.01);
+  const bool begins_away = GENERATE(false, true);
+  INFO("tolerance " << tolerance << ", begins away " << begins_away);
+  Lines lines{"G1 X5 F1200", "Y5"};
+  for (int i = 0; i < 200; ++i) lines.push_back(i % 2 == 0 ? "M7" : "M9");
+  for (const char* line : {"X10", "Y0", "M8", "X0"}) lines.emplace_back(line);
+  if (begins_away) std::rotate(lines.begin(), lines.begin() + 2, lines.begin() + 202);
+  Runner executor(mill, {.tolerance = tolerance});
+  if (begins_away) REQUIRE(executor.restart(0, Vector3::Zero()));
+  const auto blocks = test::blocks_of(lines, mill);
+  std::size_t pushed = 0, told = 0;
+  SetPoint<3> point;
+  for (int tick = 0; tick < 20000 && !executor.finished(); ++tick) {
+    while (pushed < blocks.size() && executor.push(blocks[pushed]))
+      if (++pushed == blocks.size()) executor.end_of_program();
+    point = executor.tick(period);
+    for (const auto& word : point.words) {
+      CHECK(word.number == (told == 200 ? 8 : told % 2 == 0 ? 7 : 9));
+      ++told;
+    }
+  }
+  CHECK(executor.finished());
+  CHECK(told == 201);
+  CHECK(point.position.norm() < 1e-12);
+}
+
+TEST_CASE("a single step backwards ends where a block begins", "[executor]") {
+  const double tolerance = GENERATE(0.0, 0.05);
+  INFO("tolerance " << tolerance);
+  Runner executor(mill, {.tolerance = tolerance});
+  load(executor, {"G1 X5 F1200", "X10 Y1", "X15", "X20 Y1"});
+  run(executor);
+  executor.reverse(true);
+  executor.single_step(true);
+  std::vector<double> steps;
+  for (int i = 0; i < 8; ++i) {
+    executor.resume();
+    for (int tick = 0; tick < 2000; ++tick) executor.tick(period);
+    steps.push_back(executor.tick(period).position[0]);
+  }
+  std::vector<double> wanted{15, 10, 5, 0, 0, 0, 0, 0};
+  for (std::size_t i = 0; i < steps.size(); ++i) CHECK(steps[i] == Approx(wanted[i]).margin(tolerance));
 }
 
 TEST_CASE("a quick stop is harder than a hold, and goes on when resumed", "[executor]") {

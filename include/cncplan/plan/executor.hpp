@@ -217,6 +217,7 @@ class Executor {
     last_.words.clear();
     if (away_) {
       if (returns_ && !find_path()) tell_words(ready - 1);  // of blocks that do not move
+      release();
       return tick_of_jog(period, visit);
     }
     const plan::BasicPlayed<Scalar> now = play(period, visit);
@@ -339,12 +340,16 @@ class Executor {
   // Lets blocks go that are too far behind: those ahead are to have their share of the room, whatever blocks
   // without a cell lie between.
   void release() {
-    if (player_.oldest() == player_.end()) return feed_.release(told_);
     const std::int64_t furthest =
         std::max(static_cast<std::int64_t>(last_.block), told_ - 1) - static_cast<std::int64_t>(capacity);
-    std::int64_t oldest = player_[player_.oldest()].block;
-    while (oldest < furthest && player_.forget_oldest()) oldest = player_[player_.oldest()].block;
-    feed_.release(std::min(told_, oldest));
+    while (oldest_kept() < furthest && player_.forget_oldest()) {
+    }
+    feed_.release(std::min(told_, oldest_kept()));
+  }
+  // The block of the oldest cell; where there is none, any.
+  [[nodiscard]] std::int64_t oldest_kept() const {
+    return player_.oldest() == player_.end() ? std::numeric_limits<std::int64_t>::max()
+                                             : player_[player_.oldest()].block;
   }
 
   // Words of blocks up to one; what the set point has no room for comes with the next one.

@@ -77,9 +77,9 @@ class BlockRing {
     const std::int64_t end = pushed_.load(std::memory_order_acquire);
     return std::exchange(end_, end) != end;
   }
-  /// Lets the blocks before a number go, the last one never; whether there were any.
+  /// Lets the blocks before a number go; whether there were any.
   bool release(std::int64_t number) {
-    const std::int64_t oldest = std::min(number, end_ - 1);
+    const std::int64_t oldest = std::min(number, end_);
     if (oldest <= oldest_) return false;
     oldest_ = oldest;
     if (oldest_ - first_ >= capacity()) first_ += capacity();

@@ -87,12 +87,13 @@ class BasicPathAhead {
   /// Whether the motion rests behind a block.
   [[nodiscard]] bool stops_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return b.caps.pause > S(0) || holds_behind(b) || pauses_before(block + 1, b.line);
+    return b.caps.pause > S(0) || holds_behind(block) || pauses_before(block + 1, b.line);
   }
 
-  /// Whether it is held behind a block until it is told to go on.
-  [[nodiscard]] bool holds_behind(const Block& b) const {
-    return (asked.single_step && !b.goes_on) || (asked.optional_stops && b.optional_stop) ||
+  /// Whether it is held behind a block, which is kept, until it is told to go on.
+  [[nodiscard]] bool holds_behind(std::int64_t block) const {
+    const Block& b = ring[block];
+    return (asked.single_step && ends_step(block)) || (asked.optional_stops && b.optional_stop) ||
            (asked.program_stops && b.program_stop);
   }
 
@@ -209,6 +210,11 @@ class BasicPathAhead {
   }
 
  private:
+  // Whether the next one in the direction of travel is of another block of the program.
+  [[nodiscard]] bool ends_step(std::int64_t block) const {
+    if (direction > 0) return !ring[block].goes_on;
+    return !ring.holds(block - 1) || !ring[block - 1].goes_on;
+  }
   [[nodiscard]] const BasicLimits<S>& limits_of(const Block& b) const {
     return above && b.above.velocity > S(0) ? b.above : b.caps.limits;
   }

@@ -51,7 +51,7 @@ class BasicPlayer {
   /// The oldest block that is kept; the one behind the last that a tick has seen.
   [[nodiscard]] std::int64_t oldest() const { return path_.ring.oldest(); }
   [[nodiscard]] std::int64_t end() const { return path_.ring.end(); }
-  /// Lets the oldest block go, if the machine is behind it; whether it was.
+  /// Lets the oldest block go, the last one too, if the machine is behind it; whether it was.
   bool forget_oldest() {
     if (path_.ring.oldest() >= at_.block) return false;
     return path_.ring.release(path_.ring.oldest() + 1);
@@ -158,7 +158,7 @@ class BasicPlayer {
     if (!answers) prepare(period);
     rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
     const BasicPlayed<S> now = played();
-    path_.ring.release(at_.block - keep_behind_);
+    path_.ring.release(std::min(at_.block - keep_behind_, path_.ring.end() - 1));
     return now;
   }
 
@@ -430,7 +430,7 @@ class BasicPlayer {
     const Block* const block = path_.ring.holds(done) ? &path_.ring[done] : nullptr;
     BasicRequests<S>& asked = path_.asked;
     if (block != nullptr && path_.direction > 0) wait_for(block->caps.pause);
-    if (block != nullptr ? path_.holds_behind(*block) : asked.single_step) asked.held = true;
+    if (block != nullptr ? path_.holds_behind(done) : asked.single_step) asked.held = true;
     pauses_here();
     rest();
   }
