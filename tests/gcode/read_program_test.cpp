@@ -225,3 +225,17 @@ TEST_CASE("behind a line in error the machine stands where it should") {
   CHECK(motions[0].end[0] == 50.8);
   CHECK(motions[1].start[1] == 9 * 25.4);
 }
+
+TEST_CASE("a motion beside the plane has a place behind an error of cutter compensation") {
+  gcode::Reader reader;
+  std::vector<gcode::Motion> motions;
+  const auto take = [&](const gcode::Item& item) {
+    if (const auto* motion = std::get_if<gcode::Motion>(&item)) motions.push_back(*motion);
+  };
+  gcode::read_program(gcode::TextLines("F100 G1 G41.1 D30 X10\nZ-1\nX50\nG40 X70\n"), reader, take,
+                      [](const gcode::Diagnostic&) { return true; });
+  REQUIRE(motions.size() == 3);
+  CHECK(motions[0].start == gcode::Position{10, 0, 0});
+  CHECK(motions[0].end == gcode::Position{10, 0, -1});
+  CHECK(motions[1].end == gcode::Position{50, 15, -1});
+}

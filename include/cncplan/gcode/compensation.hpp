@@ -50,7 +50,8 @@ class Compensation {
       emit(Item(next));
       return {};
     }
-    if (!is_arc(*motion) && plane_point(motion->start, *motion) == plane_point(motion->end, *motion) && last_)
+    if (!is_arc(*motion) && plane_point(motion->start, *motion) == plane_point(motion->end, *motion) &&
+        (last_ || lost_))
       return hold(item, emit);
     auto done = lead(*motion, emit);
     if (!done) forget();
