@@ -151,11 +151,12 @@ class Compensation {
       if (!center) return tl::unexpected(center.error());
       way.center = *center;
       way.turn = sign(motion.turn);
-      const double radius = std::abs(end - way.center);
+      const double first = std::abs(start - way.center), radius = std::abs(end - way.center);
+      const double least = std::min(first, radius);  // who plans it says whether they differ too much
       way.radius = radius - way.turn * motion.tool_radius;
-      if (!(radius > 0.0 && way.radius > 0.0))
-        return refuse(motion, "radius of an arc under G41, G42", radius, std::abs(motion.tool_radius));
-      way.start_tangent = way.turn * left_of(start - way.center) / std::abs(start - way.center);
+      if (!(least > 0.0 && way.radius > 0.0))
+        return refuse(motion, "radius of an arc under G41, G42", least, std::abs(motion.tool_radius));
+      way.start_tangent = way.turn * left_of(start - way.center) / first;
       way.end_tangent = way.turn * left_of(end - way.center) / radius;
     } else {
       way.start_tangent = way.end_tangent = (end - start) / std::abs(end - start);
