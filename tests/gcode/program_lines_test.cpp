@@ -69,6 +69,10 @@ TEST_CASE("parameters of a line are set behind its values") {
   CHECK(run("#<a>=3\nG0 X[#<a>*2] Y-#<A>\nX-#<a> (#<nothing>) ; #<nothing>\n") == "2:6 3:-3 ");
 }
 
+TEST_CASE("a comment may stand within a comment, and what both say is not carried out") {
+  CHECK(run("(a (b) #1=5) G0 X[1 (c (d)) + 2] Y#1\n") == run("G0 X3 Y0\n"));
+}
+
 TEST_CASE("flat words stay as they stand, and words that are computed may be near a code") {
   CHECK(run("G[0.99999] X5 F100\nX[1/3]\nG0X+2Y-.5\n") == "1:5 2:0.333333 3:2 ");
 }

@@ -49,6 +49,10 @@ TEST_CASE("comments stand anywhere between words") {
   CHECK(words("(a)X1(b) Y2 ; the rest (is a comment").size() == 2);
   CHECK(words("(G0 X1)").empty());
   CHECK(words(";").empty());
+  CHECK(words("(hole at (0, 69) ) X1") == std::vector<Word>{{'X', 1, 0, 20}});
+  CHECK(words("(a ; b (c))").empty());
+  CHECK(words("(a (b) X1") == std::vector<Word>{{'X', 1, 0, 8}});  // the first ) ends it
+  CHECK(words("(a (b) X1 ; c)").size() == 1);
   CHECK(words("(\xC3\xA4 \x01)X1")[0].column == 7);
 }
 

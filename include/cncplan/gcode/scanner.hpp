@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -15,6 +14,19 @@
 #include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {
+
+/// Index behind the comment that begins at `at`; npos if it is not closed. A comment within it belongs to it,
+/// where what closes both stands before a `;`: otherwise the first `)` ends it.
+[[nodiscard]] inline std::size_t comment_end(std::string_view line, std::size_t at) {
+  const std::size_t first = line.find(')', at);
+  if (first == std::string_view::npos) return first;
+  if (line.substr(at + 1, first - at).find('(') == std::string_view::npos) return first + 1;
+  for (int open = 0; at < line.size() && (at < first || line[at] != ';'); ++at) {
+    if (line[at] == '(') ++open;
+    if (line[at] == ')' && --open == 0) return at + 1;
+  }
+  return first + 1;
+}
 
 /// Walks over the words of one line. Blanks and comments, `( )` and `;`, fall away wherever they stand
 /// between words; blanks also between a letter and its number. Numbers are decimal: sign, digits, point; no
@@ -69,10 +81,11 @@ class Scanner {
       if (*at_ == ';') {
         at_ = end_;
       } else if (*at_ == '(') {
-        const auto* close =
-            static_cast<const char*>(std::memchr(at_, ')', static_cast<std::size_t>(end_ - at_)));
-        if (close == nullptr) return tl::unexpected(at(ErrorCode::unclosed_comment, "(", column()));
-        at_ = close + 1;
+        const std::size_t from = static_cast<std::size_t>(at_ - begin_);
+        const std::size_t behind = comment_end({begin_, static_cast<std::size_t>(end_ - begin_)}, from);
+        if (behind == std::string_view::npos)
+          return tl::unexpected(at(ErrorCode::unclosed_comment, "(", column()));
+        at_ = begin_ + behind;
       } else {
         break;
       }

@@ -99,10 +99,12 @@ class Expression {
   [[nodiscard]] char peek() const { return at_ < line_.size() ? upper(line_[at_]) : '\0'; }
   /// Passes blanks and closed comments.
   void skip_blanks() {
-    for (;; ++at_) {
-      if (peek() == '(' && line_.find(')', at_) != std::string_view::npos)
-        at_ = line_.find(')', at_);
-      else if (peek() != ' ' && peek() != '\t')
+    for (;;) {
+      if (peek() == '(' && comment_end(line_, at_) != std::string_view::npos)
+        at_ = comment_end(line_, at_);
+      else if (peek() == ' ' || peek() == '\t')
+        ++at_;
+      else
         return;
     }
   }

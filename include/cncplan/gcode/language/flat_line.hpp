@@ -31,9 +31,9 @@ class FlatLine {
         copy(line, at, line.size());
         at = line.size();
       } else if (c == '(') {
-        const std::size_t close = std::min(line.find(')', at), line.size() - 1);
-        copy(line, at, close + 1);
-        at = close + 1;
+        const std::size_t behind = std::min(comment_end(line, at), line.size());
+        copy(line, at, behind);
+        at = behind;
       } else if (c == '#') {
         if (auto next = setting(line, at, parameters))
           at = *next;
