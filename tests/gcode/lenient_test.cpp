@@ -92,6 +92,8 @@ TEST_CASE("codes that nothing is known of are handed on") {
   CHECK(reading.error.empty());
   CHECK(reading.all<gcode::Warning>().size() == 2);  // of M106 and of M40
   CHECK(reading.all<gcode::Word>().size() == 5);
+  CHECK(test::read("M2000\nM9999").error.empty());
+  CHECK(test::read("M10000").error == "1:1: M10000 is not supported");
   CHECK(gcode::timing({'M', 106, 1, 1}) == gcode::Timing::at_rest);
 }
 

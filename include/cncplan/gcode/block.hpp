@@ -23,7 +23,7 @@ inline constexpr int max_passed = 16;
 
 /// M codes of a machine's own (LinuxCNC: M100 to M199) are whole numbers below this; M70 to M73 and M98, M99
 /// are the language's.
-inline constexpr int max_m_code = 999;
+inline constexpr int max_m_code = 9999;
 [[nodiscard]] constexpr bool is_own_code(double m) {
   return m >= 0.0 && m <= max_m_code && m == static_cast<int>(m) && !(m >= 70.0 && m <= 73.0);
 }
