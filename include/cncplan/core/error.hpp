@@ -58,6 +58,7 @@ enum class ErrorCode : std::uint8_t {
   unlimited,
   missing_letter,
   needs_operator,
+  not_an_axis,
   count_,  // number of codes
 };
 
@@ -108,6 +109,7 @@ enum class ErrorCode : std::uint8_t {
       "moves alone, without limits of its own",
       "belongs to no letter, or a blank is in a number",
       "needs the operator's hand or the spindle at an angle: it is not planned",
+      "names no axis of the machine",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -397,7 +397,11 @@ using Check = Expected<void, Diagnostic>;
     } else if (block.column(letter) ==
                block.first_column(unused)) {  // the first in the text is the one to report
       const bool meant = (alphabet.known() & bit(letter)) != 0;
-      return tl::unexpected(block.error(meant ? ErrorCode::unused_word : ErrorCode::not_supported, letter));
+      const bool axis = (bits("ABCUVW") & bit(letter)) != 0;
+      return tl::unexpected(block.error(meant  ? ErrorCode::unused_word
+                                        : axis ? ErrorCode::not_an_axis
+                                               : ErrorCode::not_supported,
+                                        letter));
     }
   }
   return {};
