@@ -160,6 +160,7 @@ TEST_CASE("parameters, expressions and O-words as LinuxCNC's interpreter has the
            "G91.1 G1 F33 X#<_feed> Y[#<_motion_mode>/10]\nZ[#<_plane>/10]\n",
            "#2=3\nG[#2-2] X1\nG0 X[1 EQ 1.0000001] Y[2 NE 2] Z[3 GE 3]\nX[1 XOR 1] Y[1 LT 2] Z[1 LE 0]\n",
            "M98 P100 L2\nX50\nM30\no100\n#1=[#1+1]\nX#1\nM99\n",
+           "X#<_line>\n\no1 repeat [2]\nZ#<_line>\nG91 X1\nG90 Y#<_line>\no1 endrepeat\n",
        })
     compare(program);
 }

@@ -143,6 +143,8 @@ TEST_CASE("parameters of the machine say where the program is") {
   CHECK(run("F120 G1 X#<_feed>\nG20 X#<_feed> F1\nX[#<_feed>/2]\n") == "2:3048 3:12.7 ");
   CHECK(run("G0 G55 X#5220\nG10 L2 P3 X4\nX#5261\nT5 M6\nX#5400\nX#<_metric>\nX[#<_coord_system>/10]\n") ==
         "1:1 3:4 5:5 6:1 7:55 ");
+  CHECK(run("G0 X#<_line>\n\no1 repeat [2]\nX#<_line>\nX[#<_line>+10]\no1 endrepeat\nX#<_line>\n") ==
+        "1:1 4:4 5:15 4:4 5:15 7:7 ");
   CHECK(run("F1 G38.2 X4\nG0 X[#5061+1]\nX#5070\n") == "1:4 2:5 3:1 ");
 }
 

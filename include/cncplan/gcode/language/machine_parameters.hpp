@@ -45,7 +45,6 @@ struct MachineName {
 inline constexpr std::array machine_names{
     MachineName{"_vmajor", [](const Reader&) { return 2.9; }},
     MachineName{"_vminor", [](const Reader&) { return 0.0; }},
-    MachineName{"_line", [](const Reader& r) { return static_cast<double>(r.line()); }},
     MachineName{"_motion_mode",
                 [](const Reader& r) { return r.modal().motion < 0 ? 800.0 : r.modal().motion * 1.0; }},
     MachineName{"_plane",

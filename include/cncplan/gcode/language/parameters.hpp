@@ -64,6 +64,9 @@ class Parameters {
     return {};
   }
 
+  /// Number in its file of the line that runs, for #<_line>.
+  void set_line(int line) { line_ = line; }
+
   /// A subprogram begins, with its arguments as #1 and on; the other local numbers are 0.
   void enter(const std::vector<double>& arguments) {
     std::copy_n(numbers_.begin() + 1, local_numbers, locals_.back().numbers.begin());
@@ -106,6 +109,7 @@ class Parameters {
     if (name == "_value") return result_.value_or(0.0);
     if (name == "_value_returned") return result_ ? 1.0 : 0.0;
     if (name == "_call_level") return static_cast<double>(locals_.size() - 1);
+    if (name == "_line") return static_cast<double>(line_);
     return machine_parameter(*reader_, name);
   }
 
@@ -114,6 +118,7 @@ class Parameters {
   Names globals_;
   std::vector<Level> locals_;  ///< the last one is of the subprogram that runs
   std::optional<double> result_;
+  int line_{};
 };
 
 }  // namespace cncplan::gcode

@@ -183,6 +183,7 @@ class ProgramLines {
 
   /// What comes out for a line; nothing for one that the language has dealt with.
   std::optional<std::string_view> run(std::string_view line) {
+    parameters_.set_line(place_.line);
     bool deleted = false;
     const std::size_t at = find_control_word(line, deleted);
     if (deleted && reader_.dialect().block_delete) return line;
