@@ -172,6 +172,7 @@ TEST_CASE("threads and taps as LinuxCNC's interpreter has them") {
            "G98 G84 X1 Z-3 R2\nX2\nG99 X3\nX4 P.5\nG0 Z9\n",
            "M4\nG98 G74 X1 Y1 Z-3 R2\nX2\nG0 Z9\n",
            "G0 X20\nG18 G76 P1.5 Z-5 I-.5 J.1 K.9 R1.0 Q29.5 H1 E.5 L2\n",
+           "G0 X20\nG18 G76 P1.5 Z-5 I-.5 J.1 K.9 R1.5 Q29.5 H1 E.5 L2\n",
            "G0 X20\nG18 G76 P1.5 Z-5 I.5 J.1 K.9 R2 Q29.5 E.5 L3\nG0 X9\n",
            "G0 X20 Z-8\nG18 G76 P1 Z5 I-.5 J.2 K.5 E.5 L1\n",
            "G7 G0 X30\nG18 G76 P1 Z3 I-1.5 J.2 K1 Q29 L2 E1\nG8 G0 X1\n",

@@ -109,6 +109,15 @@ TEST_CASE("with R2 the passes of a thread deepen by the square root of their num
   CHECK(depths[8] == Approx(0.85));
 }
 
+TEST_CASE("a pass that reaches the depth but for a rounding is the last one") {
+  // 0.1 * 27^(1 / 1.5) = 0.9.
+  const auto reading = test::read("G18 S60 M3\nG0 X10 Z0\nG76 P1 Z-8 I-1 J.1 K.9 R1.5");
+  std::size_t cuts = 0;
+  for (const auto& motion : reading.motions())
+    if (motion.kind == gcode::MotionKind::line) ++cuts;
+  CHECK(cuts == 27);
+}
+
 TEST_CASE("tapers of a thread keep the turns of the spindle along their own length") {
   const auto reading = test::read("G18 S60 M3\nG0 X10\nG76 P1 Z-8 I-1 J.3 K.4 E.3 L3");
   int tapered = 0;

@@ -119,6 +119,8 @@ class ThreadingCycle {
   }
 
  private:
+  static constexpr double same_depth = 1e-9;  ///< mm; what a rounding leaves to cut takes no pass
+
   enum class Phase : std::uint8_t { back, taper_in, sink, in, along, taper_out, out, home, done };
 
   /// X at a depth below the drive line.
@@ -131,7 +133,8 @@ class ThreadingCycle {
 
   void deepen() {
     if (depth_ < words_.depth) {
-      depth_ = std::min(words_.depth, words_.first * std::pow(++pass_, 1.0 / words_.degression));
+      depth_ = words_.first * std::pow(++pass_, 1.0 / words_.degression);
+      if (depth_ > words_.depth - same_depth) depth_ = words_.depth;
     } else if (--left_ == 0) {
       phase_ = Phase::home;
     }
