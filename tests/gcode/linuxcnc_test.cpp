@@ -186,6 +186,7 @@ TEST_CASE("rotated systems, shifts and polar coordinates as LinuxCNC's interpret
            "G10 L2 P1 R30\nG1 X10\nG2 X20 Y0 I5 J0\nG1 G91 X1 Y1\nG90\nG10 L2 P1 R0\nG1 X0\n",
            "G10 L2 P2 X3 Y4 R45\nG1 X10\nG55 X1 Y1 Z1\nG10 L20 P2 X0\nX1 Y2\nG53 G1 X5\nG54 Y0\n",
            "G10 L2 P1 X1 R-20\nG92 X5 Y6\nG1 X0 Y0\nG92.2\nX1\nG92.3\nX2\nG28 X1\n",
+           "G0 X5 Y0\nG2 @5 ^-90 R5\nG3 ^0 R-6\nG91 G2 @1 R4\n",
            "G1 @5 ^30\n@7\n^60\nG91 @1\n^5\n@1 ^-10 Z1\nG90 X5\n",
            "G1 X5\nG91 G99 G81 R.1 Z-.5 ^60 L3\nG90 G0 X0\n",
            "G10 L10 P1 Z3\nG43 H1\nG0 X1 Z1\nG10 L11 P1 Z2\nG43 H1\nG0 X2 Z2\nG49 X3 Z3\n",

@@ -77,5 +77,6 @@ TEST_CASE("places by radius and angle") {
   check_end("G0 X10\n^30 Z1", 10.0 * c, 5.0, 1.0);
   check_end("G0 @10 ^30\n@20", 20.0 * c, 10.0, 0.0);
   check_end("G0 @10 ^10\nG91 @10 ^20", 20.0 * c, 10.0, 0.0);
+  check_end("F1 G0 X5\nG2 @5 ^-90 R5", 0.0, -5.0, 0.0);
   check_end("F1 G0 X10 Z2\nG99 G91 G81 R0 Z-1 ^30 L3", 0.0, 10.0, 2.0);  // holes at 30, 60 and 90 degrees
 }

@@ -203,7 +203,7 @@ using Check = Expected<void, Diagnostic>;
   const Letters centers = block.letters() & (bit(center_letter(first)) | bit(center_letter(second)));
   if (radius && centers != 0) return conflict(block.error(ErrorCode::conflicting_words, 'R'), "I J K");
   if (!radius && centers == 0) return missing("R or I J K", column);
-  if (radius && !block.has("XYZ"[first]) && !block.has("XYZ"[second]))
+  if (radius && !block.has("XYZ"[first]) && !block.has("XYZ"[second]) && !names_polar(block))
     return missing(modal.plane == Plane::xy   ? "X or Y"
                    : modal.plane == Plane::yz ? "Y or Z"
                                               : "X or Z",
