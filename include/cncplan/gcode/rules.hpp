@@ -426,6 +426,9 @@ using Check = Expected<void, Diagnostic>;
   const bool takes_axes = homes || shifts || sets_length;
 
   if (auto ok = check_tools(block); !ok) return tl::unexpected(ok.error());
+  if (block.code(Group::tool_length) == code(43.2) &&
+      axis_words != 0)  // LinuxCNC 2.10 adds them to the offset
+    return conflict(block.error(ErrorCode::conflicting_words, first_of(axis_words)), "G", 43.2);
 
   // What is said under a code that was not understood belongs to it.
   if (modal.motion == lost_code && requested == no_code && !takes_axes) return no_code;
