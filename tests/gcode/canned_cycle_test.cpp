@@ -43,6 +43,11 @@ TEST_CASE("a cycle drills, and goes back to where it began or to R") {
   CHECK(steps("F1 G98 G81 X1 Z-3 R2") == "r0,0,2 r1,0,2 f1,0,-3 r1,0,2");  // up to R first
 }
 
+TEST_CASE("words that hold keep their length where the unit changes") {
+  CHECK(steps("F1 G99 G20 G0 Z1\nG81 X1 Z-1 R.1\nG21 X50") ==
+        "r0,0,25.4 r25.4,0,25.4 r25.4,0,2.54 f25.4,0,-25.4 r25.4,0,2.54 r50,0,2.54 f50,0,-25.4 r50,0,2.54");
+}
+
 TEST_CASE("cycles at the bottom of the hole") {
   const std::string head = "F1 G99 G0 Z2\n";
   CHECK(steps(head + "G82 Z-1 R2 P.5") == "r0,0,2 f0,0,-1 d0.5 r0,0,2");
