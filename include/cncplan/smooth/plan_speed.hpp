@@ -34,7 +34,7 @@ template <std::floating_point S>
 struct BasicSpeedPlan {
   BasicRestCell<S> start, end;
   S duration{};
-  BasicUse<S> use;        ///< of the limits, proven, by the phases as `emit_phases` gives them
+  BasicUse<S> use;        ///< of the limits, by the phases as `emit_phases` gives them; 0 if not to be proven
   S slow_down = 1;        ///< by which their clock must run slower to keep the limits; 1 as a rule
   S start_slow_down = 1;  ///< by which the start of the search had to be made slower, rests included
   int rounds{};           ///< Newton steps in all
@@ -171,7 +171,7 @@ template <std::floating_point S, int N>
   }
   emit_phases(cells, std::span<const S>(law), plan.start, plan.end,
               [&](std::size_t cell, const BasicPhase<S>& phase) {
-                plan.use.include(use_of(phase, cells[cell], limits));
+                if (options.window.proven) plan.use.include(use_of(phase, cells[cell], limits));
                 plan.duration = phase.time + phase.duration;
               });
   plan.slow_down = std::max(S(1), plan.use.slow_down());
