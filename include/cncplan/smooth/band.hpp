@@ -150,6 +150,7 @@ class Band {
     std::vector<std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>> rows(options_.window);
     std::vector<VectorN<S, axis_count + 1>> gradient(options_.window), step(options_.window),
         trial(options_.window + 6);
+    std::vector<detail::JointPlace<S>> places(3 * (options_.window + 3));
     const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
     const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits};
     int rounds = 0;
@@ -163,9 +164,10 @@ class Band {
       while (last < end && moves[last] != 0) ++last;
       for (std::size_t first = k; first < last; first += options_.window / 2) {
         const std::size_t to = std::min(first + options_.window, last);
-        rounds += smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, to,
-                                  solver, BasicJointMemory<S, axis_count>{rows, gradient, step, trial})
-                      .rounds;
+        rounds +=
+            smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, to, solver,
+                            BasicJointMemory<S, axis_count>{rows, gradient, step, trial, places})
+                .rounds;
         if (to == last) break;
       }
       k = last;

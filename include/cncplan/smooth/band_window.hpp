@@ -81,8 +81,12 @@ void solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
       Matrix& block = rows[i][back];
       for (std::size_t k = back + 1; k <= 3 && k <= i; ++k)
         block.noalias() -= rows[i][k] * rows[j][k - back].transpose();
-      rows[j][0].template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(
-          block);
+      // Eigen's own solver is made for large matrices.
+      const Matrix& before = rows[j][0];
+      for (int c = 0; c < N; ++c) {
+        for (int k = 0; k < c; ++k) block.col(c) -= before(c, k) * block.col(k);
+        block.col(c) /= before(c, c);
+      }
     }
     Matrix& own = rows[i][0];
     for (std::size_t k = 1; k <= 3 && k <= i; ++k) own.noalias() -= rows[i][k] * rows[i][k].transpose();

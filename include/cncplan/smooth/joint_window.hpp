@@ -14,14 +14,6 @@
 
 namespace cncplan::smooth {
 
-/// Room for windows: so many control points may move, each with a coefficient of speed.
-template <std::floating_point S, int N>
-struct BasicJointMemory {
-  using Matrix = Eigen::Matrix<S, N + 1, N + 1>;
-  std::span<std::array<Matrix, 4>> rows;
-  std::span<VectorN<S, N + 1>> gradient, step, trial;
-};
-
 template <std::floating_point S>
 struct BasicJointOptions {
   S gap = S(0.01);  ///< of the time, by the barrier
@@ -40,19 +32,320 @@ struct BasicJointProblem {
 
 namespace detail {
 
-/// A share of a limit at a place, k |r|^2 < 1, where r is a vector that is linear in the control points and
-/// in the coefficients of speed, each for itself; or the root of b times such a vector.
+/// How a place of a cell hangs on its four control points and three coefficients of speed: rows of numbers.
+template <std::floating_point S>
+struct JointPlace {
+  std::array<std::array<S, 4>, 3> path{};  ///< of q', q'' and q'''
+  std::array<std::array<S, 3>, 3> law{};   ///< of b, b' and b''
+  S time{};                                ///< its weight in Simpson's rule, mm
+};
+
+/// Limits of some axes together: reciprocals of their squares, 0 for none.
 template <std::floating_point S, int N>
-struct JointShare {
+struct JointLimit {
+  VectorN<S, N> mask = VectorN<S, N>::Zero();  ///< 1 for each axis that counts
+  S velocity{};
+  S acceleration{};
+  S jerk{};
+};
+
+/// Derivatives of a function of a cell's four control points and their coefficients of speed.
+template <std::floating_point S, int N>
+class JointModel {
+ public:
   using Vector = VectorN<S, N>;
-  S k{};                          ///< 1 / limit^2
-  Vector mask = Vector::Ones();   ///< the axes that count
-  Vector value = Vector::Zero();  ///< the vector, without the root
-  std::array<S, 4> by_point{};    ///< its derivatives by the control points: multiples of one
-  std::array<Vector, 3> by_speed{};
+  using Both = VectorN<S, N + 1>;
+  using Matrix = Eigen::Matrix<S, N + 1, N + 1>;
+
+  JointModel() {
+    gradient_.fill(Both::Zero());
+    for (auto& line : blocks_) line.fill(Matrix::Zero());
+    for (auto& line : diagonals_) line.fill(Vector::Zero());
+    for (auto& line : mixed_) line.fill(Vector::Zero());
+  }
+
+  /// A function of b alone: its derivative, and its second one.
+  void add_speed(const std::array<S, 3>& by_speed, S first, S second) {
+    for (std::size_t q = 0; q < 3; ++q) {
+      gradient_[q][N] += first * by_speed[q];
+      for (std::size_t p = 0; p <= q; ++p) speeds_[q][p] += second * by_speed[q] * by_speed[p];
+    }
+  }
+
+  /// weight * -log(1 - k |r|^2), where r is a vector that is linear in the control points and in the
+  /// coefficients of speed, each for itself, or the root of b times such a vector. `value` is the vector,
+  /// without the root, of the axes of `mask`; its derivatives by the control points are multiples of one. Of
+  /// the Hessian of |r|^2 the product of the first derivatives of r is kept.
+  void add_share(S weight, S k, S b, bool rooted, const Vector& mask, const Vector& value,
+                 const std::array<S, 4>& by_point, const std::array<Vector, 3>& by_speed,
+                 const std::array<S, 3>& b_by_speed) {
+    const S root = rooted ? std::sqrt(b) : S(1), square = value.squaredNorm();
+    const S f = S(1) / (S(1) - k * root * root * square);
+    const S once = weight * f * S(2) * k, twice = weight * f * f;
+    const Vector pull = (S(2) * k * root * root) * value;
+    std::array<Both, 4> g;
+    std::array<Vector, 3> bend;
+    for (std::size_t q = 0; q < 4; ++q) {
+      g[q].template head<N>() = by_point[q] * pull;
+      g[q][N] = S(0);
+      if (q == 3) continue;
+      bend[q] = root * by_speed[q];
+      if (rooted) bend[q] += (b_by_speed[q] / root) * value;
+      g[q][N] = S(2) * k * root * value.dot(bend[q]) - (rooted ? k * square * b_by_speed[q] : S(0));
+    }
+    for (std::size_t q = 0; q < 4; ++q) {
+      gradient_[q] += (weight * f) * g[q];
+      const Both scaled = twice * g[q];
+      const S own = once * root * by_point[q];
+      for (std::size_t p = 0; p <= q; ++p) {
+        blocks_[q][p].noalias() += scaled * g[p].transpose();
+        diagonals_[q][p] += (own * root * by_point[p]) * mask;
+      }
+      for (std::size_t p = 0; p < 3; ++p) mixed_[q][p] += own * bend[p];
+      if (q == 3) continue;
+      for (std::size_t p = 0; p <= q; ++p) speeds_[q][p] += once * bend[q].dot(bend[p]);
+    }
+  }
+
+  /// A function of the position: its derivative and its second one, by the weights of the control points.
+  void add_position(const std::array<S, 4>& by_point, const Vector& first, const Matrix& second) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      gradient_[q].template head<N>() += by_point[q] * first;
+      for (std::size_t p = 0; p <= q; ++p) blocks_[q][p] += (by_point[q] * by_point[p]) * second;
+    }
+  }
+
+  [[nodiscard]] const Both& gradient(std::size_t q) const { return gradient_[q]; }
+  /// The second derivatives by point q (rows) and point p <= q.
+  [[nodiscard]] Matrix block(std::size_t q, std::size_t p) const {
+    Matrix result = blocks_[q][p];
+    result.diagonal().template head<N>() += diagonals_[q][p];
+    if (p < 3) result.col(N).template head<N>() += mixed_[q][p];
+    if (q < 3) {
+      result.row(N).template head<N>() += mixed_[p][q].transpose();
+      result(N, N) += speeds_[q][p];
+    }
+    return result;
+  }
+
+ private:
+  std::array<Both, 4> gradient_;
+  std::array<std::array<Matrix, 4>, 4> blocks_;     // p <= q
+  std::array<std::array<Vector, 4>, 4> diagonals_;  // of those blocks, axes with themselves
+  std::array<std::array<Vector, 3>, 4> mixed_;      // point q with speed p
+  std::array<std::array<S, 3>, 3> speeds_{};        // p <= q
+};
+
+/// A window of curve and speed together: what stays while it is optimised.
+template <std::floating_point S, int N>
+class JointWindow {
+ public:
+  using Vector = VectorN<S, N>;
+  using Both = VectorN<S, N + 1>;
+
+  JointWindow(const BasicJointProblem<S, N>& problem, std::size_t first, std::size_t count,
+              std::span<JointPlace<S>> places)
+      : curve_(*problem.curve),
+        feeds_(problem.feeds),
+        first_(first - 3),
+        last_(std::min(first + count, curve_.cell_count() - 1)),
+        places_(places.first(3 * (last_ - first_))) {
+    for_each_limit(*problem.limits, [&](const BasicLimits<S>& own, const auto& inner) {
+      JointLimit<S, N>& limit = limits_[limit_count_++];
+      for (int axis = 0; axis < N; ++axis)
+        limit.mask[axis] = inner(Vector(Vector::Unit(axis)), Vector(Vector::Unit(axis)));
+      limit.velocity = reciprocal_square(own.velocity);
+      limit.acceleration = reciprocal_square(own.acceleration);
+      limit.jerk = reciprocal_square(own.jerk);
+    });
+    const ToolProduct tool{problem.limits->tool_axes};
+    for (int axis = 0; axis < N; ++axis)
+      tool_[axis] = tool(Vector(Vector::Unit(axis)), Vector(Vector::Unit(axis)));
+    const auto shape_of = [&](std::size_t cell) {
+      return BasicCellShape<S>{curve_.cells[cell].length, problem.skews[cell]};
+    };
+    for (std::size_t cell = first_; cell < last_; ++cell) {
+      const BasicCellShape<S> shape = shape_of(cell);
+      const S h = shape.length, before = shape_of(cell - 1).from_middle(),
+              after = shape_of(cell + 1).to_middle();
+      const S a = before / (before + shape.to_middle()),
+              z = shape.from_middle() / (shape.from_middle() + after);
+      const auto by_law = detail::places(shape);
+      for (std::size_t i = 0; i < 3; ++i) {
+        JointPlace<S>& place = places_[3 * (cell - first_) + i];
+        const auto w = moved(curve_.cells[cell].weights, h * static_cast<S>(i) / S(2));
+        place.path = {w[1], w[2], w[3]};
+        const auto to_speeds = [&](const std::array<S, 3>& r) {
+          return std::array<S, 3>{(S(1) - a) * r[0], a * r[0] + r[1] + (S(1) - z) * r[2], z * r[2]};
+        };
+        place.law = {to_speeds(by_law[i].b), to_speeds(by_law[i].slope), to_speeds(by_law[i].bend)};
+        place.time = (i == 1 ? S(4) : S(1)) * h / S(6);
+      }
+    }
+  }
+
+  /// Cells [first_cell(), last_cell()) hang on what moves.
+  [[nodiscard]] std::size_t first_cell() const { return first_; }
+  [[nodiscard]] std::size_t last_cell() const { return last_; }
+  /// How many shares of limits and of the tube there are, about.
+  [[nodiscard]] std::size_t terms() const {
+    return 9 * (last_ - first_) + curve_.cells[last_].first_sample - curve_.cells[first_].first_sample;
+  }
+
+  /// Of control points and their speeds from the first cell's on; infinite where a limit is not kept.
+  [[nodiscard]] BasicCellCost<S> cost(std::span<const Both> at) const {
+    constexpr S none = std::numeric_limits<S>::infinity();
+    BasicCellCost<S> cost;
+    S room = S(1);   // the product of what is left of all limits
+    S least = S(1);  // of what is left of one
+    const auto take = [&](S share) {
+      room *= S(1) - share;
+      least = std::min(least, S(1) - share);
+    };
+    const auto settle = [&] {
+      if (room >= S(1e-30)) return;
+      cost.barrier -= std::log(std::max(room, std::numeric_limits<S>::min()));
+      room = S(1);
+    };
+    for (std::size_t cell = first_; cell < last_; ++cell) {
+      const Both* four = &at[cell - first_];
+      const S feed = S(1) / (feeds_[cell] * feeds_[cell]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Place here(places_[3 * (cell - first_) + i], four);
+        if (!(here.b > S(0))) return {none, none};
+        cost.time += here.rows.time / std::sqrt(here.b);
+        take(feed * here.b);
+        take(feed * here.b * here.first.cwiseProduct(tool_).squaredNorm());
+        const Vector acceleration = here.acceleration(), jerk = here.jerk();
+        for (const auto& limit : limits()) {
+          if (limit.velocity > feed)
+            take(limit.velocity * here.b * here.first.cwiseProduct(limit.mask).squaredNorm());
+          take(limit.acceleration * acceleration.cwiseProduct(limit.mask).squaredNorm());
+          take(limit.jerk * here.b * jerk.cwiseProduct(limit.mask).squaredNorm());
+        }
+        settle();
+      }
+      for (const auto& sample : samples(cell)) {
+        take(off(sample, four).cwiseProduct(sample.scale).squaredNorm());
+        settle();
+      }
+      if (!(least > S(0))) return {none, none};
+    }
+    cost.barrier -= std::log(room);
+    return cost;
+  }
+
+  /// The derivatives of time + weight * barrier in a cell.
+  [[nodiscard]] JointModel<S, N> model(std::size_t cell, std::span<const Both> at, S weight) const {
+    JointModel<S, N> model;
+    const Both* four = &at[cell - first_];
+    const S feed = S(1) / (feeds_[cell] * feeds_[cell]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Place here(places_[3 * (cell - first_) + i], four);
+      const auto& [w1, w2, w3] = here.rows.path;
+      const auto& [n0, n1, n2] = here.rows.law;
+      const S b = here.b, time = here.rows.time / std::sqrt(b);
+      const S f = S(1) / (S(1) - feed * b);
+      model.add_speed(n0, weight * f * feed - time / (S(2) * b),
+                      S(0.75) * time / (b * b) + weight * f * f * feed * feed);
+      const auto add = [&](S k, bool rooted, const Vector& mask, const Vector& value,
+                           const std::array<S, 4>& by_point, const std::array<Vector, 3>& by_speed) {
+        if (!(k > S(0))) return;
+        std::array<Vector, 3> masked;
+        for (std::size_t r = 0; r < 3; ++r) masked[r] = by_speed[r].cwiseProduct(mask);
+        model.add_share(weight, k, b, rooted, mask, value.cwiseProduct(mask), by_point, masked, n0);
+      };
+      const std::array<Vector, 3> still{Vector::Zero(), Vector::Zero(), Vector::Zero()};
+      add(feed, true, tool_, here.first, w1, still);
+      std::array<S, 4> turns, changes;
+      for (std::size_t q = 0; q < 4; ++q) {
+        turns[q] = here.slope / S(2) * w1[q] + b * w2[q];
+        changes[q] = here.bend / S(2) * w1[q] + S(1.5) * here.slope * w2[q] + b * w3[q];
+      }
+      std::array<Vector, 3> turn_by_speed, change_by_speed;
+      for (std::size_t r = 0; r < 3; ++r) {
+        turn_by_speed[r] = n1[r] / S(2) * here.first + n0[r] * here.second;
+        change_by_speed[r] = n2[r] / S(2) * here.first + S(1.5) * n1[r] * here.second + n0[r] * here.third;
+      }
+      const Vector acceleration = here.acceleration(), jerk = here.jerk();
+      for (const auto& limit : limits()) {
+        if (limit.velocity > feed) add(limit.velocity, true, limit.mask, here.first, w1, still);
+        add(limit.acceleration, false, limit.mask, acceleration, turns, turn_by_speed);
+        add(limit.jerk, true, limit.mask, jerk, changes, change_by_speed);
+      }
+    }
+    for (const auto& sample : samples(cell)) {
+      const Vector away = off(sample, four), scale_sq = sample.scale.cwiseAbs2(),
+                   scaled = away.cwiseProduct(scale_sq);
+      const S left = S(1) - away.dot(scaled), once = S(2) * weight / left,
+              twice = S(4) * weight / (left * left);
+      Both pull = Both::Zero();
+      pull.template head<N>() = scaled;
+      typename JointModel<S, N>::Matrix bend = (twice * pull) * pull.transpose();
+      bend.diagonal().template head<N>() += once * scale_sq;
+      model.add_position(sample.weights, once * scaled, bend);
+    }
+    return model;
+  }
+
+ private:
+  // The motion at a place.
+  struct Place {
+    const JointPlace<S>& rows;
+    S b{}, slope{}, bend{};
+    Vector first = Vector::Zero(), second = Vector::Zero(), third = Vector::Zero();
+
+    Place(const JointPlace<S>& place, const Both* four) : rows(place) {
+      for (std::size_t r = 0; r < 3; ++r) {
+        b += rows.law[0][r] * four[r][N];
+        slope += rows.law[1][r] * four[r][N];
+        bend += rows.law[2][r] * four[r][N];
+      }
+      for (std::size_t q = 0; q < 4; ++q) {
+        const Vector x = four[q].template head<N>();
+        first += rows.path[0][q] * x;
+        second += rows.path[1][q] * x;
+        third += rows.path[2][q] * x;
+      }
+    }
+    [[nodiscard]] Vector acceleration() const { return slope / S(2) * first + b * second; }
+    /// By the root of b.
+    [[nodiscard]] Vector jerk() const { return bend / S(2) * first + S(1.5) * slope * second + b * third; }
+  };
+
+  [[nodiscard]] std::span<const JointLimit<S, N>> limits() const {
+    return std::span<const JointLimit<S, N>>(limits_).first(limit_count_);
+  }
+  [[nodiscard]] std::span<const BasicBandSample<S, N>> samples(std::size_t cell) const {
+    const std::size_t from = curve_.cells[cell].first_sample;
+    return curve_.samples.subspan(from, curve_.cells[cell + 1].first_sample - from);
+  }
+  [[nodiscard]] static Vector off(const BasicBandSample<S, N>& sample, const Both* four) {
+    Vector result = -sample.target;
+    for (std::size_t q = 0; q < 4; ++q) result += sample.weights[q] * four[q].template head<N>();
+    return result;
+  }
+
+  const BasicBandProblem<S, N>& curve_;
+  std::span<const S> feeds_;
+  std::size_t first_, last_;
+  std::span<JointPlace<S>> places_;
+  std::array<JointLimit<S, N>, static_cast<std::size_t>(N) + 1> limits_{};
+  std::size_t limit_count_ = 0;
+  Vector tool_ = Vector::Zero();
 };
 
 }  // namespace detail
+
+/// Room for windows: so many control points may move, each with a coefficient of speed.
+template <std::floating_point S, int N>
+struct BasicJointMemory {
+  using Matrix = Eigen::Matrix<S, N + 1, N + 1>;
+  std::span<std::array<Matrix, 4>> rows;
+  std::span<VectorN<S, N + 1>> gradient, step;
+  std::span<VectorN<S, N + 1>> trial;       ///< six more
+  std::span<detail::JointPlace<S>> places;  ///< three for each, and nine more
+};
 
 /// Moves control points [first, last) and the coefficients of speed with their numbers to where the time is
 /// less: both keep their limits and the tube strictly when they come and when they go. The two act on each
@@ -61,210 +354,33 @@ template <std::floating_point S, int N>
 BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, N>> points,
                    std::span<S> speeds, std::size_t first, std::size_t last,
                    const BasicJointOptions<S>& options, const BasicJointMemory<S, N>& memory) {
-  using Vector = VectorN<S, N>;
   using Both = VectorN<S, N + 1>;
-  using Matrix = Eigen::Matrix<S, N + 1, N + 1>;
-  constexpr S none = std::numeric_limits<S>::infinity();
-  const BasicBandProblem<S, N>& curve = *problem.curve;
   const std::size_t count = std::min({last - first, memory.rows.size(), memory.trial.size() - 6});
-  const std::size_t cell0 = first - 3, cell1 = std::min(first + count, curve.cell_count() - 1);
-  const std::size_t low = cell0, high = cell1 + 3;
-  const auto rows = memory.rows.first(count);
-  const auto gradient = memory.gradient.first(count), step = memory.step.first(count);
-  const auto now = memory.trial.first(high - low);
-
-  // Calls `with(share, rooted)` for all limits at three places of a cell, `time(weight, b)` for each.
-  const auto visit = [&](std::size_t cell, std::span<const Both> at, auto&& time, auto&& with) {
-    const auto& here = curve.cells[cell];
-    const Both* four = &at[cell - low];
-    const auto shape_of = [&](std::size_t k) {
-      return BasicCellShape<S>{curve.cells[k].length, problem.skews[k]};
-    };
-    const BasicCellShape<S> shape = shape_of(cell);
-    const S h = shape.length, before = shape_of(cell - 1).from_middle(),
-            after = shape_of(cell + 1).to_middle();
-    const S a = before / (before + shape.to_middle()),
-            z = shape.from_middle() / (shape.from_middle() + after);
-    const BasicCellSpeed<S> law{four[0][N] + a * (four[1][N] - four[0][N]), four[1][N],
-                                four[1][N] + z * (four[2][N] - four[1][N])};
-    const auto places = detail::places(shape);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto w = moved(here.weights, h * static_cast<S>(i) / S(2));
-      const auto to_speeds = [&](const std::array<S, 3>& r) {
-        return std::array<S, 3>{(S(1) - a) * r[0], a * r[0] + r[1] + (S(1) - z) * r[2], z * r[2]};
-      };
-      const S b = detail::row(places[i].b, law), slope = detail::row(places[i].slope, law),
-              bend = detail::row(places[i].bend, law);
-      if (!(b > S(0))) return false;
-      const auto n0 = to_speeds(places[i].b), n1 = to_speeds(places[i].slope), n2 = to_speeds(places[i].bend);
-      Vector q1 = Vector::Zero(), q2 = Vector::Zero(), q3 = Vector::Zero();
-      for (std::size_t q = 0; q < 4; ++q) {
-        const Vector x = four[q].template head<N>();
-        q1 += w[1][q] * x;
-        q2 += w[2][q] * x;
-        q3 += w[3][q] * x;
-      }
-      time((i == 1 ? S(4) : S(1)) * h / S(6), b, n0);
-      const S feed = S(1) / (problem.feeds[cell] * problem.feeds[cell]);
-      // The speed along the path itself: a number in place of a vector.
-      detail::JointShare<S, N> share;
-      const auto speed_share = [&](S k, const Vector& mask) {
-        share.k = k;
-        share.mask = mask;
-        share.value = q1.cwiseProduct(mask);
-        for (std::size_t q = 0; q < 4; ++q) share.by_point[q] = w[1][q];
-        for (auto& v : share.by_speed) v.setZero();
-        with(share, b, n0, true);
-      };
-      share.k = feed;
-      share.mask = Vector::Unit(0);
-      share.value = Vector::Unit(0);
-      share.by_point = {};
-      for (auto& v : share.by_speed) v.setZero();
-      with(share, b, n0, true);
-      const auto mask_of = [](const auto& inner) {
-        Vector mask = Vector::Zero();
-        for (int axis = 0; axis < N; ++axis)
-          mask[axis] = inner(Vector(Vector::Unit(axis)), Vector(Vector::Unit(axis)));
-        return mask;
-      };
-      speed_share(feed, mask_of(ToolProduct{problem.limits->tool_axes}));
-      for_each_limit(*problem.limits, [&](const BasicLimits<S>& own, const auto& inner) {
-        const Vector mask = mask_of(inner);
-        if (const S k = detail::reciprocal_square(own.velocity); k > feed) speed_share(k, mask);
-        if (const S k = detail::reciprocal_square(own.acceleration); k > S(0)) {
-          share.k = k;
-          share.mask = mask;
-          share.value = (slope / S(2) * q1 + b * q2).cwiseProduct(mask);
-          for (std::size_t q = 0; q < 4; ++q) share.by_point[q] = slope / S(2) * w[1][q] + b * w[2][q];
-          for (std::size_t r = 0; r < 3; ++r)
-            share.by_speed[r] = (n1[r] / S(2) * q1 + n0[r] * q2).cwiseProduct(mask);
-          with(share, b, n0, false);
-        }
-        if (const S k = detail::reciprocal_square(own.jerk); k > S(0)) {
-          share.k = k;
-          share.mask = mask;
-          share.value = (bend / S(2) * q1 + S(1.5) * slope * q2 + b * q3).cwiseProduct(mask);
-          for (std::size_t q = 0; q < 4; ++q)
-            share.by_point[q] = bend / S(2) * w[1][q] + S(1.5) * slope * w[2][q] + b * w[3][q];
-          for (std::size_t r = 0; r < 3; ++r)
-            share.by_speed[r] = (n2[r] / S(2) * q1 + S(1.5) * n1[r] * q2 + n0[r] * q3).cwiseProduct(mask);
-          with(share, b, n0, true);
-        }
-      });
-    }
-    return true;
-  };
-  const auto cost_of = [&](std::span<const Both> at) {
-    BasicCellCost<S> cost;
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      S room = S(1);
-      bool inside = true;
-      const auto take = [&](S share) {
-        inside = inside && share < S(1);
-        room *= S(1) - share;
-        if (room < S(1e-30)) {
-          cost.barrier -= std::log(std::max(room, std::numeric_limits<S>::min()));
-          room = S(1);
-        }
-      };
-      const bool positive = visit(
-          cell, at, [&](S w, S b, const auto&) { cost.time += w / std::sqrt(b); },
-          [&](const auto& share, S b, const auto&, bool rooted) {
-            take(share.k * (rooted ? b : S(1)) * share.value.squaredNorm());
-          });
-      if (!positive) return BasicCellCost<S>{none, none};
-      for (std::size_t i = curve.cells[cell].first_sample; i < curve.cells[cell + 1].first_sample; ++i) {
-        const auto& sample = curve.samples[i];
-        Vector off = -sample.target;
-        for (std::size_t q = 0; q < 4; ++q) off += sample.weights[q] * at[cell - low + q].template head<N>();
-        take(off.cwiseProduct(sample.scale).squaredNorm());
-      }
-      if (!inside) return BasicCellCost<S>{none, none};
-      cost.barrier -= std::log(room);
-    }
-    return cost;
-  };
-
   BandResult result;
   if (count == 0) return result;
-  for (std::size_t i = low; i < high; ++i) now[i - low] << points[i], speeds[i];
-  BasicCellCost<S> cost = cost_of(now);
-  if (!(cost.barrier < none)) return result;
-  const auto terms =
-      static_cast<S>(9 * (cell1 - cell0) + curve.cells[cell1].first_sample - curve.cells[cell0].first_sample);
+  const detail::JointWindow<S, N> window(problem, first, count, memory.places);
+  const std::size_t low = window.first_cell(), cells = window.last_cell() - low;
+  const auto rows = memory.rows.first(count);
+  const auto gradient = memory.gradient.first(count), step = memory.step.first(count);
+  const auto now = memory.trial.first(cells + 3);
+  for (std::size_t i = 0; i < now.size(); ++i) now[i] << points[low + i], speeds[low + i];
+  BasicCellCost<S> cost = window.cost(now);
+  if (!(cost.barrier < std::numeric_limits<S>::infinity())) return result;
+  const auto terms = static_cast<S>(window.terms());
   S weight = S(0.1) * cost.time / terms;
   for (; result.rounds < options.rounds; ++result.rounds) {
     for (std::size_t i = 0; i < count; ++i) {
       gradient[i].setZero();
       for (auto& block : rows[i]) block.setZero();
     }
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      std::array<Both, 4> slope{Both::Zero(), Both::Zero(), Both::Zero(), Both::Zero()};
-      std::array<std::array<Matrix, 4>, 4> bend;
-      for (auto& line : bend)
-        for (auto& block : line) block.setZero();
-      visit(
-          cell, now,
-          [&](S w, S b, const std::array<S, 3>& n0) {
-            const S root = w / std::sqrt(b);
-            for (std::size_t r = 0; r < 3; ++r) {
-              slope[r][N] -= root / (S(2) * b) * n0[r];
-              for (std::size_t p = 0; p <= r; ++p)
-                bend[r][p](N, N) += S(0.75) * root / (b * b) * n0[r] * n0[p];
-            }
-          },
-          [&](const auto& share, S b, const std::array<S, 3>& n0, bool rooted) {
-            const S root = rooted ? std::sqrt(b) : S(1);
-            const S square = share.value.squaredNorm();
-            const S f = S(1) / (S(1) - share.k * root * root * square);
-            std::array<Both, 4> g;
-            std::array<Vector, 3> beta;
-            for (std::size_t q = 0; q < 4; ++q) {
-              g[q].template head<N>() = (S(2) * share.k * root * root * share.by_point[q]) * share.value;
-              g[q][N] = S(0);
-              if (q == 3) continue;
-              beta[q] = root * share.by_speed[q];
-              if (rooted) beta[q] += (n0[q] / root) * share.value;
-              g[q][N] = S(2) * share.k * root * share.value.dot(beta[q]) -
-                        (rooted ? share.k * square * n0[q] : S(0));
-            }
-            const S once = weight * f * S(2) * share.k, twice = weight * f * f;
-            for (std::size_t q = 0; q < 4; ++q) {
-              slope[q] += (weight * f) * g[q];
-              const S aq = root * share.by_point[q];
-              for (std::size_t p = 0; p <= q; ++p) {
-                const S ap = root * share.by_point[p];
-                Matrix& block = bend[q][p];
-                block.noalias() += (twice * g[q]) * g[p].transpose();
-                block.diagonal().template head<N>() += (once * aq * ap) * share.mask;
-                if (p < 3) block.template block<N, 1>(0, N) += (once * aq) * beta[p];
-                if (q < 3) block.template block<1, N>(N, 0) += (once * ap) * beta[q].transpose();
-                if (q < 3 && p < 3) block(N, N) += once * beta[q].dot(beta[p]);
-              }
-            }
-          });
-      for (std::size_t i = curve.cells[cell].first_sample; i < curve.cells[cell + 1].first_sample; ++i) {
-        const auto& sample = curve.samples[i];
-        Vector off = -sample.target;
-        for (std::size_t q = 0; q < 4; ++q) off += sample.weights[q] * now[cell - low + q].template head<N>();
-        const Vector scale_sq = sample.scale.cwiseAbs2(), scaled = off.cwiseProduct(scale_sq);
-        const S left = S(1) - off.dot(scaled), once = S(2) * weight / left,
-                twice = S(4) * weight / (left * left);
-        Eigen::Matrix<S, N, N> own = (twice * scaled) * scaled.transpose();
-        own.diagonal() += once * scale_sq;
-        for (std::size_t q = 0; q < 4; ++q) {
-          slope[q].template head<N>() += (once * sample.weights[q]) * scaled;
-          for (std::size_t p = 0; p <= q; ++p)
-            bend[q][p].template topLeftCorner<N, N>() += (sample.weights[q] * sample.weights[p]) * own;
-        }
-      }
+    for (std::size_t cell = low; cell < low + cells; ++cell) {
+      const auto model = window.model(cell, now, weight);
       for (std::size_t q = 0; q < 4; ++q) {
-        const std::size_t at = cell + q - first;
+        const std::size_t at = cell + q - first;  // wraps below first, and is then not below count
         if (!(at < count)) continue;
-        gradient[at] += slope[q];
+        gradient[at] += model.gradient(q);
         for (std::size_t p = 0; p <= q; ++p)
-          if (cell + p - first < count) rows[at][q - p] += bend[q][p];
+          if (cell + p - first < count) rows[at][q - p] += model.block(q, p);
       }
     }
     detail::solve_blocks<S, N + 1>(rows, std::span<const Both>(gradient), step);
@@ -281,7 +397,7 @@ BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, 
     };
     for (int halving = 0; halving < 20 && !did; ++halving, share *= S(0.5)) {
       go(share);
-      const BasicCellCost<S> next = cost_of(now);
+      const BasicCellCost<S> next = window.cost(now);
       if (!(next.time + weight * next.barrier < before - S(1e-4) * share * decrease)) continue;
       did = true;
       cost = next;
