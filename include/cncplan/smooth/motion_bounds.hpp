@@ -58,20 +58,27 @@ template <std::floating_point S, std::size_t A, std::size_t B>
   return a;
 }
 
+/// What each power, a row, adds to the Bernstein coefficients of degree Size - 1: coefficient i is the sum of
+/// C(i, k) / C(Size - 1, k) a_k over k.
+template <std::floating_point S, std::size_t Size>
+inline constexpr auto bernstein_rows = [] {
+  std::array<std::array<S, Size>, Size> rows{};
+  for (std::size_t k = 0; k < Size; ++k)
+    for (std::size_t i = k; i < Size; ++i) {
+      S share = S(1);
+      for (std::size_t m = 0; m < k; ++m) share *= static_cast<S>(i - m) / static_cast<S>(Size - 1 - m);
+      rows[k][i] = share;
+    }
+  return rows;
+}();
+
 /// Bernstein coefficients, of degree Size - 1: the polynomial lies in their hull.
 template <std::size_t Size, std::floating_point S, std::size_t A>
 [[nodiscard]] constexpr std::array<S, Size> bernstein(const Powers<S, A>& a) {
   static_assert(A <= Size);
   std::array<S, Size> result{};
-  for (std::size_t k = 0; k < A; ++k) result[k] = a[k];
-  // b_i = sum over k of C(i, k) / C(n, k) a_k: divide, then n rounds of sums as in Pascal's triangle.
-  S binomial = S(1);
-  for (std::size_t k = 1; k < Size; ++k) {
-    binomial *= static_cast<S>(Size - k) / static_cast<S>(k);
-    result[k] /= binomial;
-  }
-  for (std::size_t round = 1; round < Size; ++round)
-    for (std::size_t k = Size - 1; k >= round; --k) result[k] += result[k - 1];
+  for (std::size_t k = 0; k < A; ++k)
+    for (std::size_t i = 0; i < Size; ++i) result[i] += bernstein_rows<S, Size>[k][i] * a[k];
   return result;
 }
 
@@ -142,18 +149,15 @@ template <std::floating_point S, int N>
       spread * (s * s / S(2) * std::abs(phase.jerk) + S(3) * s * top * slope + top * top * top);
 
   BasicUse<S> use;
-  for_each_limit(limits, [&](const BasicLimits<S>& own, const auto& inner) {
+  for_each_limit(limits, [&]<class Product>(const BasicLimits<S>& own, const Product& inner) {
     const auto p = products(cell.first, cell.second, cell.third, inner);
     const S speed = std::sqrt(detail::largest_sq(speed0, speed1, speed2, p)) + speed_more;
     use.include({speed / own.velocity,
                  (std::sqrt(detail::largest_sq(turn0, turn1, turn2, p)) + turn_more) / own.acceleration,
                  (std::sqrt(detail::largest_sq(change0, change1, change2, p)) + jerk_more) / own.jerk});
+    if constexpr (std::same_as<Product, ToolProduct>) use.include({speed / cell.feed, S(0), S(0)});
   });
-  const ToolProduct tool{limits.tool_axes};
-  const S tool_sq =
-      detail::largest_sq(speed0, speed1, speed2, products(cell.first, cell.second, cell.third, tool));
-  use.velocity = std::max({use.velocity, (std::sqrt(tool_sq) + speed_more) / cell.feed,
-                           *std::max_element(speed0.begin(), speed0.end()) / cell.feed});
+  use.include({*std::max_element(speed0.begin(), speed0.end()) / cell.feed, S(0), S(0)});
   return use;
 }
 
