@@ -70,6 +70,7 @@ template <std::floating_point S>
 void solve_banded(std::span<S> diagonal, std::span<S> below, std::span<S> second, std::span<S> right) {
   const std::size_t n = diagonal.size();
   for (std::size_t i = 0; i < n; ++i) {
+    const S least = std::numeric_limits<S>::epsilon() * diagonal[i] + std::numeric_limits<S>::min();
     S d = diagonal[i], l = below[i];
     if (i >= 1) {
       d -= below[i - 1] * below[i - 1] * diagonal[i - 1];
@@ -80,7 +81,7 @@ void solve_banded(std::span<S> diagonal, std::span<S> below, std::span<S> second
       d -= second[i - 2] * second[i - 2] * diagonal[i - 2];
       right[i] -= second[i - 2] * right[i - 2];
     }
-    diagonal[i] = std::max(d, std::numeric_limits<S>::min());
+    diagonal[i] = std::max(d, least);  // rounding may leave less of a definite matrix
     below[i] = i + 1 < n ? l / diagonal[i] : S(0);
     second[i] = i + 2 < n ? second[i] / diagonal[i] : S(0);
   }
