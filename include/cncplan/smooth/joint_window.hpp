@@ -32,12 +32,11 @@ struct BasicJointProblem {
 
 namespace detail {
 
-/// How a place of a cell hangs on its four control points and three coefficients of speed: rows of numbers.
+/// How a place of a cell hangs on its four control points, by rows of numbers, and on coefficients of speed.
 template <std::floating_point S>
 struct JointPlace {
   std::array<std::array<S, 4>, 3> path{};  ///< of q', q'' and q'''
-  std::array<std::array<S, 3>, 3> law{};   ///< of b, b' and b''
-  S time{};                                ///< its weight in Simpson's rule, mm
+  BasicLawPlace<S> law{};
 };
 
 /// Limits of some axes together: reciprocals of their squares, 0 for none.
@@ -165,21 +164,11 @@ class JointWindow {
       return BasicCellShape<S>{curve_.cells[cell].length, problem.skews[cell]};
     };
     for (std::size_t cell = first_; cell < last_; ++cell) {
-      const BasicCellShape<S> shape = shape_of(cell);
-      const S h = shape.length, before = shape_of(cell - 1).from_middle(),
-              after = shape_of(cell + 1).to_middle();
-      const S a = before / (before + shape.to_middle()),
-              z = shape.from_middle() / (shape.from_middle() + after);
-      const auto by_law = detail::places(shape);
+      const auto laws = law_places(shape_of(cell - 1), shape_of(cell), shape_of(cell + 1));
       for (std::size_t i = 0; i < 3; ++i) {
-        JointPlace<S>& place = places_[3 * (cell - first_) + i];
-        const auto w = moved(curve_.cells[cell].weights, h * static_cast<S>(i) / S(2));
-        place.path = {w[1], w[2], w[3]};
-        const auto to_speeds = [&](const std::array<S, 3>& r) {
-          return std::array<S, 3>{(S(1) - a) * r[0], a * r[0] + r[1] + (S(1) - z) * r[2], z * r[2]};
-        };
-        place.law = {to_speeds(by_law[i].b), to_speeds(by_law[i].slope), to_speeds(by_law[i].bend)};
-        place.time = (i == 1 ? S(4) : S(1)) * h / S(6);
+        const S at = curve_.cells[cell].length * static_cast<S>(i) / S(2);
+        const auto w = moved(curve_.cells[cell].weights, at);
+        places_[3 * (cell - first_) + i] = {{w[1], w[2], w[3]}, laws[i]};
       }
     }
   }
@@ -193,46 +182,35 @@ class JointWindow {
   }
 
   /// Of control points and their speeds from the first cell's on; infinite where a limit is not kept.
-  [[nodiscard]] BasicCellCost<S> cost(std::span<const Both> at) const {
+  [[nodiscard]] BasicLawCost<S> cost(std::span<const Both> at) const {
     constexpr S none = std::numeric_limits<S>::infinity();
-    BasicCellCost<S> cost;
-    S room = S(1);   // the product of what is left of all limits
-    S least = S(1);  // of what is left of one
-    const auto take = [&](S share) {
-      room *= S(1) - share;
-      least = std::min(least, S(1) - share);
-    };
-    const auto settle = [&] {
-      if (room >= S(1e-30)) return;
-      cost.barrier -= std::log(std::max(room, std::numeric_limits<S>::min()));
-      room = S(1);
-    };
+    S time{};
+    BasicBarrier<S> barrier;
     for (std::size_t cell = first_; cell < last_; ++cell) {
       const Both* four = &at[cell - first_];
       const S feed = S(1) / (feeds_[cell] * feeds_[cell]);
       for (std::size_t i = 0; i < 3; ++i) {
         const Place here(places_[3 * (cell - first_) + i], four);
         if (!(here.b > S(0))) return {none, none};
-        cost.time += here.rows.time / std::sqrt(here.b);
-        take(feed * here.b);
-        take(feed * here.b * here.first.cwiseProduct(tool_).squaredNorm());
+        time += here.rows.law.time / std::sqrt(here.b);
+        barrier.take(feed * here.b);
+        barrier.take(feed * here.b * here.first.cwiseProduct(tool_).squaredNorm());
         const Vector acceleration = here.acceleration(), jerk = here.jerk();
         for (const auto& limit : limits()) {
           if (limit.velocity > feed)
-            take(limit.velocity * here.b * here.first.cwiseProduct(limit.mask).squaredNorm());
-          take(limit.acceleration * acceleration.cwiseProduct(limit.mask).squaredNorm());
-          take(limit.jerk * here.b * jerk.cwiseProduct(limit.mask).squaredNorm());
+            barrier.take(limit.velocity * here.b * here.first.cwiseProduct(limit.mask).squaredNorm());
+          barrier.take(limit.acceleration * acceleration.cwiseProduct(limit.mask).squaredNorm());
+          barrier.take(limit.jerk * here.b * jerk.cwiseProduct(limit.mask).squaredNorm());
         }
-        settle();
+        barrier.settle();
       }
       for (const auto& sample : samples(cell)) {
-        take(off(sample, four).cwiseProduct(sample.scale).squaredNorm());
-        settle();
+        barrier.take(off(sample, four).cwiseProduct(sample.scale).squaredNorm());
+        barrier.settle();
       }
-      if (!(least > S(0))) return {none, none};
+      if (!barrier.kept()) return {none, none};
     }
-    cost.barrier -= std::log(room);
-    return cost;
+    return {time, barrier.sum()};
   }
 
   /// The derivatives of time + weight * barrier in a cell.
@@ -242,9 +220,13 @@ class JointWindow {
     const S feed = S(1) / (feeds_[cell] * feeds_[cell]);
     for (std::size_t i = 0; i < 3; ++i) {
       const Place here(places_[3 * (cell - first_) + i], four);
-      const auto& [w1, w2, w3] = here.rows.path;
-      const auto& [n0, n1, n2] = here.rows.law;
-      const S b = here.b, time = here.rows.time / std::sqrt(b);
+      const auto& w1 = here.rows.path[0];
+      const auto& w2 = here.rows.path[1];
+      const auto& w3 = here.rows.path[2];
+      const auto& n0 = here.rows.law.b;
+      const auto& n1 = here.rows.law.slope;
+      const auto& n2 = here.rows.law.bend;
+      const S b = here.b, time = here.rows.law.time / std::sqrt(b);
       const S f = S(1) / (S(1) - feed * b);
       model.add_speed(n0, weight * f * feed - time / (S(2) * b),
                       S(0.75) * time / (b * b) + weight * f * f * feed * feed);
@@ -297,9 +279,9 @@ class JointWindow {
 
     Place(const JointPlace<S>& place, const Both* four) : rows(place) {
       for (std::size_t r = 0; r < 3; ++r) {
-        b += rows.law[0][r] * four[r][N];
-        slope += rows.law[1][r] * four[r][N];
-        bend += rows.law[2][r] * four[r][N];
+        b += rows.law.b[r] * four[r][N];
+        slope += rows.law.slope[r] * four[r][N];
+        bend += rows.law.bend[r] * four[r][N];
       }
       for (std::size_t q = 0; q < 4; ++q) {
         const Vector x = four[q].template head<N>();
@@ -364,7 +346,7 @@ BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, 
   const auto gradient = memory.gradient.first(count), step = memory.step.first(count);
   const auto now = memory.trial.first(cells + 3);
   for (std::size_t i = 0; i < now.size(); ++i) now[i] << points[low + i], speeds[low + i];
-  BasicCellCost<S> cost = window.cost(now);
+  BasicLawCost<S> cost = window.cost(now);
   if (!(cost.barrier < std::numeric_limits<S>::infinity())) return result;
   const auto terms = static_cast<S>(window.terms());
   S weight = S(0.1) * cost.time / terms;
@@ -397,7 +379,7 @@ BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, 
     };
     for (int halving = 0; halving < 20 && !did; ++halving, share *= S(0.5)) {
       go(share);
-      const BasicCellCost<S> next = window.cost(now);
+      const BasicLawCost<S> next = window.cost(now);
       if (!(next.time + weight * next.barrier < before - S(1e-4) * share * decrease)) continue;
       did = true;
       cost = next;

@@ -14,7 +14,7 @@
 
 namespace cncplan::smooth {
 
-/// A function of the three Bezier coefficients of b in a cell: gradient, and a Hessian that is never
+/// A function of the three coefficients of speed that a cell hangs on: gradient, and a Hessian that is never
 /// indefinite, in the order 00 01 02 11 12 22.
 template <std::floating_point S>
 struct BasicCellModel {
@@ -22,16 +22,43 @@ struct BasicCellModel {
   std::array<S, 6> hessian{};
 };
 
+/// b, b' and b'' at a place of a cell from the three coefficients of speed that the cell hangs on: rows of
+/// numbers.
+template <std::floating_point S>
+struct BasicLawPlace {
+  std::array<S, 3> b{}, slope{}, bend{};
+  S time{};  ///< its weight in Simpson's rule, mm
+
+  [[nodiscard]] static constexpr S row(const std::array<S, 3>& numbers, const S* law) {
+    return numbers[0] * law[0] + numbers[1] * law[1] + numbers[2] * law[2];
+  }
+};
+
+/// What the time gains by a higher limit, the multiplier of an interior-point method; and its share as
+/// `cell_model` found it last.
+template <std::floating_point S>
+struct BasicPrice {
+  S price{};
+  S pressure = 1;         ///< 1 / (1 - share)
+  std::array<S, 3> by{};  ///< the derivatives of the share by b, b' and b''
+
+  /// Moves the price by a part of its Newton step, where b, b' and b'' make these steps: to where price (1 -
+  /// share) is the weight, to first order.
+  constexpr void move(const std::array<S, 3>& step, S weight, S part) {
+    const S rise = by[0] * step[0] + by[1] * step[1] + by[2] * step[2];
+    price += part * ((weight + price * rise) * pressure - price);
+  }
+};
+
 /// One limit of acceleration and jerk at one place of a path: squares as shares of the limits' squares, each
-/// to stay below 1, by b, b' and b'' there. The prices are the multipliers of an interior-point method: what
-/// the time gains by a higher limit.
+/// to stay below 1, by b, b' and b'' there.
 template <std::floating_point S>
 struct BasicForceShare {
   std::array<S, 6> p{};  ///< products of q', q'', q'''
   S acceleration_sq{};   ///< reciprocal square of the limit; 0: none
   S jerk_sq{};           ///< the same of jerk
-  S acceleration_price{};
-  S jerk_price{};
+  BasicPrice<S> of_acceleration{};
+  BasicPrice<S> of_jerk{};
 
   /// acceleration = q'' b + q' b'/2
   [[nodiscard]] S acceleration(S b, S slope) const {
@@ -57,15 +84,15 @@ struct BasicForceShare {
 /// The limit of b at one place: its reciprocal, and its price.
 template <std::floating_point S>
 struct BasicSpeedShare {
+  BasicLawPlace<S> place{};
   S speed_sq{};
-  S price{};
+  BasicPrice<S> of_speed{};
 };
 
 /// The limits of a cell at its start, its middle and its end: three of the speed, and all others of one place
 /// after those of the other.
 template <std::floating_point S>
 struct BasicCellShares {
-  BasicCellShape<S> shape{};
   std::span<BasicSpeedShare<S>> speeds;
   std::span<BasicForceShare<S>> forces;
 
@@ -124,6 +151,24 @@ template <std::floating_point S>
 
 }  // namespace detail
 
+/// Start, middle and end of a cell, between others.
+template <std::floating_point S>
+[[nodiscard]] constexpr std::array<BasicLawPlace<S>, 3> law_places(const BasicCellShape<S>& before,
+                                                                   const BasicCellShape<S>& shape,
+                                                                   const BasicCellShape<S>& after) {
+  const S a = before.from_middle() / (before.from_middle() + shape.to_middle()),
+          z = shape.from_middle() / (shape.from_middle() + after.to_middle());
+  const auto by_law = [&](const std::array<S, 3>& r) {
+    return std::array<S, 3>{(S(1) - a) * r[0], a * r[0] + r[1] + (S(1) - z) * r[2], z * r[2]};
+  };
+  const auto places = detail::places(shape);
+  std::array<BasicLawPlace<S>, 3> result;
+  for (std::size_t i = 0; i < 3; ++i)
+    result[i] = {by_law(places[i].b), by_law(places[i].slope), by_law(places[i].bend),
+                 (i == 1 ? S(4) : S(1)) * shape.length / S(6)};
+  return result;
+}
+
 /// By how much the limits in a cell are lowered: velocities to one share, accelerations to the square of the
 /// other and jerks to its cube, as if the clock ran so much slower.
 template <std::floating_point S>
@@ -143,7 +188,7 @@ template <std::floating_point S, int N>
   return count;
 }
 
-/// Writes the limits of a cell, lowered to a pace, and leaves the prices.
+/// Writes the limits of a cell, lowered to a pace, and leaves places and prices.
 template <std::floating_point S, int N>
 void set_shares(const BasicSpeedCell<S, N>& cell, const BasicMotionLimits<S, N>& limits,
                 const BasicPace<S>& pace, const BasicCellShares<S>& shares) {
@@ -179,7 +224,7 @@ template <std::floating_point S, int N>
       const S slope = detail::row(places[i].slope, law), bend = detail::row(places[i].bend, law);
       const BasicForceShare<S> share{products(first, second, cell.third, inner),
                                      detail::reciprocal_square(own.acceleration),
-                                     detail::reciprocal_square(own.jerk), S(0), S(0)};
+                                     detail::reciprocal_square(own.jerk)};
       use.include({S(0), std::sqrt(std::max(share.acceleration(b, slope), S(0))),
                    std::sqrt(std::max(share.jerk(b, slope, bend), S(0)))});
     });
@@ -187,44 +232,64 @@ template <std::floating_point S, int N>
   return use;
 }
 
-/// The time through a cell (Simpson's rule on 1/sqrt(b)), and the barrier: the sum of -log(1 - share^2) over
-/// all limits at the start, the middle and the end of the cell. Infinite where a limit is not kept.
+/// The sum of -log(1 - share) over shares of limits, with one logarithm for many.
 template <std::floating_point S>
-struct BasicCellCost {
+class BasicBarrier {
+ public:
+  constexpr void take(S share) {
+    room_ *= S(1) - share;
+    least_ = std::min(least_, S(1) - share);
+  }
+  /// To be called before the product of what is left of limits underflows: after a place, or a sample.
+  void settle() {
+    if (room_ < S(1e-30)) close();
+  }
+  /// Whether all shares are below 1.
+  [[nodiscard]] constexpr bool kept() const { return least_ > S(0); }
+  /// Infinite where a limit is not kept.
+  [[nodiscard]] S sum() {
+    close();
+    return kept() ? sum_ : std::numeric_limits<S>::infinity();
+  }
+
+ private:
+  void close() {
+    sum_ -= std::log(std::max(room_, std::numeric_limits<S>::min()));
+    room_ = S(1);
+  }
+
+  S room_ = S(1);   // the product of what is left of the limits
+  S least_ = S(1);  // of what is left of one
+  S sum_{};
+};
+
+/// The time through cells (Simpson's rule on 1/sqrt(b)), and the barrier of all limits at the start, the
+/// middle and the end of each. Infinite where a limit is not kept.
+template <std::floating_point S>
+struct BasicLawCost {
   S time{};
   S barrier{};
 };
 
+/// Adds the time through a cell with a law of three coefficients, and its limits. False where b is not
+/// positive or a limit is not kept.
 template <std::floating_point S>
-[[nodiscard]] BasicCellCost<S> cell_cost(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law) {
-  constexpr S none = std::numeric_limits<S>::infinity();
-  const auto places = detail::places(shares.shape);
-  BasicCellCost<S> cost;
-  S room = S(1);   // the product of what is left of all limits
-  S least = S(1);  // of what is left of one
+[[nodiscard]] bool add_cost(const BasicCellShares<S>& shares, const S* law, S& time,
+                            BasicBarrier<S>& barrier) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const S b = detail::row(places[i].b, law);
-    if (!(b > S(0))) return {none, none};
-    const S slope = detail::row(places[i].slope, law), bend = detail::row(places[i].bend, law);
-    const auto take = [&](S share) {
-      room *= S(1) - share;
-      least = std::min(least, S(1) - share);
-    };
-    take(b * shares.speeds[i].speed_sq);
+    const BasicLawPlace<S>& place = shares.speeds[i].place;
+    const S b = place.row(place.b, law), slope = place.row(place.slope, law),
+            bend = place.row(place.bend, law);
+    if (!(b > S(0))) return false;
+    time += place.time / std::sqrt(b);
+    barrier.take(b * shares.speeds[i].speed_sq);
     for (const BasicForceShare<S>& force : shares.forces_at(i)) {
-      take(force.acceleration(b, slope));
-      take(force.jerk(b, slope, bend));
+      barrier.take(force.acceleration(b, slope));
+      barrier.take(force.jerk(b, slope, bend));
     }
-    cost.time += (i == 1 ? S(4) : S(1)) * shares.shape.length / (S(6) * std::sqrt(b));
-    if (!(least > S(0))) return {none, none};
-    if (room < S(1e-30)) {
-      if (!(room > S(0))) return {none, none};
-      cost.barrier -= std::log(room);
-      room = S(1);
-    }
+    barrier.settle();
   }
-  cost.barrier -= std::log(room);
-  return cost;
+  return barrier.kept();
 }
 
 /// Gradient of time + weight * barrier, and the Hessian of the time and of the shares at their prices. The
@@ -233,49 +298,53 @@ template <std::floating_point S>
 /// q''' b + 3/2 q'' b' + q' b''/2, linear in (b, b', b''), the Hessian of u is positive but for -2 u / b^2 in
 /// its first entry, which is taken off what the time has there, as far as that goes.
 template <std::floating_point S>
-[[nodiscard]] BasicCellModel<S> cell_model(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law,
-                                           S weight, S spread) {
-  const auto places = detail::places(shares.shape);
+[[nodiscard]] BasicCellModel<S> cell_model(const BasicCellShares<S>& shares, const S* law, S weight,
+                                           S spread) {
   BasicCellModel<S> model;
-  const auto settle = [&](S& price, S pressure) {
-    price = std::clamp(price, pressure / spread, pressure * spread);
-    return price;
+  const S least = S(1) / spread;
+  const auto settle = [&](BasicPrice<S>& own, S share, const std::array<S, 3>& by) {
+    own.pressure = S(1) / (S(1) - share);
+    own.by = by;
+    const S pressure = weight * own.pressure;
+    own.price = std::clamp(own.price, pressure * least, pressure * spread);
+    return own.price;
   };
   for (std::size_t i = 0; i < 3; ++i) {
-    const detail::Place<S>& place = places[i];
-    const S b = detail::row(place.b, law), slope = detail::row(place.slope, law),
-            bend = detail::row(place.bend, law);
+    BasicSpeedShare<S>& speed = shares.speeds[i];
+    const BasicLawPlace<S>& place = speed.place;
+    const S b = place.row(place.b, law), slope = place.row(place.slope, law),
+            bend = place.row(place.bend, law);
     // By b, b' and b''.
     std::array<S, 3> g{};
     std::array<S, 6> H{};
-    const S w = (i == 1 ? S(4) : S(1)) * shares.shape.length / S(6), root = S(1) / std::sqrt(b);
-    g[0] = -w * root / (S(2) * b);
-    S own = S(0.75) * w * root / (b * b);
-    const S cap = shares.speeds[i].speed_sq, left = S(1) / (S(1) - b * cap);
-    g[0] += weight * left * cap;
-    H[0] += settle(shares.speeds[i].price, weight * left) * left * cap * cap;
+    const S inverse = S(1) / b, time = place.time * std::sqrt(inverse);
+    g[0] = S(-0.5) * time * inverse;
+    S own = S(0.75) * time * inverse * inverse;
+    const S cap = speed.speed_sq, price = settle(speed.of_speed, b * cap, {cap, S(0), S(0)});
+    g[0] += weight * speed.of_speed.pressure * cap;
+    H[0] += price * speed.of_speed.pressure * cap * cap;
     for (BasicForceShare<S>& force : shares.forces_at(i)) {
+      const auto& p = force.p;
       if (const S k = force.acceleration_sq; k > S(0)) {
-        const S f = S(1) / (S(1) - force.acceleration(b, slope));
         const auto [x, y] = force.by_acceleration(b, slope);
-        const S pressure = weight * f, price = settle(force.acceleration_price, pressure);
-        g[0] += pressure * x;
-        g[1] += pressure * y;
-        H[0] += price * (f * x * x + k * S(2) * force.p[3]);
-        H[1] += price * (f * x * y + k * force.p[1]);
-        H[3] += price * (f * y * y + k * force.p[0] / S(2));
+        const S multiplier = settle(force.of_acceleration, force.acceleration(b, slope), {x, y, S(0)});
+        const S f = force.of_acceleration.pressure;
+        g[0] += weight * f * x;
+        g[1] += weight * f * y;
+        H[0] += multiplier * (f * x * x + k * S(2) * p[3]);
+        H[1] += multiplier * (f * x * y + k * p[1]);
+        H[3] += multiplier * (f * y * y + k * p[0] / S(2));
       }
       if (const S k = force.jerk_sq; k > S(0)) {
-        const auto& p = force.p;
         const auto y = force.pull(b, slope, bend);
         const S square = y[0] * b + y[1] * slope + y[2] * bend, two = S(2) * k;
-        const S f = S(1) / (S(1) - k * b * square);
-        const S pressure = weight * f, price = settle(force.jerk_price, pressure), pf = price * f;
         const std::array<S, 3> d{k * (square + S(2) * b * y[0]), two * b * y[1], two * b * y[2]};
-        for (std::size_t q = 0; q < 3; ++q) g[q] += pressure * d[q];
-        const S bent = price * two;
-        own -= bent * square / b;
-        H[0] += pf * d[0] * d[0] + bent * (b * p[5] + S(2) * y[0] + square / b);
+        const S multiplier = settle(force.of_jerk, k * b * square, d), f = force.of_jerk.pressure,
+                pf = multiplier * f;
+        for (std::size_t q = 0; q < 3; ++q) g[q] += weight * f * d[q];
+        const S bent = multiplier * two, part = square * inverse;
+        own -= bent * part;
+        H[0] += pf * d[0] * d[0] + bent * (b * p[5] + S(2) * y[0] + part);
         H[1] += pf * d[0] * d[1] + bent * (S(1.5) * b * p[4] + y[1]);
         H[2] += pf * d[0] * d[2] + bent * (S(0.5) * b * p[2] + y[2]);
         H[3] += pf * d[1] * d[1] + bent * S(2.25) * b * p[3];
@@ -284,43 +353,33 @@ template <std::floating_point S>
       }
     }
     H[0] += std::max(own, S(0));
-    // To the Bezier coefficients.
-    const auto& [r0, r1, r2] = place;
+    // To the coefficients.
     std::size_t entry = 0;
     for (std::size_t q = 0; q < 3; ++q) {
-      model.gradient[q] += g[0] * r0[q] + g[1] * r1[q] + g[2] * r2[q];
-      const S h0 = H[0] * r0[q] + H[1] * r1[q] + H[2] * r2[q];
-      const S h1 = H[1] * r0[q] + H[3] * r1[q] + H[4] * r2[q];
-      const S h2 = H[2] * r0[q] + H[4] * r1[q] + H[5] * r2[q];
-      for (std::size_t r = q; r < 3; ++r) model.hessian[entry++] += h0 * r0[r] + h1 * r1[r] + h2 * r2[r];
+      const S r0 = place.b[q], r1 = place.slope[q], r2 = place.bend[q];
+      model.gradient[q] += g[0] * r0 + g[1] * r1 + g[2] * r2;
+      const S h0 = H[0] * r0 + H[1] * r1 + H[2] * r2;
+      const S h1 = H[1] * r0 + H[3] * r1 + H[4] * r2;
+      const S h2 = H[2] * r0 + H[4] * r1 + H[5] * r2;
+      for (std::size_t r = q; r < 3; ++r)
+        model.hessian[entry++] += h0 * place.b[r] + h1 * place.slope[r] + h2 * place.bend[r];
     }
   }
   return model;
 }
 
-/// Moves the prices by a part of the Newton step that belongs to a step of the law: to where price (1 -
-/// share) is the weight, to first order.
+/// Moves the prices by a part of the Newton step that belongs to a step of the law from where `cell_model`
+/// was asked last.
 template <std::floating_point S>
-void move_prices(const BasicCellShares<S>& shares, const BasicCellSpeed<S>& law,
-                 const BasicCellSpeed<S>& step, S weight, S part) {
-  const auto places = detail::places(shares.shape);
-  const auto move = [&](S& price, S left, S rise) {
-    price += part * ((weight + price * rise) / left - price);
-  };
+void move_prices(const BasicCellShares<S>& shares, const S* step, S weight, S part) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const S b = detail::row(places[i].b, law), slope = detail::row(places[i].slope, law),
-            bend = detail::row(places[i].bend, law);
-    const S db = detail::row(places[i].b, step), dslope = detail::row(places[i].slope, step),
-            dbend = detail::row(places[i].bend, step);
-    const S cap = shares.speeds[i].speed_sq;
-    move(shares.speeds[i].price, S(1) - b * cap, db * cap);
+    const BasicLawPlace<S>& place = shares.speeds[i].place;
+    const std::array<S, 3> by_place{place.row(place.b, step), place.row(place.slope, step),
+                                    place.row(place.bend, step)};
+    shares.speeds[i].of_speed.move(by_place, weight, part);
     for (BasicForceShare<S>& force : shares.forces_at(i)) {
-      const auto [x, y] = force.by_acceleration(b, slope);
-      move(force.acceleration_price, S(1) - force.acceleration(b, slope), x * db + y * dslope);
-      const auto pull = force.pull(b, slope, bend);
-      const S square = pull[0] * b + pull[1] * slope + pull[2] * bend, k = force.jerk_sq;
-      move(force.jerk_price, S(1) - k * b * square,
-           k * (square * db + S(2) * b * (pull[0] * db + pull[1] * dslope + pull[2] * dbend)));
+      force.of_acceleration.move(by_place, weight, part);
+      force.of_jerk.move(by_place, weight, part);
     }
   }
 }

@@ -46,11 +46,11 @@ struct BasicWindowResult {
 /// Room for windows, caller-owned.
 template <std::floating_point S>
 struct BasicWindowMemory {
-  std::span<S> numbers;                  ///< eight for each coefficient
+  std::span<S> numbers;                  ///< seven for each coefficient
   std::span<BasicSpeedShare<S>> speeds;  ///< three
   std::span<BasicForceShare<S>> forces;  ///< three for each limit that there is
 
-  static constexpr std::size_t rooms = 8;
+  static constexpr std::size_t rooms = 7;
 
   /// How many coefficients there is room for.
   [[nodiscard]] std::size_t capacity(std::size_t limits) const {
@@ -105,6 +105,7 @@ template <std::floating_point S, int N>
 BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<S> law, std::size_t first,
                               std::size_t last, const BasicSpeedOptions<S>& options,
                               const BasicWindowMemory<S>& memory) {
+  constexpr S none = std::numeric_limits<S>::infinity();
   const std::size_t limits = limit_count(*problem.limits);
   // Two coefficients on each side are read beside those that move.
   const std::size_t count = std::min(last - first, memory.capacity(limits) - 4);
@@ -115,38 +116,29 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
   const std::size_t cell1 = std::min(first + count, cells);  // cells [cell0, cell1) read what moves
   const std::size_t low = cell0, high = std::min(cell1 + 2, law.size());
   const auto trial = memory.room(5, high - low), step = memory.room(6, high - low);
-  // At each knot how far it is from the coefficient before it to the next.
-  const auto parts = memory.room(7, cell1 - cell0 + 1);
-  for (std::size_t cell = cell0; cell <= cell1; ++cell) {
-    const S before = cell > 0 ? problem.cells[cell - 1].shape().from_middle() : S(0);
-    const S own = cell < cells ? problem.cells[cell].shape().to_middle() : S(0);
-    parts[cell - cell0] = before / (before + own);
-  }
   const auto shares_of = [&](std::size_t cell) {
     const std::size_t i = cell - cell0;
-    return BasicCellShares<S>{problem.cells[cell].shape(), memory.speeds.subspan(3 * i, 3),
+    return BasicCellShares<S>{memory.speeds.subspan(3 * i, 3),
                               memory.forces.subspan(3 * limits * i, 3 * limits)};
   };
   const auto set = [&](std::size_t cell) {
     set_shares(problem.cells[cell], *problem.limits, problem.paces[cell], shares_of(cell));
   };
+  const auto shape = [&](std::size_t cell) {
+    return cell < cells ? problem.cells[cell].shape() : BasicCellShape<S>{};  // -1 wraps
+  };
   // b in a cell from the coefficients from number `low` on.
   const auto speed_in = [&](std::size_t cell, std::span<const S> numbers) {
-    const std::size_t i = cell - cell0;
-    const S a = parts[i], z = parts[i + 1];
-    const S c0 = numbers[i], c1 = numbers[i + 1], c2 = numbers[i + 2];
-    return BasicCellSpeed<S>{c0 + a * (c1 - c0), c1, c1 + z * (c2 - c1)};
+    return cell_speed(numbers, cell - cell0, shape(cell - 1), shape(cell), shape(cell + 1));
   };
   const std::span<const S> own = std::span<const S>(law).subspan(low, high - low);
   const auto cost_of = [&](std::span<const S> numbers) {
-    BasicCellCost<S> cost;
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto part = cell_cost(shares_of(cell), speed_in(cell, numbers));
-      cost.time += part.time;
-      cost.barrier += part.barrier;
-      if (!(cost.barrier < std::numeric_limits<S>::infinity())) break;
-    }
-    return cost;
+    S time{};
+    BasicBarrier<S> barrier;
+    for (std::size_t cell = cell0; cell < cell1; ++cell)
+      if (!add_cost(shares_of(cell), &numbers[cell - cell0], time, barrier))
+        return BasicLawCost<S>{none, none};
+    return BasicLawCost<S>{time, barrier.sum()};
   };
   const auto take = [&](std::span<const S> numbers) {
     std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(first - low), count,
@@ -197,11 +189,15 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     return proven;
   };
 
-  for (std::size_t cell = cell0; cell < cell1; ++cell) set(cell);
+  for (std::size_t cell = cell0; cell < cell1; ++cell) {
+    const auto places = law_places(shape(cell - 1), shape(cell), shape(cell + 1));
+    for (std::size_t i = 0; i < 3; ++i) memory.speeds[3 * (cell - cell0) + i].place = places[i];
+    set(cell);
+  }
   keep();
-  BasicCellCost<S> cost = cost_of(own);
+  BasicLawCost<S> cost = cost_of(own);
   BasicWindowResult<S> result{cost.time, 0, false};
-  if (!(cost.barrier < std::numeric_limits<S>::infinity()) || count == 0) return result;
+  if (!(cost.barrier < none) || count == 0) return result;
   const auto terms = static_cast<S>(3 * (1 + 2 * limits) * (cell1 - cell0));
   S weight = S(0.5) * cost.time / terms;
   constexpr S far = S(1e4);  // of the prices from what the barrier would have
@@ -212,23 +208,17 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     std::fill(below.begin(), below.end(), S(0));
     std::fill(second.begin(), second.end(), S(0));
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto model = cell_model(shares_of(cell), speed_in(cell, own), weight, spread);
-      // start = (1 - a) c0 + a c1, middle = c1, end = (1 - z) c1 + z c2
-      const S a = parts[cell - cell0], z = parts[cell - cell0 + 1], c = S(1) - a, y = S(1) - z;
-      const auto& [g0, g1, g2] = model.gradient;
+      const auto model = cell_model(shares_of(cell), &own[cell - cell0], weight, spread);
       const auto& [k00, k01, k02, k11, k12, k22] = model.hessian;
-      const std::array<S, 3> g{c * g0, a * g0 + g1 + y * g2, z * g2};
-      const std::array<S, 3> on{c * c * k00,
-                                a * a * k00 + k11 + y * y * k22 + S(2) * (a * k01 + a * y * k02 + y * k12),
-                                z * z * k22};
-      const std::array<S, 2> next{c * (a * k00 + k01 + y * k02), z * (a * k02 + k12 + y * k22)};
+      const std::array<S, 3> on{k00, k11, k22};
+      const std::array<S, 2> next{k01, k12};
       for (std::size_t q = 0; q < 3; ++q) {
         const std::size_t at = cell + q - first;  // wraps below first, and is then not below count
         if (!(at < count)) continue;
-        gradient[at] += g[q];
+        gradient[at] += model.gradient[q];
         diagonal[at] += on[q];
         if (q < 2 && at + 1 < count) below[at] += next[q];
-        if (q < 1 && at + 2 < count) second[at] += c * z * k02;
+        if (q < 1 && at + 2 < count) second[at] += k02;
       }
     }
     std::fill(step.begin(), step.end(), S(0));
@@ -242,8 +232,8 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     bool moved = false;
     for (int halving = 0; halving < 20; ++halving, share *= S(0.5)) {
       for (std::size_t i = 0; i < trial.size(); ++i) trial[i] = own[i] + share * step[i];
-      const BasicCellCost<S> next = cost_of(trial);
-      if (!(next.barrier < std::numeric_limits<S>::infinity())) continue;
+      const BasicLawCost<S> next = cost_of(trial);
+      if (!(next.barrier < none)) continue;
       if (!(next.time + weight * next.barrier < before - S(1e-4) * share * decrease)) continue;
       moved = true;
       cost = next;
@@ -251,8 +241,7 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     }
     if (moved) {
       for (std::size_t cell = cell0; cell < cell1; ++cell)
-        move_prices(shares_of(cell), speed_in(cell, own), speed_in(cell, std::span<const S>(step)), weight,
-                    share);
+        move_prices(shares_of(cell), &step[cell - cell0], weight, share);
       take(trial);
       spread = far;
       if (decrease > weight * terms * S(0.02)) continue;
@@ -267,13 +256,13 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     }
     const bool proven = prove(own, true);
     cost = cost_of(own);
-    bool go_on = proven && cost.barrier < std::numeric_limits<S>::infinity();
+    bool go_on = proven && cost.barrier < none;
     if (!go_on) {
       // Back to where it is, towards the law that is kept; once more to the optimum under the new paces.
       S back = S(0.9);
       for (int halving = 0; halving < 12; ++halving, back *= S(0.8)) {
         cost = cost_of(between(back));
-        if (cost.barrier < std::numeric_limits<S>::infinity() && prove(trial, false)) break;
+        if (cost.barrier < none && prove(trial, false)) break;
         if (halving == 11) cost = cost_of(between(S(0)));
       }
       take(trial);
