@@ -89,6 +89,34 @@ TEST_CASE("on a straight path the speed is that of seven phases, for any window"
     }
 }
 
+TEST_CASE("next to rest cells may be of any lengths") {
+  const Limits l{30, 1000, 1e4};
+  const double best = seven_phases(20, l);
+  for (const double uneven : {0.15, 0.3, 0.6}) {
+    CAPTURE(uneven);
+    std::vector<SpeedCell<3>> cells;
+    for (const auto& cell : straight(20, 2e-3, 0.16, 30, Vector3(1, 0, 0))) {
+      SpeedCell<3> head = cell, tail = cell;
+      head.length *= uneven;
+      tail.length -= head.length;
+      const bool rest = cells.empty() || cell.length == 2e-3;
+      if (rest) {
+        cells.push_back(cell);
+        continue;
+      }
+      cells.push_back(head);
+      cells.push_back(tail);
+    }
+    MotionLimits<3> limits;
+    limits.tool = l;
+    Memory memory(cells.size());
+    const auto plan = plan_speed<double, 3>(cells, limits, {}, memory.spans());
+    CHECK(plan.start_slow_down == 1);
+    CHECK(plan.use.slow_down() <= 1);
+    CHECK(plan.duration < best * 1.004);
+  }
+}
+
 TEST_CASE("an axis that is weaker than the tool binds") {
   MotionLimits<3> limits;
   limits.tool = {30, 1000, 1e4};

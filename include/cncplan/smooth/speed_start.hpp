@@ -153,9 +153,12 @@ struct BasicDeparture {
 
   [[nodiscard]] S length() const { return slope / bend; }
   [[nodiscard]] S plateau() const { return speed_sq + slope * slope / (S(2) * bend); }
-  /// b at a length from the knot.
-  [[nodiscard]] S at(S x) const {
-    return x < length() ? speed_sq + x * (slope - bend * x / S(2)) : plateau();
+  /// Where the tangents of b at two lengths from the knot meet: the coefficient of a cell between them. The
+  /// value of b there is another one, by the square of the cell's length, and where cells of other lengths
+  /// follow that would be a jerk.
+  [[nodiscard]] S between(S x0, S x1) const {
+    const S a = std::min(x0, length()), z = std::min(x1, length());
+    return speed_sq + slope * (a + z) / S(2) - bend * a * z / S(2);
   }
 };
 
@@ -182,8 +185,6 @@ void gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> level
   const auto all = plateaus.all();
   std::size_t index = 0;
   const auto value = [&](S s) {
-    if (s < from.length()) return from.at(s);
-    if (s > length - to.length()) return to.at(length - s);
     while (index + 1 < all.size() && s > all[index].to) ++index;
     const BasicPlateau<S>& here = all[index];
     S b = here.speed_sq;
@@ -198,8 +199,11 @@ void gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> level
   law[0] = from.speed_sq;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     // Where the coefficient stands.
-    law[cell + 1] = value(at + problem.cells[cell].shape().to_middle());
+    const S start_of_cell = at, s = at + problem.cells[cell].shape().to_middle();
     at += problem.cells[cell].length;
+    law[cell + 1] = s < from.length()          ? from.between(start_of_cell, at)
+                    : s > length - to.length() ? to.between(length - at, length - start_of_cell)
+                                               : value(s);
   }
   law[cells + 1] = to.speed_sq;
   law[1] = from.speed_sq + from.slope * problem.cells.front().shape().to_middle();
