@@ -89,13 +89,16 @@ void solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
       }
     }
     Matrix& own = rows[i][0];
+    // Rounding may leave less of a definite matrix.
+    const VectorN<S, N> least = std::numeric_limits<S>::epsilon() * own.diagonal();
     for (std::size_t k = 1; k <= 3 && k <= i; ++k) own.noalias() -= rows[i][k] * rows[i][k].transpose();
     Matrix factor = Matrix::Zero();
     for (int r = 0; r < N; ++r)
       for (int c = 0; c <= r; ++c) {
         S sum = own(r, c);
         for (int k = 0; k < c; ++k) sum -= factor(r, k) * factor(c, k);
-        factor(r, c) = r == c ? std::sqrt(std::max(sum, std::numeric_limits<S>::min())) : sum / factor(c, c);
+        factor(r, c) =
+            r == c ? std::sqrt(std::max({sum, least[r], std::numeric_limits<S>::min()})) : sum / factor(c, c);
       }
     own = factor;
     x[i] = -gradient[i];
