@@ -310,7 +310,7 @@ class Band {
     add(starts_[block] + middle, own, middle - from);
   }
 
-  // Cells a third of a corner's kernel wide near it, and growing with the distance; short on narrow bends;
+  // Cells a quarter of a corner's width near it, and growing with the distance; short on narrow bends;
   // and short where the feed changes, for from a low speed to a high one b grows by decades on a short
   // length.
   void make_knots() {
@@ -334,7 +334,7 @@ class Band {
       const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
       if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
       if (corner != corners_.end() && !(corner->at > starts_[i])) {
-        add(corner->at, corner->width / S(3), S(1.7) * corner->width);
+        add(corner->at, corner->width / S(4), S(0.6) * corner->width);
         ++corner;
       }
       fit_bends(i, S(0), blocks_[i].path->length(), halvings, add);
