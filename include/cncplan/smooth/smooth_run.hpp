@@ -39,7 +39,7 @@ template <std::floating_point S>
 struct BasicSmoothOptions {
   int passes = 1;          ///< of geometry, each after one of speed
   int joint_rounds = 4;    ///< the most of geometry and speed together
-  S joint_gain = S(3e-3);  ///< of the time by a round, for which there is another
+  S joint_gain = S(2e-3);  ///< of the time by a round, for which there is another
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
