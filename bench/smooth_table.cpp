@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <random>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +37,8 @@ struct Case {
   std::string file{};     // a program; else `points`
   double feed = none;     // mm/s, in place of the program's
   std::vector<Vector3> points{};
-  bool loss{};  // tell what is more than a straight line of the same length takes
+  bool loss{};     // tell what is more than a straight line of the same length takes
+  double merge{};  // mm, Q of G64
 };
 
 std::vector<Vector3> corner(double degrees) {
@@ -54,19 +57,50 @@ std::vector<Vector3> polygon(double radius, double chord_error, int rounds) {
   return points;
 }
 
+// Lines across a noise, uniform up to that many mm to both sides, along X or on a circle.
+std::vector<Vector3> noisy(double step, double noise,
+                           double radius = std::numeric_limits<double>::infinity()) {
+  std::mt19937 random;  // its numbers are the same everywhere
+  std::vector<Vector3> points;
+  for (int i = 0; i <= 4000; ++i) {
+    const double along = step * i,
+                 off = noise * (2 * static_cast<double>(random()) / std::mt19937::max() - 1);
+    if (std::isfinite(radius))
+      points.emplace_back((radius + off) * std::cos(along / radius),
+                          (radius + off) * std::sin(along / radius), 0);
+    else
+      points.emplace_back(along, off, 0);
+  }
+  return points;
+}
+
+void add_merged(std::vector<Case>& cases, const std::string& name, const std::vector<Vector3>& points,
+                std::initializer_list<double> merges) {
+  for (const double merge : merges) {
+    char text[32] = "none";
+    if (merge > 0) std::snprintf(text, sizeof text, "%g", merge);
+    cases.push_back({name + ", Q " + text, slow, 0.01, none, none, {}, none, points, false, merge});
+  }
+}
+
 std::vector<Case> cases() {
-  return {{"ball.nc 30/1000/10000, 0.01", slow, 0.01, 1022, 1035, "ball.nc"},
-          {"ball.nc 30/1000/10000, 0.05", slow, 0.05, 1013, none, "ball.nc"},
-          {"ball.nc 30/1000/10000, 0.005", slow, 0.005, 1026, none, "ball.nc"},
-          {"ball.nc 100/2000/40000, feed 100, 0.01", quick, 0.01, 330, 345, "ball.nc", 100},
-          {"ball.nc 50/1000/100000, feed 50, 0.01", stiff, 0.01, 611, 620, "ball.nc", 50},
-          {"Cereal, 0.01", slow, 0.01, 268.5, 278, "ngc/Cereal.ngc"},
-          {"51MeanderAve, 0.01", slow, 0.01, 218.5, 225, "ngc/51MeanderAve.ngc"},
-          {"3dtest, 0.01", slow, 0.01, 61.15, 61.8, "ngc/3dtest.ngc"},
-          {"corner of 90 degrees, loss", slow, 0.01, 0.077, none, {}, none, corner(90), true},
-          {"corner of 30 degrees, loss", slow, 0.01, 0.061, none, {}, none, corner(30), true},
-          {"corner of 10 degrees, loss", slow, 0.01, 0.001, none, {}, none, corner(10), true},
-          {"polygon R 10, 100/2000/40000", quick, 0.01, 1.37, none, {}, none, polygon(10, 0.01, 2)}};
+  std::vector<Case> cases{
+      {"ball.nc 30/1000/10000, 0.01", slow, 0.01, 1022, 1035, "ball.nc"},
+      {"ball.nc 30/1000/10000, 0.05", slow, 0.05, 1013, none, "ball.nc"},
+      {"ball.nc 30/1000/10000, 0.005", slow, 0.005, 1026, none, "ball.nc"},
+      {"ball.nc 100/2000/40000, feed 100, 0.01", quick, 0.01, 330, 345, "ball.nc", 100},
+      {"ball.nc 50/1000/100000, feed 50, 0.01", stiff, 0.01, 611, 620, "ball.nc", 50},
+      {"Cereal, 0.01", slow, 0.01, 268.5, 278, "ngc/Cereal.ngc"},
+      {"51MeanderAve, 0.01", slow, 0.01, 218.5, 225, "ngc/51MeanderAve.ngc"},
+      {"3dtest, 0.01", slow, 0.01, 61.15, 61.8, "ngc/3dtest.ngc"},
+      {"corner of 90 degrees, loss", slow, 0.01, 0.077, none, {}, none, corner(90), true},
+      {"corner of 30 degrees, loss", slow, 0.01, 0.061, none, {}, none, corner(30), true},
+      {"corner of 10 degrees, loss", slow, 0.01, 0.001, none, {}, none, corner(10), true},
+      {"polygon R 10, 100/2000/40000", quick, 0.01, 1.37, none, {}, none, polygon(10, 0.01, 2)}};
+  add_merged(cases, "0.1 mm along X, noise 0.002", noisy(0.1, 0.002), {0, 0.002, 0.004});
+  add_merged(cases, "0.03 mm on R 20, noise 0.001", noisy(0.03, 0.001, 20), {0, 0.001, 0.002});
+  add_merged(cases, "0.05 mm on R 5", noisy(0.05, 0, 5), {0, 0.002, 0.008});
+  return cases;
 }
 
 // Without what the program says of rests and tolerances.
@@ -76,6 +110,7 @@ std::optional<std::vector<Block>> blocks_of(const Case& c, const Mill& machine, 
     for (std::size_t i = 1; i < c.points.size(); ++i) {
       Block block{path::BasicLine<double, 3>(c.points[i - 1], c.points[i])};
       block.feed = c.limits.velocity;
+      block.merge = c.merge;
       blocks.push_back(block);
     }
     return blocks;
