@@ -73,6 +73,12 @@ TEST_CASE("a comment may stand within a comment, and what both say is not carrie
   CHECK(run("(a (b) #1=5) G0 X[1 (c (d)) + 2] Y#1\n") == run("G0 X3 Y0\n"));
 }
 
+TEST_CASE("an O-word behind other words is refused by its name") {
+  CHECK(run("G91 o1 call\n") == "1:5: error: O-word is not supported");
+  CHECK(run("G91 o1 call [3]\n") == "1:5: error: O-word is not supported");
+  CHECK(run("#1=2 (a) o1 if [#1]\n") == "1:10: error: O-word is not supported");
+}
+
 TEST_CASE("flat words stay as they stand, and words that are computed may be near a code") {
   CHECK(run("G[0.99999] X5 F100\nX[1/3]\nG0X+2Y-.5\n") == "1:5 2:0.333333 3:2 ");
 }

@@ -25,6 +25,7 @@ class FlatLine {
     text_.clear();
     columns_.clear();
     settings_.clear();
+    bool behind_words = false;
     for (std::size_t at = 0; at < line.size();) {
       const char c = line[at];
       if (c == ';') {
@@ -35,11 +36,16 @@ class FlatLine {
         copy(line, at, behind);
         at = behind;
       } else if (c == '#') {
+        behind_words = true;
         if (auto next = setting(line, at, parameters))
           at = *next;
         else
           return tl::unexpected(next.error());
       } else if (is_letter(c)) {
+        if (behind_words && (c == 'O' || c == 'o'))
+          return tl::unexpected(
+              Diagnostic{{ErrorCode::not_supported, "O-word", 0.0, 0.0}, 0, static_cast<int>(at) + 1, {}});
+        behind_words = true;
         copy(line, at, at + 1);
         if (auto next = value(line, at + 1, c, parameters))
           at = *next;
