@@ -324,22 +324,17 @@ class Reader {
   }
 
   /// Where the axis words lead, in work coordinates.
-  [[nodiscard]] Position target() const {
+  [[nodiscard]] Position target() const { return named_place(position(), &WorkCoordinates::meet); }
+  /// The same for a control of a spline: increments are from its start, and it may be as near as it likes.
+  [[nodiscard]] Position control() const {
+    return named_place(splines_.open() ? splines_.start() : position(), &WorkCoordinates::nameable);
+  }
+  [[nodiscard]] Position named_place(const Position& from, auto member) const {
     Position end = position();
     for (std::size_t i = 0; i < axis_count(); ++i)
       if (const auto value = coordinate(i))
-        end[i] = place_.meet(i, modal_.incremental ? end[i] + *value : *value);
+        end[i] = (place_.*member)(i, modal_.incremental ? from[i] + *value : *value);
     return end;
-  }
-
-  /// The same for a control of a spline: increments are from its start, and it may be as near as it likes.
-  [[nodiscard]] Position control() const {
-    const Position from = splines_.open() ? splines_.start() : position();
-    Position place = position();
-    for (std::size_t i = 0; i < axis_count(); ++i)
-      if (const auto value = coordinate(i))
-        place[i] = place_.nameable(i, modal_.incremental ? from[i] + *value : *value);
-    return place;
   }
 
   /// Where they lead as machine coordinates (G53), in work coordinates.
