@@ -325,6 +325,76 @@ TEST_CASE("hold, jog away, return, resume", "[executor]") {
   CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
 }
 
+TEST_CASE("axes go back to where the program was left though more words follow than there is room",
+          "[executor]") {
+  const double tolerance = GENERATE(0.0, 0.01);
+  const bool by_hand = GENERATE(false, true);
+  const int words = GENERATE(15, 16, 17, 18, 100);
+  CAPTURE(tolerance, by_hand, words);
+  Lines lines{"G1 X20 F1200"};
+  lines.insert(lines.end(), static_cast<std::size_t>(words), "M8");
+  lines.emplace_back("Y20");
+  const auto blocks = test::blocks_of(lines, mill);
+  Runner executor(mill, {.tolerance = tolerance});
+  std::size_t pushed = 0;
+  SetPoint<3> point;
+  const auto run_up_to = [&](std::size_t last, double seconds) {
+    for (int tick = 0; tick < seconds / period; ++tick) {
+      while (pushed < last && executor.push(blocks[pushed]))
+        if (++pushed == blocks.size()) executor.end_of_program();
+      point = executor.tick(period);
+    }
+  };
+  run_up_to(blocks.size() - 1, 2.0);
+  CHECK(point.position == Vector3(20, 0, 0));
+  REQUIRE(executor.jog_to({15, 4, 2}));
+  run_up_to(blocks.size() - 1, 2.0);
+  CHECK(point.position == Vector3(15, 4, 2));
+  by_hand ? void(executor.return_to_path()) : executor.resume();
+  run_up_to(blocks.size() - 1, 2.0);
+  CHECK((point.position - Vector3(20, 0, 0)).norm() < 1e-12);
+  run_up_to(blocks.size(), 3.0);
+  CHECK(executor.finished());
+  CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
+  // over, and away again: it is not over before the axes are back, whatever is kept of the program
+  REQUIRE(executor.jog({5, 0, 0}));
+  run_up_to(blocks.size(), 1.0);
+  CHECK_FALSE(executor.finished());
+  executor.resume();
+  run_up_to(blocks.size(), 2.0);
+  CHECK(executor.finished());
+  CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
+  // a new beginning has no place to go back to
+  REQUIRE(executor.restart(0, {1, 1, 1}));
+  REQUIRE(executor.jog_to({2, 2, 2}));
+  run_up_to(blocks.size(), 2.0);
+  REQUIRE(executor.return_to_path());
+  run_up_to(blocks.size(), 2.0);
+  CHECK(point.position == Vector3(2, 2, 2));
+}
+
+TEST_CASE("a program that ends with words is not over while the axes are away", "[executor]") {
+  const int words = GENERATE(10, 40);
+  CAPTURE(words);
+  Lines lines{"G1 X20 F1200"};
+  lines.insert(lines.end(), static_cast<std::size_t>(words), "M8");
+  const auto blocks = test::blocks_of(lines, mill);
+  Runner executor(mill);
+  std::size_t pushed = 0;
+  for (int tick = 0; tick < 3000; ++tick) {
+    while (pushed < blocks.size() && executor.push(blocks[pushed]))
+      if (++pushed == blocks.size()) executor.end_of_program();
+    executor.tick(period);
+  }
+  REQUIRE(executor.finished());
+  REQUIRE(executor.jog({0, 0, 5}));
+  run(executor, 0.5);
+  CHECK_FALSE(executor.finished());
+  executor.resume();
+  CHECK(run(executor, 3.0).position == Vector3(20, 0, 0));
+  CHECK(executor.finished());
+}
+
 TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "[executor]") {
   Runner executor(mill, {.quick_stop_share = 3});
   load(executor, {"G1 X20 F1200", "Y20"});

@@ -113,7 +113,7 @@ class Executor {
   /// came to rest before a block that cannot be planned.
   [[nodiscard]] bool finished() const {
     if (player_.stopped()) return !jog_.moves();
-    if (!player_.finished() || (away_ && player_.oldest() != player_.end())) return false;
+    if (!player_.finished() || (away_ && (has_run_ || player_.oldest() != player_.end()))) return false;
     if (feed_.failed()) return true;
     const std::int64_t end = end_.load(std::memory_order_acquire);
     return end != not_ended && told_ >= end && feed_.ready() >= end;
@@ -193,6 +193,7 @@ class Executor {
     if (jog_.moves() || !player_.skip_to(0)) return false;
     feed_.restart(line, position);
     away_ = returns_ = feed_.smooths();
+    has_run_ = false;
     told_ = 0;
     end_.store(not_ended, std::memory_order_relaxed);
     stand_at(position);
@@ -274,10 +275,11 @@ class Executor {
     goes_back_ = false;
   }
 
-  // Where the program goes on; false while it has no blocks.
+  // Where the program goes on: on the blocks that it has, or where it was left if those have been let go.
+  // False while it has none and has not run.
   bool find_path() {
     const plan::BasicPlayed<Scalar> now = player_.place();
-    if (now.block < 0) return false;
+    if (now.block < 0) return has_run_;
     const Cell& cell = player_[now.block];
     const auto path = feed_.path(cell.block);
     path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
@@ -335,6 +337,8 @@ class Executor {
     else
       last_.tool = in_space(axes.position, tool_);
     last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
+    path_place_ = axes.position;
+    has_run_ = true;
   }
 
   // Lets blocks go that are too far behind: those ahead are to have their share of the room, whatever blocks
@@ -374,6 +378,7 @@ class Executor {
   plan::BasicElapsed<Scalar> time_;
   plan::Jog<M> jog_;
   Vector path_place_ = Vector::Zero();  // where the program goes on
+  bool has_run_ = false;                // there is such a place, whatever blocks are kept
   bool away_ = false;                   // the axes are not on the path
   bool returns_ = false;                // and are to go back to it
   bool goes_back_ = false;              // the jog leads there
