@@ -395,6 +395,62 @@ TEST_CASE("a program that ends with words is not over while the axes are away", 
   CHECK(executor.finished());
 }
 
+TEST_CASE("set points show the start of a program before it begins", "[executor]") {
+  const double tolerance = GENERATE(0.0, 0.01);
+  const char* first = GENERATE("G1 X60 F1200", "M3 S1000", "G4 P0.2");
+  const bool late = GENERATE(false, true);  // the thread that plans is
+  CAPTURE(tolerance, first, late);
+  const Vector3 start(50, -20, 5);
+  PlanOptions options;
+  std::copy(start.begin(), start.end(), options.start.begin());
+  const auto blocks = test::blocks_of({first, "G1 X60 F1200", "Y0"}, mill, options);
+  Runner executor(mill, {.tolerance = tolerance, .background = late});
+  CHECK(executor.tick(period).position.isZero());  // nobody has said yet
+  bool there = true;
+  for (int tick = 0; tick < 30; ++tick) {
+    if (tick < 2) REQUIRE(executor.push(blocks[static_cast<std::size_t>(tick)]));
+    const auto point = executor.tick(period);
+    there = there && (point.position - start).norm() < 1 && point.tool == point.position;
+    if (tick == 0 && tolerance > 0) there = there && point.position == start && point.velocity.isZero();
+  }
+  CHECK(there);
+}
+
+TEST_CASE("axes are jogged from the start of a program that has not begun", "[executor]") {
+  const Vector3 start(50, -20, 5);
+  PlanOptions options;
+  std::copy(start.begin(), start.end(), options.start.begin());
+  const auto blocks = test::blocks_of({"G1 X60 F1200", "Y0"}, mill, options);
+  Runner executor(mill);
+  for (const auto& block : blocks) REQUIRE(executor.push(block));
+  REQUIRE(executor.jog({0, 0, 5}));
+  CHECK((executor.tick(period).position - start).norm() < 0.01);
+  executor.end_of_program();
+  run(executor, 0.3);
+  executor.resume();
+  CHECK(run(executor, 5.0).position == Vector3(60, 0, 5));
+  CHECK(executor.finished());
+}
+
+TEST_CASE("behind a map set points show the start of a program, and its tool", "[executor]") {
+  using Polar = Executor<MappedMachine<test::Polar>, 16>;
+  PlanOptions options;
+  options.start[0] = 30, options.start[1] = 40;
+  const auto blocks = test::blocks_of({"G1 X60 F1200"}, test::polar, options);
+  Polar executor(test::polar, {.background = true});
+  REQUIRE(executor.push(blocks[0]));
+  executor.feed_hold();
+  const auto point = executor.tick(period);
+  CHECK((point.position - Vector3(50, std::atan2(4, 3), 0)).norm() < 1e-12);
+  CHECK((point.tool - Vector3(30, 40, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("a program that begins nowhere shows no such place", "[executor]") {
+  Runner executor(mill);
+  REQUIRE(executor.push({.path = path::Line<3>({NAN, 0, 0}, {3, 0, 0}), .feed = 10}));
+  CHECK(executor.tick(period).position.isZero());
+}
+
 TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "[executor]") {
   Runner executor(mill, {.quick_stop_share = 3});
   load(executor, {"G1 X20 F1200", "Y20"});

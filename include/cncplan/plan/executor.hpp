@@ -194,6 +194,7 @@ class Executor {
     feed_.restart(line, position);
     away_ = returns_ = feed_.smooths();
     has_run_ = false;
+    placed_ = true;
     told_ = 0;
     end_.store(not_ended, std::memory_order_relaxed);
     stand_at(position);
@@ -216,6 +217,7 @@ class Executor {
     time_.add(period);
     last_.time = time();
     last_.words.clear();
+    if (!placed_) stand_at_start();
     if (away_) {
       if (returns_ && !find_path()) tell_words(ready - 1);  // of blocks that do not move
       release();
@@ -253,6 +255,14 @@ class Executor {
     tell_tool_of_axes();
   }
 
+  // Nothing has moved the axes yet: they stand where the program begins, once somebody has told.
+  void stand_at_start() {
+    placed_ = feed_.pushed() > 0;
+    if (!placed_) return;
+    last_.position = feed_.start().position;
+    last_.tool = feed_.start().tool;
+  }
+
   // Away from a path, the tool's place is that of its axes; behind a map nobody knows it.
   void tell_tool_of_axes() {
     if constexpr (MappedModel<M>)
@@ -261,12 +271,14 @@ class Executor {
       last_.tool = in_space(last_.position, tool_);
   }
 
-  Expected<void> begin_jog() const {
+  Expected<void> begin_jog() {
+    if (!placed_) stand_at_start();
     if (away_ || player_.rests()) return {};
     return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
   }
   Expected<void> jogged(const Expected<void>& done, bool returns) {
     away_ = away_ || done.has_value();
+    placed_ = placed_ || away_;
     if (done) returns_ = returns, goes_back_ = false;
     return done;
   }
@@ -379,6 +391,7 @@ class Executor {
   plan::Jog<M> jog_;
   Vector path_place_ = Vector::Zero();  // where the program goes on
   bool has_run_ = false;                // there is such a place, whatever blocks are kept
+  bool placed_ = false;                 // it is known where the axes stand
   bool away_ = false;                   // the axes are not on the path
   bool returns_ = false;                // and are to go back to it
   bool goes_back_ = false;              // the jog leads there

@@ -19,6 +19,7 @@
 #include "cncplan/plan/player/nearest.hpp"
 #include "cncplan/plan/player/smoothing_ahead.hpp"
 #include "cncplan/plan/smooth_junction.hpp"
+#include "cncplan/plan/tool.hpp"
 
 namespace cncplan::plan {
 
@@ -75,6 +76,7 @@ class CellFeed {
     Slot& slot = slots_[static_cast<std::size_t>(number) % room];
     slot.block = block;
     slot.start = length_;
+    if (number == 0) tell_start(block);
     if (block.path.length() > Scalar(0) && length_of(block.path, machine_) != LengthOf::rotary_axes)
       length_ += block.path.length();
     merger_.push(block_at(), merged());
@@ -125,6 +127,12 @@ class CellFeed {
   [[nodiscard]] Driven path(std::int64_t number) const {
     return smoothing_.driven(slot(number).block, number, tool_);
   }
+  /// Where the first block begins, once it has been pushed: the axes and the tool; 0 where that is no number.
+  struct Start {
+    Vector position = Vector::Zero();
+    BasicVector3<Scalar> tool = BasicVector3<Scalar>::Zero();
+  };
+  [[nodiscard]] const Start& start() const { return start_; }
   /// mm from the start of the program.
   [[nodiscard]] Scalar start_length(std::int64_t number) const { return slot(number).start; }
   /// Blocks before this one are not asked for again.
@@ -162,6 +170,12 @@ class CellFeed {
   }
   [[nodiscard]] auto merged() {
     return [this](std::int64_t number) { smoothing_.push(slot(number).block, machine_); };
+  }
+
+  // Merging changes blocks that are not ready, so the other thread must not look at one.
+  void tell_start(const B& block) {
+    const Start start{block.path.position_at(Scalar(0)), tool_point(block.path, Scalar(0), tool_).position};
+    if (start.position.allFinite() && start.tool.allFinite()) start_ = start;
   }
 
   void fail(const gcode::Diagnostic& fault) {
@@ -279,6 +293,7 @@ class CellFeed {
   LineMerger<M, B> merger_;
   SmoothingAhead<M, B, room, neighbours_for(room)> smoothing_;
   std::array<Slot, room> slots_{};
+  Start start_{};
   std::optional<Cell> waiting_;  // for room
   std::optional<Cell> next_;     // behind that
   std::optional<Vector> place_;  // where the motion begins, on the next block
