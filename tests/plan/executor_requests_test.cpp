@@ -451,6 +451,22 @@ TEST_CASE("a program that begins nowhere shows no such place", "[executor]") {
   CHECK(executor.tick(period).position.isZero());
 }
 
+TEST_CASE("blocks that wait for others go on soon behind a restart or a jog too", "[executor]") {
+  const bool restarts = GENERATE(false, true);
+  CAPTURE(restarts);
+  const auto blocks = test::blocks_of({"F1200", "G1 X5", "Y5"}, mill);
+  Runner executor(mill, {.tolerance = 0.05});
+  if (restarts) {
+    REQUIRE(executor.restart(0, {0, 0, 0}));
+  } else {
+    REQUIRE(executor.jog_to({0, 0, 1}));
+    run(executor, 0.02);
+  }
+  for (const auto& block : blocks) REQUIRE(executor.push(block));
+  executor.resume();
+  CHECK(run(executor, 5.0).position == Vector3(5, 5, 0));
+}
+
 TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "[executor]") {
   Runner executor(mill, {.quick_stop_share = 3});
   load(executor, {"G1 X20 F1200", "Y20"});

@@ -195,6 +195,7 @@ class Executor {
     away_ = returns_ = feed_.smooths();
     has_run_ = false;
     placed_ = true;
+    waited_ = Scalar(0);
     told_ = 0;
     end_.store(not_ended, std::memory_order_relaxed);
     stand_at(position);
@@ -219,7 +220,10 @@ class Executor {
     last_.words.clear();
     if (!placed_) stand_at_start();
     if (away_) {
-      if (returns_ && !find_path()) tell_words(ready - 1);  // of blocks that do not move
+      if (returns_ && !find_path())
+        wait_for_path(period, ready);
+      else
+        waited_ = Scalar(0);
       release();
       return tick_of_jog(period, visit);
     }
@@ -296,6 +300,13 @@ class Executor {
     const auto path = feed_.path(cell.block);
     path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
     return true;
+  }
+
+  // The axes are to go to a path that is not there yet: no block moves, or those that do are held back.
+  void wait_for_path(Scalar period, std::int64_t ready) {
+    tell_words(ready - 1);
+    waited_ += period;
+    if (waited_ >= longest_wait_) feed_.let_go();
   }
 
   template <class Visit>
@@ -395,6 +406,7 @@ class Executor {
   bool away_ = false;                   // the axes are not on the path
   bool returns_ = false;                // and are to go back to it
   bool goes_back_ = false;              // the jog leads there
+  Scalar waited_{};                     // s for which there has been no path to go to
   SetPoint last_{};
   std::int64_t told_ = 0;  // blocks whose words have been told
   std::atomic<std::int64_t> end_{not_ended};
