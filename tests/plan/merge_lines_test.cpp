@@ -16,6 +16,7 @@
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"
+#include "support/random_runs.hpp"
 
 using namespace cncplan;
 
@@ -65,77 +66,6 @@ std::string noisy(const std::string& mode, int count, double step, double noise)
     text += line;
   }
   return text;
-}
-
-// Runs along headings that bend or jump, with noise around each run; feeds, words, stops, tolerances, rapids,
-// arcs and moves back in between. `letters` move as well, along each run in proportion.
-std::vector<std::string> random_runs(test::Random& random, int runs, const std::string& letters,
-                                     double reach) {
-  std::vector<std::string> lines;
-  char text[200];
-  const auto add = [&](const char* format, auto... arguments) {
-    std::snprintf(text, sizeof text, format, arguments...);
-    lines.emplace_back(text);
-  };
-  double x = 0, y = 0, z = 0, heading = 0;
-  std::vector<double> others(letters.size());
-  add("F%.0f", random.log_uniform(300, 3000));
-  add("G64 P0.01 Q%.4f", random.log_uniform(0.0005, 0.02));
-  for (int run = 0; run < runs; ++run) {
-    switch (random.integer(0, 14)) {
-      case 0:
-        add("F%.0f", random.log_uniform(300, 3000));
-        break;
-      case 1:
-        add("G64 P%.4f Q%.4f", random.log_uniform(0.001, 0.01), random.log_uniform(0.0005, 0.02));
-        break;
-      case 2:
-        lines.emplace_back(random.coin() ? "G64" : "G61.1");
-        break;
-      case 3:
-        lines.emplace_back("G4 P0.01");
-        break;
-      case 4:
-        lines.emplace_back("M8");
-        break;
-      case 5:
-        add("G0 X%.6f", x += random.uniform(-1, 1));
-        break;
-      case 6:
-        lines.emplace_back("G64 P0.01 Q0.004");
-        break;
-      case 7:
-        add("G3 X%.6f Y%.6f I0.5 J0", x + 1, y);
-        x += 1;
-        break;
-      default:
-        break;
-    }
-    const double noise = random.coin() ? random.log_uniform(1e-5, 1e-2) : 0;
-    const double step = random.log_uniform(0.01, 1), bend = random.coin() ? random.uniform(-0.05, 0.05) : 0;
-    heading = std::hypot(x, y) > reach ? std::atan2(-y, -x)
-                                       : heading + random.uniform(-1, 1) * random.uniform(0, 3);
-    std::vector<double> rates;
-    for (std::size_t i = 0; i < letters.size(); ++i)
-      rates.push_back(random.integer(0, 2) == 0 ? random.uniform(-2, 2) : 0);
-    for (int i = random.integer(1, 30); i > 0; --i) {
-      heading += bend;
-      const double way = step * (random.integer(0, 40) == 0 ? -0.01 : random.uniform(0.5, 1));
-      x += way * std::cos(heading), y += way * std::sin(heading), z += 0.1 * way;
-      std::string words;
-      for (std::size_t k = 0; k < letters.size(); ++k) {
-        others[k] += rates[k] * way;
-        std::snprintf(text, sizeof text, " %c%.6f", letters[k],
-                      others[k] + 10 * noise * random.uniform(-1, 1));
-        words += text;
-      }
-      add("G1 X%.6f Y%.6f Z%.6f%s", x + noise * random.uniform(-1, 1), y + noise * random.uniform(-1, 1), z,
-          words.c_str());
-      if (random.integer(0, 60) == 0) lines.emplace_back(random.coin() ? "M8" : "M9");
-    }
-  }
-  lines.emplace_back("M30");
-  return lines;
 }
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -222,7 +152,7 @@ TEST_CASE("lines are merged up to what parts them", "[merge_lines]") {
 TEST_CASE("a program without Q is what it was", "[merge_lines]") {
   test::Random random;
   for (int round = 0; round < 20; ++round) {
-    auto lines = random_runs(random, 20, "ACU", 20);
+    auto lines = test::random_runs(random, 20, "ACU", 20);
     for (std::string& line : lines) line = line.substr(0, line.find(" Q"));
     const auto blocks = read(joined(lines), test::six_axes);
     CHECK(merged(blocks, test::six_axes) == blocks);
@@ -243,7 +173,7 @@ TEST_CASE("merging and smoothing together stay within each axis' tolerance", "[m
   std::size_t merges = 0;
   double most_of_tool = 0, most_of_rotary = 0;
   for (int round = 0; round < 40; ++round) {
-    const auto lines = random_runs(random, 12, "ACU", 20);
+    const auto lines = test::random_runs(random, 12, "ACU", 20);
     CAPTURE(round, test::literal(lines));
     const auto blocks = read(joined(lines), machine);
     const auto planned = plan_blocks(blocks, machine, within);
@@ -275,7 +205,7 @@ TEST_CASE("merging and smoothing together stay within each axis' tolerance", "[m
 TEST_CASE("the level best merges as well, within the tolerance", "[merge_lines]") {
   test::Random random;
   for (int round = 0; round < 6; ++round) {
-    const auto lines = random_runs(random, 6, "", 20);
+    const auto lines = test::random_runs(random, 6, "", 20);
     CAPTURE(round, test::literal(lines));
     const auto blocks = read(joined(lines), mill);
     const auto planned = plan_smooth(blocks, mill, within);
@@ -293,7 +223,7 @@ TEST_CASE("the level best merges as well, within the tolerance", "[merge_lines]"
 TEST_CASE("an executor merges, whatever is asked of it", "[merge_lines]") {
   test::Random random;
   for (int round = 0; round < 60; ++round) {
-    const auto lines = random_runs(random, random.integer(1, 8), "ACU", 20);
+    const auto lines = test::random_runs(random, random.integer(1, 8), "ACU", 20);
     const auto blocks = test::blocks_of(lines, test::six_axes);
     CAPTURE(round, test::literal(lines));
     const test::Disturbance how{
@@ -312,6 +242,42 @@ TEST_CASE("an executor merges, whatever is asked of it", "[merge_lines]") {
     CHECK(faults.place <= 0);
     CHECK(faults.end < 1e-6);
   }
+}
+
+TEST_CASE("an executor that merges begins anew anywhere, whatever is asked of it", "[merge_lines]") {
+  test::Random random;
+  int anew = 0;
+  for (int round = 0; round < 300; ++round) {
+    const double most = random.log_uniform(1e-3, 0.1);
+    const bool six = random.coin();
+    const auto lines = test::random_runs(random, random.integer(1, 8), six ? "ACU" : "", 20, most);
+    CAPTURE(round, most, six, test::literal(lines));
+    // what the options say is more than the program does, or less
+    const test::Disturbance how{.mean_gap = random.integer(2, 100),
+                                .restless = 1000,
+                                .restarts = true,
+                                .tolerance = most * (1 + 1e-5),
+                                .share = random.coin() ? 1 : 0.1};
+    const auto drive = [&](const auto& machine) {
+      const auto blocks = test::blocks_of(lines, machine);
+      return random.coin() ? test::run<64>(machine, blocks, random, how)
+                           : test::run<16>(machine, blocks, random, how);
+    };
+    const auto faults = six ? drive(test::six_axes) : drive(test::slow_axes<double>);
+    anew += faults.anew ? 1 : 0;
+    CHECK(faults.finished);
+    CHECK_FALSE(faults.failed);
+    CHECK_FALSE(faults.words_wrong);
+    CHECK(faults.velocity <= 1e-6);
+    CHECK(faults.acceleration <= 1e-6);
+    CHECK(faults.jerk <= 1e-6);
+    CHECK(faults.way <= 0);
+    CHECK(faults.rate <= 1e-6);
+    CHECK(faults.change <= 1e-6);
+    CHECK(faults.place <= 0);
+    if (faults.anew) CHECK(faults.end < 1e-6);
+  }
+  CHECK(anew > 200);
 }
 
 TEST_CASE("an executor with room drives merged lines as fast as one line", "[merge_lines]") {

@@ -1,5 +1,5 @@
 // Random programs on machines of three and six axes, behind a map and on curves of one's own, under random
-// requests at random instants, with starved look-ahead, stops and restarts; every set point is held
+// requests at random instants, with starved look-ahead, stops and restarts anywhere; every set point is held
 // against the limits of tool and axes by differencing. Prints the worst of each fault with its sequence. Exit
 // 1 if a bound is broken.
 #include <CLI/CLI.hpp>
@@ -12,6 +12,7 @@
 #include "soak/worst.hpp"
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"
+#include "support/random_runs.hpp"
 
 namespace {
 
@@ -20,14 +21,15 @@ using Faults = test::ExecutorFaults;
 
 template <MachineModel M, class B>
 Faults run(const M& machine, const std::vector<B>& blocks, test::Random& random, int most_lines,
-           double rounding, double tolerance = 0) {
+           double rounding, double tolerance = 0, double share = 1) {
   constexpr long ticks_a_line = 25;
   const test::Disturbance how{random.integer(0, 3) == 0 ? 1 : random.integer(2, 100),
                               ticks_a_line * most_lines,
                               1e-3,
                               rounding,
-                              random.integer(0, 3) == 0 && !(tolerance > 0),  // the axes first go to the path
-                              tolerance};
+                              random.integer(0, 3) == 0,
+                              tolerance,
+                              share};
   if (tolerance > 0)
     return random.coin() ? test::run<16>(machine, blocks, random, how)
                          : test::run<64>(machine, blocks, random, how);
@@ -44,9 +46,22 @@ Faults run_lines(const M& machine, const std::array<double, 3>& center, const st
   return run(machine, test::blocks_of(lines, machine, options), random, most_lines, rounding, tolerance);
 }
 
+// Lines that are merged, on three axes or six; what the executor's options say of the tolerance is less than
+// the program does, or the same.
+Faults run_merged(test::Random& random, int most_lines) {
+  const double tolerance = random.log_uniform(1e-3, 0.1), share = random.coin() ? 1 : random.uniform(0.01, 1);
+  const auto with = [&](const auto& machine, const std::string& letters) {
+    const auto lines =
+        test::random_runs(random, random.integer(1, std::max(most_lines / 5, 2)), letters, 20, tolerance);
+    return run(machine, test::blocks_of(lines, machine), random, most_lines, 1e-9, tolerance * (1 + 1e-5),
+               share);
+  };
+  return random.coin() ? with(test::six_axes, "ACU") : with(test::slow_axes<double>, "");
+}
+
 // Kinds of runs: those in `float`, exact and within a tolerance, and those within a tolerance in `double`
 // have bounds of their own.
-constexpr std::uint64_t kinds = 8, in_float = 3, smoothed = 5, smoothed_in_float = 7;
+constexpr std::uint64_t kinds = 9, in_float = 3, smoothed = 5, smoothed_in_float = 7, merged = 8;
 
 Faults one(std::uint64_t sequence, test::Random& random, int most_lines) {
   switch (sequence % kinds) {
@@ -69,6 +84,8 @@ Faults one(std::uint64_t sequence, test::Random& random, int most_lines) {
     case smoothed_in_float:
       return run_lines(test::slow_axes<float>, {0, 0, 0}, "", random, most_lines, 4e-5,
                        random.log_uniform(1e-3, 0.1));
+    case merged:
+      return run_merged(random, most_lines);
     default:
       return run_lines(test::slow_axes<double>, {0, 0, 0}, "", random, most_lines);
   }
@@ -97,6 +114,7 @@ int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count, int most_
         return all_smoothed_float;
       case smoothed:
       case smoothed + 1:
+      case merged:
         return all_smoothed;
       default:
         return all;

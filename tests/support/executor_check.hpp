@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct ExecutorFaults {
   bool words_wrong{};
   bool finished{};
   bool failed{};
+  bool anew{};  ///< it was begun anew
   long ticks{};
   long requests{};
   double duration{};  ///< s until it had come to its end
@@ -42,8 +44,9 @@ struct Disturbance {
   long restless = 0;  ///< ticks for which there are any
   double period = 1e-3;
   double rounding = 1e-9;  ///< relative, of what is compared
-  bool restarts = false;   ///< it is stopped on the way, and begins anew from there
+  bool restarts = false;   ///< it is stopped on the way, and begins anew from there or from anywhere
   double tolerance = 0;    ///< mm, within which the path is smoothed; then nothing jumps at joints either
+  double share = 1;        ///< of that, what the executor's options say; the program says the rest
 };
 
 template <class Executor>
@@ -104,15 +107,20 @@ class TickCheck {
       if (block.word.letter != '\0') words_.push_back(block.word);
   }
 
+  /// The axes stand at a place from which they first go to the path, which is near.
+  void begin_beside(const typename Point::Vector& place) { beside_ = place; }
+
   void take(const Point& now) {
     if (faults.ticks++ > 0) compare(now);
+    if (now.along.velocity != 0 || now.along.position != 0) beside_.reset();
     own_limits(now);
     for (const auto& word : now.words)
       if (told_ == words_.size() || !(words_[told_++] == word)) faults.words_wrong = true;
     const B& block = blocks_[now.block];
     const auto s = path_length(block, now);
-    grow(faults.place, (block.path.position_at(s) - now.position).cwiseAbs().maxCoeff() - how_.tolerance -
-                           rounding_of(now));
+    const auto near = beside_ ? *beside_ : block.path.position_at(s);
+    grow(faults.place, (near - now.position).cwiseAbs().maxCoeff() -
+                           (beside_ ? 2 * how_.tolerance : how_.tolerance) - rounding_of(now));
     if (now.velocity.isZero() && !(s + rounding_of(now) < block.path.length())) ++waited_[now.block];
     before_ = now;
   }
@@ -161,6 +169,7 @@ class TickCheck {
       grow(faults.acceleration, std::abs(now.acceleration[i]) / axis.acceleration - 1);
       grow(faults.jerk, std::abs(now.jerk[i]) / axis.jerk - 1);
     }
+    if (beside_) return;  // of a jog the tool has no limits
     if constexpr (!MappedModel<M>) {
       const auto tool = tool_axes(machine_);
       const auto& limits = machine_.limits;
@@ -204,6 +213,7 @@ class TickCheck {
   std::vector<gcode::Word> words_;
   std::size_t told_ = 0;
   std::vector<long> waited_;  // ticks at rest at the end of each block
+  std::optional<typename Point::Vector> beside_;
   Point before_{};
 };
 
@@ -214,15 +224,17 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
   using S = typename M::Scalar;
   using Runner = Executor<M, capacity, B>;
   constexpr long most_ticks = 200'000;
-  const auto owner =
-      std::make_unique<Runner>(machine, typename Runner::Options{.tolerance = static_cast<S>(how.tolerance)});
+  const auto owner = std::make_unique<Runner>(
+      machine, typename Runner::Options{.tolerance = static_cast<S>(how.share * how.tolerance)});
   auto& executor = *owner;
   const int lines = blocks.back().line;
   const long stops_at = how.restarts ? random.integer(1, static_cast<int>(how.restless)) : most_ticks;
   std::size_t fed = 0;
   typename Runner::SetPoint last{};
+  std::optional<typename Runner::Vector> begins_beside;
   const auto drive = [&](const std::vector<B>& given, ExecutorFaults& faults, bool stops) {
     TickCheck<M, typename Runner::SetPoint, B> check(machine, given, how);
+    if (begins_beside) check.begin_beside(*begins_beside);
     fed = 0;
     for (long tick = 0; tick < most_ticks; ++tick) {
       const bool restless = tick < how.restless;
@@ -251,11 +263,21 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
   ExecutorFaults faults;
   drive(blocks, faults, how.restarts);
   if (!how.restarts || !faults.finished || faults.failed) return faults;
-  // anew where the block that it stands on is the first of its line
-  std::size_t from = last.block;
+  // anew on a block that is the first of its line: the one it stands on, or any that moves
+  const bool anywhere = random.coin();
+  std::size_t from = anywhere
+                         ? static_cast<std::size_t>(random.integer(0, static_cast<int>(blocks.size()) - 1))
+                         : last.block;
   if (from > 0 && blocks[from - 1].line == blocks[from].line) return faults;
+  typename Runner::Vector place = last.position;
+  if (anywhere) {
+    const auto& path = blocks[from].path;
+    if (!(path.length() > S(0))) return faults;
+    place = path.position_at(static_cast<S>(random.uniform(0, 1)) * path.length());
+  }
+  if (how.tolerance > 0) begins_beside = place;
   calm(executor);
-  if (!executor.restart(blocks[from].line, last.position)) faults.failed = true;
+  if (!executor.restart(blocks[from].line, place)) faults.failed = true;
   ExecutorFaults second;
   drive({blocks.begin() + static_cast<std::ptrdiff_t>(from), blocks.end()}, second, false);
   second.ticks += faults.ticks, second.requests += faults.requests;
@@ -263,6 +285,7 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
        {&ExecutorFaults::velocity, &ExecutorFaults::acceleration, &ExecutorFaults::jerk, &ExecutorFaults::way,
         &ExecutorFaults::rate, &ExecutorFaults::change, &ExecutorFaults::place})
     second.*member = std::max(second.*member, faults.*member);
+  second.anew = true;
   second.failed = second.failed || faults.failed;
   second.words_wrong = second.words_wrong || faults.words_wrong;
   return second;

@@ -229,18 +229,20 @@ class CellFeed {
     const Vector there = driven.position_at(skipped_);
     const Vector place = *place_;
     place_.reset();
-    if (near(place, there)) return {};
+    if (near(block, place, there)) return {};
     return joined(std::optional<Vector>(place), there, machine_);
   }
 
   // Whether a place can be one of the path: the axes may have stopped on a corner with the block before,
   // which is not smoothed now, or on a line that was merged with others. Both paths are within the tolerance
   // of the programmed one.
-  [[nodiscard]] bool near(const Vector& place, const Vector& there) const {
+  [[nodiscard]] bool near(const B& block, const Vector& place, const Vector& there) const {
+    const SmoothingRules<Scalar>& rules = smoothing_.rules();
+    const Scalar own =
+        smoothing_.smooths() ? std::max(rules.tolerance, block.tolerance.value_or(Scalar(0))) : Scalar(0);
     for (int i = 0; i < M::axis_count; ++i) {
       const bool rotary = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
-      const SmoothingRules<Scalar>& rules = smoothing_.rules();
-      const Scalar apart = Scalar(2) * (rotary ? rules.rotary_tolerance : rules.tolerance);
+      const Scalar apart = Scalar(2) * (rotary ? rules.rotary_tolerance : own);
       if (!(std::abs(there[i] - place[i]) <= apart)) return false;
     }
     return true;
