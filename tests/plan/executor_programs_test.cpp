@@ -1,5 +1,4 @@
 // Whole programs through an executor, against their plans.
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -52,14 +51,8 @@ TEST_CASE("programs of others take as long as their plans", "[executor]") {
     while (!executor->finished()) tick();
     CAPTURE(name, tolerance);
     CHECK_FALSE(executor->error());
-    // kernels reach over merged lines in a plan, over their parts in an executor
-    const auto blocks = planned->program();
-    const bool merged =
-        std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.straight_on; });
-    CHECK(ticks * period - executor->rested() == Approx(planned->duration())
-                                                     .epsilon(merged          ? 1.2e-2
-                                                              : tolerance > 0 ? 1e-3
-                                                                              : 1e-4));
+    CHECK(ticks * period - executor->rested() ==
+          Approx(planned->duration()).epsilon(tolerance > 0 ? 1e-3 : 1e-4));
     CHECK((tick().position - planned->at(planned->duration()).position).norm() < 1e-9);
   }
 }

@@ -244,6 +244,29 @@ TEST_CASE("an executor merges, whatever is asked of it", "[merge_lines]") {
   }
 }
 
+TEST_CASE("an executor rests at corners of merged lines where their plan does", "[merge_lines]") {
+  test::Random random;
+  for (int round = 0; round < 20; ++round) {
+    const double part = random.log_uniform(0.1, 0.5), turn = random.uniform(0.5, 2.5);
+    CAPTURE(round, part, turn);
+    std::vector<std::string> lines{"F1800 G64 P0.01 Q0.001"};
+    double x = 0, y = 0;
+    for (int side = 0; side < 8; ++side)
+      for (int i = 0; i < 40; ++i) {
+        x += part * std::cos(side % 2 * turn), y += part * std::sin(side % 2 * turn);
+        char text[80];
+        std::snprintf(text, sizeof text, "G1 X%.6f Y%.6f", x, y);
+        lines.emplace_back(text);
+      }
+    const auto blocks = test::blocks_of(lines, mill);
+    const auto planned = plan_blocks(blocks, mill, within);
+    REQUIRE(planned);
+    CHECK(planned->program()[1].straight_on);
+    const auto faults = test::run<256>(mill, blocks, random, {.tolerance = tolerance});
+    CHECK(faults.duration == Approx(planned->duration()).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("an executor that merges begins anew anywhere, whatever is asked of it", "[merge_lines]") {
   test::Random random;
   int anew = 0;

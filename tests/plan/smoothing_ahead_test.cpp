@@ -17,6 +17,15 @@ namespace {
 
 constexpr std::size_t room = 512;
 
+// Of the merged line that begins with a block; of another block its own.
+template <class B>
+double line_length(const std::vector<B>& blocks, std::size_t first) {
+  double length = blocks[first].path.length();
+  if (first > 0 && blocks[first - 1].straight_on) return length;
+  for (std::size_t i = first; blocks[i].straight_on; ++i) length += blocks[i + 1].path.length();
+  return length;
+}
+
 // How far the paths of a machine's blocks are apart, and where the first joint is that is passed otherwise.
 template <MachineModel M>
 void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, double tolerance) {
@@ -45,7 +54,7 @@ void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, doubl
   };
   std::int64_t held = 0;  // the most blocks that move and wait
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    ahead->push(blocks[i], machine);
+    ahead->push(blocks[i], machine, line_length(blocks, i));
     look();
     std::int64_t moving = 0;
     for (std::size_t k = told; k <= i; ++k) moving += blocks[k].path.length() > 0 ? 1 : 0;
@@ -77,7 +86,7 @@ TEST_CASE("a block is known once those are there that can act on it, or none wil
   const auto blocks = test::blocks_of({"F600", "G1 X1", "Y1", "X2", "G4 P0.1", "Y2", "X3"}, mill);
   plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> ahead({0.1, 1e-3, false});
   const auto after = [&](std::size_t i) {
-    ahead.push(blocks[i], mill);
+    ahead.push(blocks[i], mill, blocks[i].path.length());
     return ahead.known();
   };
   CHECK(after(0) == 0);

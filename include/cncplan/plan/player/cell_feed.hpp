@@ -169,7 +169,18 @@ class CellFeed {
         [this](std::int64_t number) -> B& { return slots_[static_cast<std::size_t>(number) % room].block; };
   }
   [[nodiscard]] auto merged() {
-    return [this](std::int64_t number) { smoothing_.push(slot(number).block, machine_); };
+    return
+        [this](std::int64_t number) { smoothing_.push(slot(number).block, machine_, line_length(number)); };
+  }
+  // mm of the merged line that begins with a block; of another block its own. One that was merged before it
+  // was pushed comes without those that follow.
+  [[nodiscard]] Scalar line_length(std::int64_t number) const {
+    Scalar length = slot(number).block.path.length();
+    if (number > 0 && slot(number - 1).block.straight_on) return length;
+    const std::int64_t pushed = pushed_.load(std::memory_order_relaxed);
+    while (slot(number).block.straight_on && number + 1 < pushed)
+      length += slot(++number).block.path.length();
+    return length;
   }
 
   // Merging changes blocks that are not ready, so the other thread must not look at one.

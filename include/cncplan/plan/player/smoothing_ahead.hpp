@@ -39,11 +39,12 @@ class SmoothingAhead {
   [[nodiscard]] const Rules& rules() const { return rules_; }
   [[nodiscard]] bool smooths() const { return possible && rules_.tolerance > Scalar(0); }
 
-  /// Takes the next block, which is to stay until it is not asked for any more.
-  void push(const B& block, const M& machine) {
+  /// Takes the next block, which is to stay until it is not asked for any more. `line` is the length of the
+  /// merged line that begins with it, else its own.
+  void push(const B& block, const M& machine, Scalar line) {
     const std::int64_t number = pushed_++;
     if constexpr (possible) {
-      if (smooths()) return add(block, number, machine);
+      if (smooths()) return add(block, number, machine, line);
     }
     of_block(number) = {};
   }
@@ -113,8 +114,9 @@ class SmoothingAhead {
     return movers_[static_cast<std::size_t>(i) % most_movers];
   }
 
-  void add(const B& block, std::int64_t number, const M& machine) {
+  void add(const B& block, std::int64_t number, const M& machine, Scalar line) {
     if (block.path.length() > Scalar(0)) {
+      if (end_ > begin_ && last_->straight_on) line = std::max(line, mover(end_ - 1).beside.length);
       const Passing passing = rests_ ? Passing::stop : passing_between(*last_, block, machine, rules_);
       if (passing != Passing::smooth) end_part();
       Mover& own = mover(end_);
@@ -122,7 +124,7 @@ class SmoothingAhead {
              {0, 0, place_, passing},
              tolerance_of(block, rules_),
              Scalar(1) - block.merged,
-             {block.path.length(), detail::top_limits(block, machine)},
+             {line, detail::top_limits(block, machine)},
              sizings_end_,
              0};
       if (passing == Passing::smooth) add_junction(own, block, machine);
