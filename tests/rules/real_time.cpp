@@ -181,7 +181,8 @@ void make_cells(gcode::Reader& program, const Take& take) {
       const auto block = builder.take(*item);
       if (!*block || !maker.begin(**block)) continue;
       while (!maker.done()) {
-        const auto cell = *maker.next();
+        if (!maker.next()) break;
+        const auto& cell = maker.cell();
         take(**block, plan::BlockCaps{cell.part.to - cell.part.from, cell.entry, cell.part.limits, 0.0});
       }
       if ((*block)->pause > 0.0) take(**block, plan::BlockCaps{0.0, 0.0, limits, (*block)->pause});

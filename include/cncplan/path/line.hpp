@@ -164,4 +164,10 @@ class BasicLine {
 template <int N>
 using Line = BasicLine<double, N>;
 
+/// Whether paths of a type are all straight: their derivatives are the same all along.
+template <class P>
+inline constexpr bool is_line = false;
+template <std::floating_point S, int N>
+inline constexpr bool is_line<BasicLine<S, N>> = true;
+
 }  // namespace cncplan::path

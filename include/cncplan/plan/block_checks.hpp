@@ -15,15 +15,15 @@ namespace cncplan::plan {
 
 /// The most that the tool may do on a block, mm/s.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] typename M::Scalar top_speed(const B& block, const M& machine) {
+[[nodiscard]] inline typename M::Scalar top_speed(const B& block, const M& machine) {
   return block.rapid ? rapid_speed(machine) : feed_speed(machine);
 }
 
 /// The speed that a program asks of a block, or a share of its feed: mm/s, or rad/s where the tool stands
 /// still.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] typename M::Scalar wanted_speed(const B& block, const M& machine, LengthOf counted,
-                                              typename M::Scalar share = 1) {
+[[nodiscard]] inline typename M::Scalar wanted_speed(const B& block, const M& machine, LengthOf counted,
+                                                     typename M::Scalar share = 1) {
   using S = typename M::Scalar;
   const S asked = block.rapid ? std::numeric_limits<S>::infinity() : share * block.feed;
   return counted == LengthOf::tool ? std::min(asked, top_speed(block, machine)) : asked;
@@ -34,6 +34,19 @@ template <MachineModel M>
 [[nodiscard]] bool has_ends(const M& machine) {
   return std::any_of(machine.axes.begin(), machine.axes.end(),
                      [](const auto& axis) { return std::isfinite(axis.low) || std::isfinite(axis.high); });
+}
+
+/// The room that a machine's axes have; finite, so that what lies in it is.
+template <MachineModel M>
+[[nodiscard]] BasicBox<typename M::Scalar, M::axis_count> travel(const M& machine) {
+  constexpr auto most = std::numeric_limits<typename M::Scalar>::max();
+  BasicBox<typename M::Scalar, M::axis_count> room;
+  for (int i = 0; i < M::axis_count; ++i) {
+    const auto& axis = machine.axes[static_cast<std::size_t>(i)];
+    room.low[i] = std::max(axis.low, -most);
+    room.high[i] = std::min(axis.high, most);
+  }
+  return room;
 }
 
 /// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over.
@@ -84,11 +97,11 @@ template <MachineModel M, BlockModel B>
 /// Nothing, or the first axis that would have to jump from the end of a block to the start of the next one,
 /// by more than 1e-6 mm or rad.
 template <MachineModel M>
-[[nodiscard]] Expected<void> joined(const std::optional<VectorN<typename M::Scalar, M::axis_count>>& end,
-                                    const VectorN<typename M::Scalar, M::axis_count>& start,
-                                    const M& machine) {
+[[nodiscard]] inline Expected<void> joined(
+    const std::optional<VectorN<typename M::Scalar, M::axis_count>>& end,
+    const VectorN<typename M::Scalar, M::axis_count>& start, const M& machine) {
   using S = typename M::Scalar;
-  if (!end) return {};
+  if (!end || *end == start) return {};  // as nearly always
   for (int i = 0; i < M::axis_count; ++i) {
     const S rounding = std::max(S(1e-6), S(64) * std::numeric_limits<S>::epsilon() * std::abs(start[i]));
     if (std::abs(start[i] - (*end)[i]) > rounding)

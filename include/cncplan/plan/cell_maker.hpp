@@ -41,19 +41,24 @@ class CutByLimits {
   using Part = BasicPartLimits<Scalar>;
   using Driven = smooth::Smoothed<typename B::Path>;
 
+  explicit CutByLimits(const M& machine) : machine_(machine_limits(machine)) {}
+
   /// Begins with a piece of a block that moves, driven on a path of its own or on the block's; the block is
   /// to stay until all parts are cut. `speed` is what the program asks for, `tool_speed` the most that the
   /// tool may.
-  void begin(const B& block, const Driven& driven, const M& machine, Scalar from, Scalar to, Scalar speed,
-             Scalar tool_speed) {
+  void begin(const B& block, const Driven& driven, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
     block_ = &block;
-    straight_ = driven.exact() && block.path.line() != nullptr;
+    const auto* line = driven.exact() ? block.path.line() : nullptr;
+    straight_ = line != nullptr;
     speed_ = speed;
     tool_speed_ = tool_speed;
     Part& whole = open_[0].part;
     whole.from = from;
     whole.to = to;
-    whole.limits = limits(driven, machine, from, to, speed);
+    if (straight_)
+      whole.limits = limits_straight(line->bounds(from, to), machine_, speed, tool_speed);
+    else
+      whole.limits = limits(driven, from, to, speed);
     open_[0].depth = 0;
     count_ = 1;
   }
@@ -61,16 +66,17 @@ class CutByLimits {
   [[nodiscard]] bool done() const { return count_ == 0; }
 
   /// The next part, in order along the path, until the next call; only before it is done.
-  [[nodiscard]] const Part& next(const Driven& driven, const M& machine) {
+  [[nodiscard]] const Part& next(const Driven& driven) {
     for (;;) {
       const Part& top = open_[--count_].part;
+      if (straight_) return top;
       const int depth = open_[count_].depth;
       const Scalar middle = top.from + (top.to - top.from) / Scalar(2);
       const bool divides = top.from < middle && middle < top.to;  // not where it is as short as rounding
-      if (straight_ || depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return top;
+      if (depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return top;
       const Part part = top;
-      const Part first{part.from, middle, limits(driven, machine, part.from, middle, speed_)};
-      const Part second{middle, part.to, limits(driven, machine, middle, part.to, speed_)};
+      const Part first{part.from, middle, limits(driven, part.from, middle, speed_)};
+      const Part second{middle, part.to, limits(driven, middle, part.to, speed_)};
       const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
       if (halves >= worth_it / part.limits.velocity) return top;
       open_[count_++] = {second, depth + 1};
@@ -79,10 +85,9 @@ class CutByLimits {
   }
 
   /// The limits of a part of the block at any speed.
-  [[nodiscard]] BasicLimits<Scalar> limits(const Driven& driven, const M& machine, Scalar from, Scalar to,
-                                           Scalar speed) const {
+  [[nodiscard]] BasicLimits<Scalar> limits(const Driven& driven, Scalar from, Scalar to, Scalar speed) const {
     const auto along = [&](const auto& path) {
-      return limits_along(path.bounds(from, to), machine, speed, tool_speed_, path.length());
+      return limits_along(path.bounds(from, to), machine_, speed, tool_speed_, path.length());
     };
     if constexpr (EnclosedPath<typename B::Path>)
       if (!driven.exact()) return along(driven);
@@ -98,6 +103,7 @@ class CutByLimits {
     int depth{};
   };
 
+  BasicMachineLimits<Scalar, M::axis_count> machine_;
   const B* block_ = nullptr;
   bool straight_ = false;  // its limits hold all along
   Scalar speed_{};
@@ -130,7 +136,13 @@ class CellMaker {
 
   /// `above`: whether the limits above the feed are wanted.
   CellMaker(const M& machine, const JointRules<Scalar, Policy>& rules, bool above = false)
-      : machine_(machine), rules_(rules), tool_(tool_axes(machine)), above_(above), turnings_(machine) {
+      : machine_(machine),
+        rules_(rules),
+        tool_(tool_axes(machine)),
+        travel_(travel(machine)),
+        above_(above),
+        turnings_(machine),
+        cut_(machine) {
     for (const auto& axis : machine.axes) axes_limited_ = axes_limited_ || has_limits(axis);
   }
 
@@ -150,11 +162,18 @@ class CellMaker {
   /// Whether all cells of the block have been made.
   [[nodiscard]] bool done() const { return !has_ahead_ && !(cut_until_ < length_); }
 
-  /// The next cell of the block. Errors: those of `validate` for its limits.
-  [[nodiscard]] Expected<Cell> next() {
-    if (auto ok = cut_ahead(); !ok) return tl::unexpected(ok.error());
-    Expected<Cell> made(Cell{ahead_, ahead_above_, std::exchange(entry_, infinity), Scalar(0)});
-    Cell& cell = *made;
+  /// Makes the next cell of the block: see `cell`. Errors: those of `validate` for its limits.
+  [[nodiscard]] Expected<void> next() {
+    if (!has_ahead_)
+      if (auto ok = cut_ahead(); !ok) return ok;
+    Cell& cell = cell_;
+    // One by one: the processor waits where it loads as a whole what has just been stored in parts.
+    cell.part.from = ahead_.from;
+    cell.part.to = ahead_.to;
+    cell.part.limits = ahead_.limits;
+    if (above_) cell.above = ahead_above_;
+    cell.entry = std::exchange(entry_, infinity);
+    cell.rest = Scalar(0);
     has_ahead_ = false;
     for (; turning_count_ > 0; --turning_count_) {
       const auto& turning = turning_[turning_count_ - 1];
@@ -165,14 +184,16 @@ class CellMaker {
     paused_ = Scalar(0);
     moved_ = true;
     for (int parts = 1; parts < most_parts && !done(); ++parts) {
-      if (auto ok = cut_ahead(); !ok) return tl::unexpected(ok.error());
+      if (auto ok = cut_ahead(); !ok) return ok;
       if (turning_count_ > 0 || ahead_.limits != cell.part.limits) break;
       cell.part.to = ahead_.to;
       if (above_) cell.above = lowest(cell.above, ahead_above_);
       has_ahead_ = false;
     }
-    return made;
+    return {};
   }
+  /// The cell that was made last.
+  [[nodiscard]] const Cell& cell() const { return cell_; }
 
   /// What the program asks of the block, mm/s; infinite for as fast as may be.
   [[nodiscard]] Scalar wanted_speed() const { return wanted_; }
@@ -183,7 +204,7 @@ class CellMaker {
   void restart(const std::optional<Vector>& place) {
     end_ = place;
     before_.reset();
-    cut_ = {};
+    cut_ = Cut(machine_);
     has_ahead_ = false;
     length_ = cut_until_ = Scalar(0);
     turnings_ = Turnings<M>(machine_);
@@ -214,7 +235,8 @@ class CellMaker {
     if (block.pause < Scalar(0)) return refusal(ErrorCode::negative, "pause", block.pause);
     const PathEnds ends(path);
     if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
-    if (auto ok = within_travel(path, machine_); !ok) return ok;
+    if (!travel_.contains(path.box()))
+      if (auto ok = within_travel(path, machine_); !ok) return ok;
     if constexpr (EnclosedPath<typename B::Path>)
       if (!driven.exact() && has_ends(machine_))
         if (auto ok = within_travel(driven, machine_); !ok) return ok;
@@ -223,7 +245,8 @@ class CellMaker {
     if (length > Scalar(0)) {
       const LengthOf counted = length_of(path, machine_);
       counted_ = counted;
-      wanted_ = plan::wanted_speed(block, machine_, counted);
+      const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
+      wanted_ = counted == LengthOf::tool ? speed : plan::wanted_speed(block, machine_, counted);
       if (!(wanted_ > Scalar(0)))
         return refusal(std::isnan(wanted_) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed",
                        wanted_);
@@ -233,12 +256,11 @@ class CellMaker {
       joint_.after = ends.start.first;
       const auto kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
       joint_.tool.after = tool_side(path, kind, ends, PathEnd::start, tool_);
-      const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
       if (before_ && counted == before_->counted && passing != Passing::stop)
         entry_ = before_->goes_on || passing == Passing::smooth ? infinity : joint_speed(speed);
       joint_.before = ends.end.first;
-      constexpr bool straight = std::same_as<P, typename B::Path::Line>;
-      joint_.tool.before = straight ? joint_.tool.after : tool_side(path, kind, ends, PathEnd::end, tool_);
+      joint_.tool.before =
+          path::is_line<P> ? joint_.tool.after : tool_side(path, kind, ends, PathEnd::end, tool_);
       before_ = Before{speed, counted, block.exact_path, block.goes_on};
       block_ = &block;
       driven_ = driven;
@@ -265,18 +287,19 @@ class CellMaker {
     return std::min(speed, axis_corner_speed(joint_, machine_, rules_.tolerance, rules_.rotary_tolerance));
   }
 
-  // Cuts the next part, unless that has been done, and makes its limits like those before.
+  // Cuts the next part and makes its limits like those before.
   [[nodiscard]] Expected<void> cut_ahead() {
-    if (has_ahead_) return {};
     if (cut_.done()) cut_on(cut_until_);
-    ahead_ = cut_.next(driven_, machine_);
-    if (auto ok = validate(ahead_.limits); !ok) return tl::unexpected(ok.error());
-    cut_until_ = ahead_.to;
-    has_ahead_ = true;
+    const BasicPartLimits<Scalar>& part = cut_.next(driven_);
+    if (auto ok = validate(part.limits); !ok) return tl::unexpected(ok.error());
     const bool begins = entry_ < infinity;
-    const Scalar length = ahead_.to - ahead_.from;
-    if (above_) ahead_above_ = level_above_.next(limits_above(ahead_), length, begins);
-    ahead_.limits = level_.next(ahead_.limits, length, begins);
+    const Scalar length = part.to - part.from;
+    if (above_) ahead_above_ = level_above_.next(limits_above(part), length, begins);
+    ahead_.from = part.from;
+    ahead_.to = part.to;
+    ahead_.limits = level_.next(part.limits, length, begins);
+    has_ahead_ = true;
+    cut_until_ = part.to;
     return {};
   }
 
@@ -285,8 +308,8 @@ class CellMaker {
   [[nodiscard]] BasicLimits<Scalar> limits_above(const BasicPartLimits<Scalar>& part) const {
     const Scalar twice = plan::wanted_speed(*block_, machine_, counted_, Scalar(2));
     if (block_->rapid || !(twice > wanted_)) return part.limits;
-    if constexpr (requires { cut_.limits(driven_, machine_, part.from, part.to, twice); })
-      return cut_.limits(driven_, machine_, part.from, part.to, twice);
+    if constexpr (requires { cut_.limits(driven_, part.from, part.to, twice); })
+      return cut_.limits(driven_, part.from, part.to, twice);
     else
       return part.limits;
   }
@@ -299,12 +322,13 @@ class CellMaker {
     }
     constexpr Scalar apart = Scalar(0.5);  // shorter pieces would gain little
     const Scalar to = std::min(driven_.next_change(from, apart), turnings_.next());
-    cut_.begin(*block_, driven_, machine_, from, to, wanted_, top_speed(*block_, machine_));
+    cut_.begin(*block_, driven_, from, to, wanted_, top_speed(*block_, machine_));
   }
 
   M machine_;
   JointRules<Scalar, Policy> rules_;
   std::array<int, 3> tool_;
+  BasicBox<Scalar, M::axis_count> travel_;
   bool above_;
   bool axes_limited_ = false;  // any of them
   Turnings<M> turnings_;
@@ -312,6 +336,7 @@ class CellMaker {
   std::size_t turning_count_ = 0;
   Cut cut_;
   BasicLevelLimits<Scalar> level_, level_above_;
+  Cell cell_;
   BasicPartLimits<Scalar> ahead_;    // the next part that is not in a cell yet
   BasicLimits<Scalar> ahead_above_;  // its limits above the feed
   bool has_ahead_ = false;

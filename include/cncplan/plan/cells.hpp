@@ -56,11 +56,10 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
         !ok)
       return tl::unexpected(BlockFault{ok.error(), i});
     while (!maker.done()) {
-      const auto cell = maker.next();
-      if (!cell) return tl::unexpected(BlockFault{cell.error(), i});
-      const auto& [from, to, limits] = cell->part;
-      if (!cells.blocks.empty()) rest(cells.blocks.back(), cell->rest);
-      cells.caps.push_back({to - from, cell->entry, limits, S(0)});
+      if (const auto ok = maker.next(); !ok) return tl::unexpected(BlockFault{ok.error(), i});
+      const auto& [from, to, limits] = maker.cell().part;
+      if (!cells.blocks.empty()) rest(cells.blocks.back(), maker.cell().rest);
+      cells.caps.push_back({to - from, maker.cell().entry, limits, S(0)});
       cells.blocks.push_back(i);
     }
     rest(i, blocks[i].pause);

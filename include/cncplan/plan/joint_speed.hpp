@@ -88,10 +88,9 @@ enum class PathEnd : std::uint8_t { start, end };
 /// One side of a joint, as junction policies see it: a path of a kind (an arc is told by the path itself),
 /// with what its axes are at its ends.
 template <Path P>
-[[nodiscard]] junction::BasicSide<typename P::Scalar> tool_side(const P& path, junction::Kind kind,
-                                                                const PathEnds<typename P::Vector>& ends,
-                                                                PathEnd joint,
-                                                                const std::array<int, 3>& tool) {
+[[nodiscard]] inline junction::BasicSide<typename P::Scalar> tool_side(
+    const P& path, junction::Kind kind, const PathEnds<typename P::Vector>& ends, PathEnd joint,
+    const std::array<int, 3>& tool) {
   using S = typename P::Scalar;
   using Vector3 = BasicVector3<S>;
   if constexpr (requires { path.visit([](const auto&) {}); }) {
@@ -111,8 +110,8 @@ template <Path P>
       set(at.first, at.second, end.position - start.position);
     } else {
       const auto& at = joint == PathEnd::end ? ends.end : ends.start;
-      set(in_space(at.first, tool), in_space(at.second, tool),
-          in_space(ends.end.position, tool) - in_space(ends.start.position, tool));
+      set(in_space(at.first, tool), path::is_line<P> ? Vector3(Vector3::Zero()) : in_space(at.second, tool),
+          in_space(VectorN<S, P::Vector::RowsAtCompileTime>(ends.end.position - ends.start.position), tool));
     }
     if constexpr (std::same_as<P, path::BasicArc<S>>) {
       side.kind = junction::Kind::arc;

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "cncplan/core/fixed_list.hpp"
 #include "cncplan/core/limits.hpp"
@@ -14,6 +15,32 @@
 #include "cncplan/plan/shared_limits.hpp"
 
 namespace cncplan::plan {
+
+/// The limits of one axis, those towards smaller positions included.
+template <std::floating_point S>
+struct BasicLimitedAxis {
+  int axis{};
+  BasicLimits<S> limits;
+};
+
+/// The limits of a machine's tool, and of those of its axes that have any: made once for many paths.
+template <std::floating_point S, int N>
+struct BasicMachineLimits {
+  BasicLimits<S> tool;
+  FixedList<BasicLimitedAxis<S>, static_cast<std::size_t>(N)> axes;
+};
+
+/// Those of a machine.
+template <MachineModel M>
+[[nodiscard]] BasicMachineLimits<typename M::Scalar, M::axis_count> machine_limits(const M& machine) {
+  BasicMachineLimits<typename M::Scalar, M::axis_count> result{machine.limits, {}};
+  for (int i = 0; i < M::axis_count; ++i) {
+    const auto& axis = machine.axes[static_cast<std::size_t>(i)];
+    if (has_limits(axis))
+      result.axes.push_back({i, {least_velocity(axis), least_acceleration(axis), axis.jerk}});
+  }
+  return result;
+}
 
 namespace detail {
 
@@ -30,19 +57,13 @@ struct Limited {
 };
 
 /// The tool, and the axes that have a limit.
-template <MachineModel M>
-[[nodiscard]] FixedList<Limited<typename M::Scalar>, static_cast<std::size_t>(M::axis_count) + 1> limited(
-    const M& machine, const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds,
-    typename M::Scalar tool_speed) {
-  using S = typename M::Scalar;
-  FixedList<Limited<S>, static_cast<std::size_t>(M::axis_count) + 1> rows;
-  rows.push_back({bounds.tool, {tool_speed, machine.limits.acceleration, machine.limits.jerk}});
-  for (int i = 0; i < M::axis_count; ++i) {
-    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
-    if (!has_limits(axis)) continue;
-    rows.push_back({{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)},
-                    {least_velocity(axis), least_acceleration(axis), axis.jerk}});
-  }
+template <std::floating_point S, int N>
+[[nodiscard]] FixedList<Limited<S>, static_cast<std::size_t>(N) + 1> limited(
+    const BasicMachineLimits<S, N>& machine, const BasicPathBounds<S, N>& bounds, S tool_speed) {
+  FixedList<Limited<S>, static_cast<std::size_t>(N) + 1> rows;
+  rows.push_back({bounds.tool, {tool_speed, machine.tool.acceleration, machine.tool.jerk}});
+  for (const auto& [i, limits] : machine.axes)
+    rows.push_back({{bounds.first[i], bounds.second[i], S(0), bounds.third[i], S(0)}, limits});
   return rows;
 }
 
@@ -143,34 +164,11 @@ template <std::floating_point S, int N>
          (bounds.third.array() == S(0)).all();
 }
 
-/// Limits along a straight path: the least of all, each by the rate of what it limits.
-template <MachineModel M>
-[[nodiscard]] BasicLimits<typename M::Scalar> limits_straight(
-    const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
-    typename M::Scalar speed, typename M::Scalar tool_speed) {
-  using S = typename M::Scalar;
-  BasicLimits<S> limits;
-  limits.velocity = speed;
-  const auto lower = [&limits](S rate, S velocity, S acceleration, S jerk) {
-    if (!(rate > S(0))) return;
-    limits.velocity = std::min(limits.velocity, velocity / rate);
-    limits.acceleration = std::min(limits.acceleration, acceleration / rate);
-    limits.jerk = std::min(limits.jerk, jerk / rate);
-  };
-  lower(bounds.tool.first, tool_speed, machine.limits.acceleration, machine.limits.jerk);
-  for (int i = 0; i < M::axis_count; ++i) {
-    const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
-    if (has_limits(axis)) lower(bounds.first[i], least_velocity(axis), least_acceleration(axis), axis.jerk);
-  }
-  return limits;
-}
-
 /// Limits along any other.
-template <MachineModel M>
-[[nodiscard]] BasicLimits<typename M::Scalar> limits_on_bends(
-    const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
-    typename M::Scalar speed, typename M::Scalar tool_speed, typename M::Scalar length) {
-  using S = typename M::Scalar;
+template <std::floating_point S, int N>
+[[nodiscard]] BasicLimits<S> limits_on_bends(const BasicPathBounds<S, N>& bounds,
+                                             const BasicMachineLimits<S, N>& machine, S speed, S tool_speed,
+                                             S length) {
   using Row = Limited<S>;
   const auto rows = limited(machine, bounds, tool_speed);
   const auto fastest = [&](S acceleration_share, S jerk_share) {
@@ -214,6 +212,23 @@ template <MachineModel M>
 
 }  // namespace detail
 
+/// Limits along a straight path: the least of all, each by the rate of what it limits.
+template <std::floating_point S, int N>
+[[nodiscard]] inline BasicLimits<S> limits_straight(const BasicPathBounds<S, N>& bounds,
+                                                    const BasicMachineLimits<S, N>& machine, S speed,
+                                                    S tool_speed) {
+  S velocity = speed, acceleration = std::numeric_limits<S>::infinity(), jerk = acceleration;
+  const auto lower = [&](S rate, S most, const BasicLimits<S>& own) {
+    if (!(rate > S(0))) return;
+    velocity = std::min(velocity, most / rate);
+    acceleration = std::min(acceleration, own.acceleration / rate);
+    jerk = std::min(jerk, own.jerk / rate);
+  };
+  lower(bounds.tool.first, tool_speed, machine.tool);
+  for (const auto& [i, own] : machine.axes) lower(bounds.first[i], own.velocity, own);
+  return {velocity, acceleration, jerk};
+}
+
 /// Limits along the path, no faster than `speed`, such that for every speed, acceleration and jerk within
 /// them the tool's vectors and each axis stay within the machine's limits (`tool_speed` stands for the
 /// velocity of the tool): |q'| v, |q''| v^2 + |q'| a and |q'''| v^3 + 3 |q''| v a + |q'| j grow with v, a and
@@ -222,13 +237,20 @@ template <MachineModel M>
 /// A higher speed on a bend leaves less to change speed with. The bends may take 0.8 of the acceleration and
 /// half of the jerk; over a known `length` a higher speed, or a lower acceleration with a higher jerk, is
 /// taken where that saves time.
+template <std::floating_point S, int N>
+[[nodiscard]] BasicLimits<S> limits_along(
+    const BasicPathBounds<S, N>& bounds, const BasicMachineLimits<S, N>& machine,
+    std::type_identity_t<S> speed, std::type_identity_t<S> tool_speed,
+    std::type_identity_t<S> length = std::numeric_limits<S>::infinity()) {
+  return detail::straight(bounds) ? limits_straight(bounds, machine, speed, tool_speed)
+                                  : detail::limits_on_bends(bounds, machine, speed, tool_speed, length);
+}
 template <MachineModel M>
 [[nodiscard]] BasicLimits<typename M::Scalar> limits_along(
     const BasicPathBounds<typename M::Scalar, M::axis_count>& bounds, const M& machine,
     typename M::Scalar speed, typename M::Scalar tool_speed,
     typename M::Scalar length = std::numeric_limits<typename M::Scalar>::infinity()) {
-  return detail::straight(bounds) ? detail::limits_straight(bounds, machine, speed, tool_speed)
-                                  : detail::limits_on_bends(bounds, machine, speed, tool_speed, length);
+  return limits_along(bounds, machine_limits(machine), speed, tool_speed, length);
 }
 
 }  // namespace cncplan::plan

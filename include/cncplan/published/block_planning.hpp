@@ -27,17 +27,17 @@ class WholeBlocks {
   using Scalar = typename M::Scalar;
   using Part = plan::BasicPartLimits<Scalar>;
 
+  explicit WholeBlocks(const M& machine) : tool_(machine.limits), axes_(plan::machine_limits(machine)) {
+    axes_.tool = {infinity, infinity, infinity};
+  }
+
   template <class Driven>
-  void begin(const B& block, const Driven&, const M& machine, Scalar from, Scalar to, Scalar speed,
-             Scalar tool_speed) {
-    constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+  void begin(const B& block, const Driven&, Scalar from, Scalar to, Scalar speed, Scalar tool_speed) {
     const auto bounds = block.path.bounds(from, to);
-    BasicLimits<Scalar> tool = machine.limits;
+    BasicLimits<Scalar> tool = tool_;
     tool.velocity = bounds.tool.first > Scalar(0) ? std::min(speed, tool_speed / bounds.tool.first) : speed;
     tool = cap_speed(bounds.tool.second_across, bounds.tool.third_across, tool);
-    M axes = machine;
-    axes.limits = {infinity, infinity, infinity};
-    const BasicLimits<Scalar> own = plan::limits_along(bounds, axes, tool.velocity, infinity);
+    const BasicLimits<Scalar> own = plan::limits_along(bounds, axes_, tool.velocity, infinity);
     part_ = Part{from,
                  to,
                  {std::min(tool.velocity, own.velocity), std::min(tool.acceleration, own.acceleration),
@@ -46,11 +46,15 @@ class WholeBlocks {
 
   [[nodiscard]] bool done() const { return !part_; }
   template <class Driven>
-  [[nodiscard]] Part next(const Driven&, const M&) {
+  [[nodiscard]] Part next(const Driven&) {
     return *std::exchange(part_, std::nullopt);
   }
 
  private:
+  static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+
+  BasicLimits<Scalar> tool_;
+  plan::BasicMachineLimits<Scalar, M::axis_count> axes_;  // the tool without limits
   std::optional<Part> part_;
 };
 

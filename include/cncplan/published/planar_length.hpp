@@ -24,19 +24,22 @@ class ToolLimits {
   using Scalar = typename M::Scalar;
   using Part = plan::BasicPartLimits<Scalar>;
 
+  explicit ToolLimits(const M& machine) : limits_(machine.limits) {}
+
   template <class Driven>
-  void begin(const B&, const Driven&, const M& machine, Scalar from, Scalar to, Scalar speed, Scalar) {
-    part_ = Part{from, to, machine.limits};
+  void begin(const B&, const Driven&, Scalar from, Scalar to, Scalar speed, Scalar) {
+    part_ = Part{from, to, limits_};
     part_->limits.velocity = speed;
   }
 
   [[nodiscard]] bool done() const { return !part_; }
   template <class Driven>
-  [[nodiscard]] Part next(const Driven&, const M&) {
+  [[nodiscard]] Part next(const Driven&) {
     return *std::exchange(part_, std::nullopt);
   }
 
  private:
+  BasicLimits<Scalar> limits_;
   std::optional<Part> part_;
 };
 

@@ -217,17 +217,17 @@ class CellFeed {
       }
     }
     const B& block = slot(begun_ - 1).block;
-    auto cell = maker_.next();
-    if (!cell) return fail({cell.error(), block.line, block.column, {}}), false;
-    if (cell->part.to <= skipped_ && !maker_.done()) return true;
-    if (cell->part.from < skipped_) {
-      cell->part.from = std::min(skipped_, cell->part.to);
-      cell->entry = Scalar(0);
+    if (const auto ok = maker_.next(); !ok) return fail({ok.error(), block.line, block.column, {}}), false;
+    auto cell = maker_.cell();
+    if (cell.part.to <= skipped_ && !maker_.done()) return true;
+    if (cell.part.from < skipped_) {
+      cell.part.from = std::min(skipped_, cell.part.to);
+      cell.entry = Scalar(0);
     }
-    waiting_ = played(block, *cell);
-    if (!(cell->rest > Scalar(0))) return true;
+    waiting_ = played(block, cell);
+    if (!(cell.rest > Scalar(0))) return true;
     next_ = waiting_;
-    waiting_ = rest(block, cell->rest);
+    waiting_ = rest(block, cell.rest);
     return true;
   }
 
