@@ -16,6 +16,7 @@
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"
 #include "support/no_heap.hpp"
+#include "support/random_runs.hpp"
 #include "support/shared.hpp"
 
 using namespace cncplan;
@@ -565,11 +566,13 @@ TEST_CASE("nothing is allocated once an executor and a reader are made", "[execu
 
 TEST_CASE("blocks come from another thread", "[executor]") {
   test::Random random;
-  const auto lines = test::random_lines(random, 300, {0, 0, 0}, 20, "");
+  const double tolerance = GENERATE(0.0, 0.01);
+  CAPTURE(tolerance);
+  const auto lines = tolerance > 0 ? test::random_runs(random, 20, "", 20, tolerance)  // some are merged
+                                   : test::random_lines(random, 300, {0, 0, 0}, 20, "");
   const auto blocks = test::blocks_of(lines, mill);
-  const auto planned = plan_blocks(blocks, mill);
-  REQUIRE(planned);
-  const auto executor = std::make_unique<Runner>(mill, Runner::Options{.tolerance = 0, .background = true});
+  const auto executor =
+      std::make_unique<Runner>(mill, Runner::Options{.tolerance = tolerance, .background = true});
   std::atomic<bool> over{false};
   std::thread feeder([&] {
     for (const auto& block : blocks)
@@ -583,8 +586,12 @@ TEST_CASE("blocks come from another thread", "[executor]") {
       std::this_thread::yield();
     }
   });
-  test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(mill, blocks,
-                                                                           {20, 1, period, 1e-12});
+  test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(
+      mill, blocks,
+      {.restless = 1,
+       .period = period,
+       .rounding = tolerance > 0 ? 1e-9 : 1e-12,
+       .tolerance = tolerance * (1 + 1e-5)});
   for (int tick = 0; tick < 10'000'000 && !executor->finished(); ++tick) {
     const auto point = executor->tick(period);
     if (executor->pushed() > 0) check.take(point);
