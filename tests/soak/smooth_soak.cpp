@@ -1,6 +1,6 @@
-// Random programs at the level best of smoothing: not slower than the other ways to drive them, within the
-// limits by differences of positions, within the tolerance. Prints the worst of each with the seed of its
-// program; `--show SEED` prints that program. Exit 1 if a bound is broken.
+// Random programs at a level of smoothing: within the limits by differences of positions every 0.1 ms, within
+// the tolerance, and at the level best not slower than the other ways to drive them. Prints the worst of each
+// with the seed of its program; `--show SEED` prints that program. Exit 1 if a bound is broken.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -111,40 +111,36 @@ Case draw(std::uint64_t seed) {
   return c;
 }
 
-// Differences of positions at 0.1 ms over stretches, as shares of the limits; those of third order without
-// what rounding of positions and times makes of them.
+// Differences of positions at 0.1 ms, as shares of the limits; those of third order without what rounding of
+// positions and times makes of them.
 template <class T>
-void examine_motion(const T& motion, const Mill& machine, test::Random& random, Errors& errors) {
-  constexpr double period = 1e-4, stretch = 0.05;
-  const int stretches = std::min(200, static_cast<int>(motion.duration() / stretch) + 1);
-  const auto share = [&](const Vector3& value, double of_tool, auto of_axis) {
-    double result = value.norm() / of_tool;
+void examine_motion(const T& motion, const Mill& machine, Errors& errors) {
+  constexpr double period = 1e-4;
+  const auto share = [&](const Vector3& value, double rounding, double of_tool, auto of_axis) {
+    double result = (value.norm() - rounding) / of_tool;
     for (int i = 0; i < 3; ++i)
-      result = std::max(result, std::abs(value[i]) / of_axis(machine.axes[static_cast<std::size_t>(i)]));
+      result = std::max(result,
+                        (std::abs(value[i]) - rounding) / of_axis(machine.axes[static_cast<std::size_t>(i)]));
     return result;
   };
-  for (int k = 0; k < stretches; ++k) {
-    const double from = stretches < 200 ? k * stretch : random.uniform(0, motion.duration() - stretch);
-    std::array<Vector3, 4> p;
-    p.fill(Vector3::Zero());
-    for (int i = 0; i < static_cast<int>(stretch / period) + 4; ++i) {
-      const double t = from + i * period;
-      if (!(t < motion.duration())) break;
-      p = {Vector3(motion.at(t).position), p[0], p[1], p[2]};
-      if (i < 3) continue;
-      const Vector3 v = (p[0] - p[1]) / period, a = (p[0] - 2 * p[1] + p[2]) / (period * period),
-                    j = (p[0] - 3 * p[1] + 3 * p[2] - p[3]) / (period * period * period);
-      errors.velocity = std::max(
-          errors.velocity, share(v, machine.limits.velocity, [](const Axis& x) { return x.velocity; }) - 1);
-      errors.acceleration =
-          std::max(errors.acceleration,
-                   share(a, machine.limits.acceleration, [](const Axis& x) { return x.acceleration; }) - 1);
-      const double rounding = 4 * std::numeric_limits<double>::epsilon() * (p[0].norm() + t * v.norm()) /
-                              (period * period * period);
-      errors.jerk = std::max(errors.jerk, share(std::max(1 - rounding / j.norm(), 0.0) * j,
-                                                machine.limits.jerk, [](const Axis& x) { return x.jerk; }) -
-                                              1);
-    }
+  std::array<Vector3, 4> p;
+  p.fill(Vector3::Zero());
+  const auto samples = static_cast<long>(motion.duration() / period);
+  for (long i = 0; i <= samples; ++i) {
+    const double t = static_cast<double>(i) * period;
+    p = {Vector3(motion.at(t).position), p[0], p[1], p[2]};
+    if (i < 3) continue;
+    const Vector3 v = (p[0] - p[1]) / period, a = (p[0] - 2 * p[1] + p[2]) / (period * period),
+                  j = (p[0] - 3 * p[1] + 3 * p[2] - p[3]) / (period * period * period);
+    errors.velocity = std::max(
+        errors.velocity, share(v, 0, machine.limits.velocity, [](const Axis& x) { return x.velocity; }) - 1);
+    errors.acceleration =
+        std::max(errors.acceleration,
+                 share(a, 0, machine.limits.acceleration, [](const Axis& x) { return x.acceleration; }) - 1);
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * (p[0].norm() + t * v.norm()) /
+                            (period * period * period);
+    errors.jerk = std::max(errors.jerk,
+                           share(j, rounding, machine.limits.jerk, [](const Axis& x) { return x.jerk; }) - 1);
   }
 }
 
@@ -155,11 +151,14 @@ double deviation(const T& motion, const Blocks& blocks) {
   std::size_t source = 0;
   for (std::size_t b = 0; b < motion.program().size(); ++b) {
     const auto path = motion.path(b);
-    if (motion.program()[b].source != source) at = 0;
-    source = motion.program()[b].source;
+    std::size_t now = b;  // the level fast keeps blocks, best makes pieces of them
+    if constexpr (requires { motion.program()[b].source; }) now = motion.program()[b].source;
+    if (now != source) at = 0;
+    source = now;
     const auto& programmed = blocks[source].path;
-    for (int i = 0; i <= 8; ++i) {
-      const double x = path.length() * i / 8;
+    const int steps = std::clamp(static_cast<int>(path.length() / 0.02), 8, 5000);
+    for (int i = 0; i <= steps; ++i) {
+      const double x = path.length() * i / steps;
       worst = std::max(
           worst,
           (path.position_at(x) - programmed.position_at(std::min(at + x, programmed.length()))).norm());
@@ -169,44 +168,61 @@ double deviation(const T& motion, const Blocks& blocks) {
   return worst;
 }
 
-bool examine(const Case& c, Errors& errors) {
+template <class T>
+void examine_plan(const T& motion, const Case& c, const Blocks& blocks, Errors& errors) {
+  errors.deviation = deviation(motion, blocks) / c.tolerance - 1;
+  errors.end =
+      (motion.at(motion.duration()).position - blocks.back().path.position_at(blocks.back().path.length()))
+          .norm();
+  examine_motion(motion, c.machine, errors);
+}
+
+bool examine(const Case& c, bool best, Errors& errors) {
   const PlanOptions options{.tolerance = c.tolerance};
   const auto program = read_blocks(gcode::TextLines(c.program), c.machine, options);
   if (!program) return false;
-  const auto start = std::clock();
-  const auto best = plan_smooth(program->blocks, c.machine, options);
-  const double spent = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  const auto fast = plan_blocks(program->blocks, c.machine, options);
-  Blocks stopping = program->blocks;
+  const Blocks& blocks = program->blocks;
+  const auto ms_a_block = [&](std::clock_t start) {
+    return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC /
+           static_cast<double>(blocks.size());
+  };
+  auto start = std::clock();
+  const auto fast = plan_blocks(blocks, c.machine, options);
+  errors.cost = ms_a_block(start);
+  Blocks stopping = blocks;
   for (auto& block : stopping) block.exact_stop = true;
   const auto stops = plan_blocks(stopping, c.machine, PlanOptions{});
-  if (!best || !fast || !stops) return false;
-  errors.over_fast = best->duration() / fast->duration() - 1;
-  errors.over_stops = best->duration() / stops->duration() - 1;
-  errors.cost = 1e3 * spent / static_cast<double>(program->blocks.size());
-  errors.deviation = deviation(*best, program->blocks) / c.tolerance - 1;
-  errors.end = (best->at(best->duration()).position -
-                program->blocks.back().path.position_at(program->blocks.back().path.length()))
-                   .norm();
-  test::Random random(c.seed);
-  examine_motion(*best, c.machine, random, errors);
+  if (!fast || !stops) return false;
+  if (!best) {
+    errors.over_stops = fast->duration() / stops->duration() - 1;
+    examine_plan(*fast, c, blocks, errors);
+    return true;
+  }
+  start = std::clock();
+  const auto smooth = plan_smooth(blocks, c.machine, options);
+  errors.cost = ms_a_block(start);
+  if (!smooth) return false;
+  errors.over_fast = smooth->duration() / fast->duration() - 1;
+  errors.over_stops = smooth->duration() / stops->duration() - 1;
+  examine_plan(*smooth, c, blocks, errors);
   return true;
 }
 
-int soak(std::uint64_t seed, std::uint64_t count) {
+int soak(std::uint64_t seed, std::uint64_t count, bool best) {
   using E = Errors;
   const auto literal = [](std::uint64_t of) { return "--show " + std::to_string(of); };
-  test::Worst<E, std::uint64_t> all[] = {{"time over the level fast", &E::over_fast, 1e-3},
-                                         {"time over stops at all corners", &E::over_stops, 1e-3},
-                                         {"velocity over its limit", &E::velocity, 1e-4},
-                                         {"acceleration over its limit", &E::acceleration, 1e-4},
-                                         {"jerk over its limit", &E::jerk, 1e-4},
-                                         {"deviation over the tolerance", &E::deviation, 1e-6},
-                                         {"end position (mm)", &E::end, 1e-8},
-                                         {"planning (ms a block)", &E::cost, 1e3}};
+  test::Worst<E, std::uint64_t> all[] = {
+      {"time over the level fast", &E::over_fast, 1e-3},
+      {"time over stops at all corners", &E::over_stops, best ? 1e-3 : 0.5},
+      {"velocity over its limit", &E::velocity, 1e-4},
+      {"acceleration over its limit", &E::acceleration, 1e-4},
+      {"jerk over its limit", &E::jerk, 1e-4},
+      {"deviation over the tolerance", &E::deviation, 1e-6},
+      {"end position (mm)", &E::end, 1e-8},
+      {"planning (ms a block)", &E::cost, 1e3}};
   for (std::uint64_t i = 0; i < count; ++i) {
     Errors errors;
-    if (!examine(draw(seed + i), errors)) {
+    if (!examine(draw(seed + i), best, errors)) {
       std::printf("no plan: %s\n", literal(seed + i).c_str());
       return 1;
     }
@@ -217,7 +233,7 @@ int soak(std::uint64_t seed, std::uint64_t count) {
   return test::report(std::span<const test::Worst<E, std::uint64_t>>(all), literal) ? 0 : 1;
 }
 
-int show(std::uint64_t seed) {
+int show(std::uint64_t seed, bool best) {
   const Case c = draw(seed);
   const auto& [velocity, acceleration, jerk] = c.machine.limits;
   std::printf("; tolerance %.17g; tool %g %g %g\n", c.tolerance, velocity, acceleration, jerk);
@@ -225,7 +241,7 @@ int show(std::uint64_t seed) {
     std::printf("; axis %c %.17g %.17g %.17g\n", axis.letter, axis.velocity, axis.acceleration, axis.jerk);
   std::printf("%s", c.program.c_str());
   Errors errors;
-  if (!examine(c, errors)) return 1;
+  if (!examine(c, best, errors)) return 1;
   std::printf("; over fast %.6f, over stops %.6f; limits %.2g %.2g %.2g; deviation %.2g, %.3f ms a block\n",
               errors.over_fast, errors.over_stops, errors.velocity, errors.acceleration, errors.jerk,
               errors.deviation, errors.cost);
@@ -235,14 +251,18 @@ int show(std::uint64_t seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("random programs at the level best");
+  CLI::App app("random programs at a level of smoothing");
   std::uint64_t seed = test::seed();
   double count = 100;
   std::uint64_t shown = 0;
+  std::string level = "best";
   app.add_option("--seed", seed, "of the first program; the next has the next")->capture_default_str();
   app.add_option("--count", count, "how many programs")->capture_default_str();
+  app.add_option("--level", level, "of smoothing")
+      ->check(CLI::IsMember({"fast", "best"}))
+      ->capture_default_str();
   auto* one = app.add_option("--show", shown, "print the program of a seed and what became of it");
   CLI11_PARSE(app, argc, argv);
-  if (one->count() > 0) return show(shown);
-  return soak(seed, static_cast<std::uint64_t>(count));
+  if (one->count() > 0) return show(shown, level == "best");
+  return soak(seed, static_cast<std::uint64_t>(count), level == "best");
 }
