@@ -44,8 +44,9 @@ Losses losses(const Limits& limits, double tolerance, const std::vector<Vector3>
 
 bool print(const std::string& name, const Limits& limits, double tolerance, double bound,
            const Losses& found) {
+  const double shown = std::round(1e4 * bound) / 1e4 + 0.0;  // no negative zero
   std::printf("| %s | %g/%g/%g, %g | %.4f | %.4f | %.4f | %.4f |\n", name.c_str(), limits.velocity,
-              limits.acceleration, limits.jerk, tolerance, bound, found.best, found.fast, found.stops);
+              limits.acceleration, limits.jerk, tolerance, shown, found.best, found.fast, found.stops);
   std::fflush(stdout);
   constexpr double rounding = 1e-9;
   return std::min({found.best, found.fast, found.stops}) > bound - rounding;
