@@ -67,3 +67,29 @@ TEST_CASE("a ramp that crests above both its speeds is held to a junction there"
   // 10 mm/s and rising: over 11 before it can come down to 10.2
   CHECK_FALSE(plan::ramp_ahead(path, {0, 0.0}, {0, 10.0, 150.0, 0}, 10.2));
 }
+
+TEST_CASE("a ramp that comes to rest on the way does not pass a junction that is passed at rest") {
+  // braking, at rest but for rounding where the first block ends, and going on at once: near
+  // cncplan_executor_soak
+  // --seed 81004 --lines 4, sequence 2041
+  const BasicLimits<float> same{2.35F, 142.71875F, 8667.50684F};
+  const auto ramp_over = [&](float length, float cap, float speed) {
+    std::vector<plan::BasicPlayedBlock<float>> memory(4);
+    plan::BasicPathAhead<float> path(memory);
+    path.ring.push({{length, 1e3F, same, 0}, 2.35F});
+    path.ring.push({{5, cap, same, 0}, 2.35F});
+    path.ring.take();
+    const BasicState<float> now{0, speed, -57.8127899F, 0};
+    return plan::ramp_ahead<float>(path, {0, 0}, now, 2.19574857F).has_value();
+  };
+  int at_speed = 0, at_rest = 0;
+  for (int i = -40; i <= 40; ++i)
+    for (int k = -10; k <= 10; ++k) {
+      const float length = 0.000428678701F * (1 + 1e-7F * static_cast<float>(i));
+      const float speed = 0.192807347F * (1 + 1e-7F * static_cast<float>(k));
+      at_speed += ramp_over(length, 1, speed) ? 1 : 0;
+      at_rest += ramp_over(length, 0, speed) ? 1 : 0;
+    }
+  CHECK(at_speed == 81 * 21);
+  CHECK(at_rest == 0);
+}

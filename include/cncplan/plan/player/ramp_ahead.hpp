@@ -68,7 +68,10 @@ template <std::floating_point S>
         if (highest > allowed) return {};
       }
       if (last) break;
-      if (!path.ring.holds(at.block + path.direction) || path.stops_behind(at.block)) return {};
+      // a rest ends a profile: where the speed is zero in mid-ramp, it would not be seen which block that is
+      if (!path.ring.holds(at.block + path.direction) || path.stops_behind(at.block) ||
+          path.rests_behind(at.block))
+        return {};
       at.block += path.direction;
       const S cap = path.junction_cap(at.block) * tolerance;
       if (fastest > cap && ramp.velocity_at(until) > cap) return {};
