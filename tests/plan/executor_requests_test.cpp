@@ -3,8 +3,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,32 +15,14 @@
 #include "support/executor_machines.hpp"
 #include "support/no_heap.hpp"
 #include "support/random_runs.hpp"
-#include "support/shared.hpp"
+#include "support/small_mill.hpp"
 
 using namespace cncplan;
+using test::Lines, test::load, test::period, test::run, test::Runner;
 
 namespace {
 
-constexpr Machine<3> mill{
-    .axes = {{{.letter = 'X', .velocity = 50, .acceleration = 1000, .jerk = 20000, .high = 100},
-              {.letter = 'Y', .velocity = 50, .acceleration = 1000, .jerk = 20000},
-              {.letter = 'Z', .velocity = 20, .acceleration = 300, .jerk = 5000}}},
-    .limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-constexpr double period = 1e-3;
-using Runner = Executor<Machine<3>, 16>;
-using Lines = std::vector<std::string>;
-
-void load(Runner& executor, const Lines& lines) {
-  for (const auto& block : test::blocks_of(lines, mill)) REQUIRE(executor.push(block));
-  executor.end_of_program();
-}
-
-// Ticks until it is over, or for so long; the last set point.
-SetPoint<3> run(Runner& executor, double seconds = 1e3) {
-  SetPoint<3> point;
-  for (int tick = 0; tick < seconds / period && !executor.finished(); ++tick) point = executor.tick(period);
-  return point;
-}
+constexpr Machine<3> mill = test::small_mill;
 
 }  // namespace
 
@@ -288,114 +268,6 @@ TEST_CASE("a program that was stopped begins anew at a line, from a place on it"
   CHECK(executor.error()->error().code == ErrorCode::discontinuous);
 }
 
-TEST_CASE("hold, jog away, return, resume", "[executor]") {
-  Runner executor(mill);
-  load(executor, {"G1 X20 F1200", "Y20"});
-  CHECK_FALSE(executor.jog({0, 0, 5}));
-  run(executor, 0.5);
-  CHECK(executor.jog({0, 0, 5}).error().code == ErrorCode::unfinished);
-  executor.feed_hold();
-  const Vector3 held = run(executor, 0.5).position;
-  REQUIRE(executor.jog({0, 0, 5}));
-  auto point = run(executor, 1.0);
-  CHECK(point.velocity[2] == Approx(5));
-  CHECK(point.tool == point.position);
-  REQUIRE(executor.jog({0, 0, 0}));
-  run(executor, 1.0);
-  REQUIRE(executor.jog_to({held[0] + 3, 4, 7}));
-  CHECK(run(executor, 3.0).position == Vector3(held[0] + 3, 4, 7));
-  CHECK(executor.jog_to({101, 0, 0}).error().code == ErrorCode::above_limit);
-  const bool by_hand = GENERATE(false, true);
-  if (by_hand) {
-    REQUIRE(executor.return_to_path());
-    CHECK((run(executor, 2.0).position - held).norm() < 1e-12);
-  }
-  executor.resume();
-  // continuous, and each axis in its limits all the way
-  auto before = executor.tick(period);
-  while (!executor.finished()) {
-    point = executor.tick(period);
-    for (int i = 0; i < 3; ++i) {
-      const auto& axis = mill.axes[static_cast<std::size_t>(i)];
-      CHECK(std::abs(point.position[i] - before.position[i]) <= axis.velocity * period * (1 + 1e-9));
-      if (point.line != before.line) continue;
-      CHECK(std::abs(point.velocity[i] - before.velocity[i]) <= axis.acceleration * period * (1 + 1e-9));
-    }
-    before = point;
-  }
-  CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
-}
-
-TEST_CASE("axes go back to where the program was left though more words follow than there is room",
-          "[executor]") {
-  const double tolerance = GENERATE(0.0, 0.01);
-  const bool by_hand = GENERATE(false, true);
-  const int words = GENERATE(15, 16, 17, 18, 100);
-  CAPTURE(tolerance, by_hand, words);
-  Lines lines{"G1 X20 F1200"};
-  lines.insert(lines.end(), static_cast<std::size_t>(words), "M8");
-  lines.emplace_back("Y20");
-  const auto blocks = test::blocks_of(lines, mill);
-  Runner executor(mill, {.tolerance = tolerance});
-  std::size_t pushed = 0;
-  SetPoint<3> point;
-  const auto run_up_to = [&](std::size_t last, double seconds) {
-    for (int tick = 0; tick < seconds / period; ++tick) {
-      while (pushed < last && executor.push(blocks[pushed]))
-        if (++pushed == blocks.size()) executor.end_of_program();
-      point = executor.tick(period);
-    }
-  };
-  run_up_to(blocks.size() - 1, 2.0);
-  CHECK(point.position == Vector3(20, 0, 0));
-  REQUIRE(executor.jog_to({15, 4, 2}));
-  run_up_to(blocks.size() - 1, 2.0);
-  CHECK(point.position == Vector3(15, 4, 2));
-  by_hand ? void(executor.return_to_path()) : executor.resume();
-  run_up_to(blocks.size() - 1, 2.0);
-  CHECK((point.position - Vector3(20, 0, 0)).norm() < 1e-12);
-  run_up_to(blocks.size(), 3.0);
-  CHECK(executor.finished());
-  CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
-  // over, and away again: it is not over before the axes are back, whatever is kept of the program
-  REQUIRE(executor.jog({5, 0, 0}));
-  run_up_to(blocks.size(), 1.0);
-  CHECK_FALSE(executor.finished());
-  executor.resume();
-  run_up_to(blocks.size(), 2.0);
-  CHECK(executor.finished());
-  CHECK((point.position - Vector3(20, 20, 0)).norm() < 1e-12);
-  // a new beginning has no place to go back to
-  REQUIRE(executor.restart(0, {1, 1, 1}));
-  REQUIRE(executor.jog_to({2, 2, 2}));
-  run_up_to(blocks.size(), 2.0);
-  REQUIRE(executor.return_to_path());
-  run_up_to(blocks.size(), 2.0);
-  CHECK(point.position == Vector3(2, 2, 2));
-}
-
-TEST_CASE("a program that ends with words is not over while the axes are away", "[executor]") {
-  const int words = GENERATE(10, 40);
-  CAPTURE(words);
-  Lines lines{"G1 X20 F1200"};
-  lines.insert(lines.end(), static_cast<std::size_t>(words), "M8");
-  const auto blocks = test::blocks_of(lines, mill);
-  Runner executor(mill);
-  std::size_t pushed = 0;
-  for (int tick = 0; tick < 3000; ++tick) {
-    while (pushed < blocks.size() && executor.push(blocks[pushed]))
-      if (++pushed == blocks.size()) executor.end_of_program();
-    executor.tick(period);
-  }
-  REQUIRE(executor.finished());
-  REQUIRE(executor.jog({0, 0, 5}));
-  run(executor, 0.5);
-  CHECK_FALSE(executor.finished());
-  executor.resume();
-  CHECK(run(executor, 3.0).position == Vector3(20, 0, 0));
-  CHECK(executor.finished());
-}
-
 TEST_CASE("set points show the start of a program before it begins", "[executor]") {
   const double tolerance = GENERATE(0.0, 0.01);
   const char* first = GENERATE("G1 X60 F1200", "M3 S1000", "G4 P0.2");
@@ -417,22 +289,6 @@ TEST_CASE("set points show the start of a program before it begins", "[executor]
   CHECK(there);
 }
 
-TEST_CASE("axes are jogged from the start of a program that has not begun", "[executor]") {
-  const Vector3 start(50, -20, 5);
-  PlanOptions options;
-  std::copy(start.begin(), start.end(), options.start.begin());
-  const auto blocks = test::blocks_of({"G1 X60 F1200", "Y0"}, mill, options);
-  Runner executor(mill);
-  for (const auto& block : blocks) REQUIRE(executor.push(block));
-  REQUIRE(executor.jog({0, 0, 5}));
-  CHECK((executor.tick(period).position - start).norm() < 0.01);
-  executor.end_of_program();
-  run(executor, 0.3);
-  executor.resume();
-  CHECK(run(executor, 5.0).position == Vector3(60, 0, 5));
-  CHECK(executor.finished());
-}
-
 TEST_CASE("behind a map set points show the start of a program, and its tool", "[executor]") {
   using Polar = Executor<MappedMachine<test::Polar>, 16>;
   PlanOptions options;
@@ -452,64 +308,6 @@ TEST_CASE("a program that begins nowhere shows no such place", "[executor]") {
   CHECK(executor.tick(period).position.isZero());
 }
 
-TEST_CASE("blocks that wait for others go on soon behind a restart or a jog too", "[executor]") {
-  const bool restarts = GENERATE(false, true);
-  CAPTURE(restarts);
-  const auto blocks = test::blocks_of({"F1200", "G1 X5", "Y5"}, mill);
-  Runner executor(mill, {.tolerance = 0.05});
-  if (restarts) {
-    REQUIRE(executor.restart(0, {0, 0, 0}));
-  } else {
-    REQUIRE(executor.jog_to({0, 0, 1}));
-    run(executor, 0.02);
-  }
-  for (const auto& block : blocks) REQUIRE(executor.push(block));
-  executor.resume();
-  CHECK(run(executor, 5.0).position == Vector3(5, 5, 0));
-}
-
-TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "[executor]") {
-  Runner executor(mill, {.quick_stop_share = 3});
-  load(executor, {"G1 X20 F1200", "Y20"});
-  run(executor, 0.5);
-  executor.feed_hold();
-  run(executor, 0.5);
-  REQUIRE(executor.jog({0, 0, 10}));
-  auto before = run(executor, 1.0);
-  SECTION("resume takes the axes back while they move") {
-    executor.resume();
-    CHECK((run(executor).position - Vector3(20, 20, 0)).norm() < 1e-12);
-    CHECK(executor.finished());
-  }
-  SECTION("a hold on the way back rests there, and resume goes on") {
-    executor.resume();
-    run(executor, 0.3);
-    executor.feed_hold();
-    const auto held = run(executor, 0.5);
-    CHECK(held.velocity.isZero());
-    CHECK(held.position[2] > 0.1);
-    CHECK(run(executor, 0.5).position == held.position);
-    executor.resume();
-    CHECK((run(executor).position - Vector3(20, 20, 0)).norm() < 1e-12);
-  }
-  SECTION("hold, stop and quick stop") {
-    const int how = GENERATE(0, 1, 2);
-    const double share = how == 2 ? 3 : 1;
-    how == 0 ? executor.feed_hold() : how == 1 ? executor.stop() : executor.quick_stop();
-    int ticks = 0;
-    for (; ticks < 1000 && !before.velocity.isZero(); ++ticks) {
-      CHECK_FALSE(executor.finished());
-      executor.feed_hold();  // asked again and again: no less for it
-      const auto point = executor.tick(period);
-      CHECK(std::abs(point.acceleration[2] - before.acceleration[2]) <= share * 5000 * period * (1 + 1e-9));
-      before = point;
-    }
-    // from v under J, with an acceleration that peaks at sqrt(v J)
-    CHECK(ticks * period == Approx(2 * std::sqrt(10 / (share * 5000))).margin(1.01 * period));
-    CHECK(executor.finished() == (how == 1));
-  }
-}
-
 TEST_CASE("a program is over only behind the last cell of its last block", "[executor]") {
   using Waves = Executor<Machine<3>, 4, test::WaveBlock>;
   const auto executor =
@@ -524,17 +322,6 @@ TEST_CASE("a program is over only behind the last cell of its last block", "[exe
   }
   CHECK(executor->finished());
   CHECK(executor->tick(period).along.position == Approx(wave->length()));
-}
-
-TEST_CASE("axes are jogged before a program, which waits until they are at its start", "[executor]") {
-  Runner executor(mill);
-  REQUIRE(executor.jog_to({1, 2, 3}));
-  CHECK(run(executor, 3.0).position == Vector3(1, 2, 3));
-  load(executor, {"G1 X20 F1200"});
-  CHECK(run(executor, 1.0).position == Vector3(1, 2, 3));
-  executor.resume();
-  CHECK(run(executor).position == Vector3(20, 0, 0));
-  CHECK(executor.finished());
 }
 
 TEST_CASE("nothing is allocated once an executor and a reader are made", "[executor]") {

@@ -74,6 +74,20 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
+// An executor that was disturbed has come to its end, and has kept limits, tolerance and words on the way.
+void check_kept(const test::ExecutorFaults& faults) {
+  CHECK(faults.finished);
+  CHECK_FALSE(faults.failed);
+  CHECK_FALSE(faults.words_wrong);
+  CHECK(faults.velocity <= 1e-6);
+  CHECK(faults.acceleration <= 1e-6);
+  CHECK(faults.jerk <= 1e-6);
+  CHECK(faults.way <= 0);
+  CHECK(faults.rate <= 1e-6);
+  CHECK(faults.change <= 1e-6);
+  CHECK(faults.place <= 0);
+}
+
 }  // namespace
 
 TEST_CASE("merged lines take the time of one line", "[merge_lines]") {
@@ -230,16 +244,7 @@ TEST_CASE("an executor merges, whatever is asked of it", "[merge_lines]") {
         .mean_gap = random.integer(2, 100), .restless = random.coin() ? 2000 : 0, .tolerance = tolerance};
     const auto faults = random.coin() ? test::run<64>(test::six_axes, blocks, random, how)
                                       : test::run<16>(test::six_axes, blocks, random, how);
-    CHECK(faults.finished);
-    CHECK_FALSE(faults.failed);
-    CHECK_FALSE(faults.words_wrong);
-    CHECK(faults.velocity <= 1e-6);
-    CHECK(faults.acceleration <= 1e-6);
-    CHECK(faults.jerk <= 1e-6);
-    CHECK(faults.way <= 0);
-    CHECK(faults.rate <= 1e-6);
-    CHECK(faults.change <= 1e-6);
-    CHECK(faults.place <= 0);
+    check_kept(faults);
     CHECK(faults.end < 1e-6);
   }
 }
@@ -288,16 +293,7 @@ TEST_CASE("an executor that merges begins anew anywhere, whatever is asked of it
     };
     const auto faults = six ? drive(test::six_axes) : drive(test::slow_axes<double>);
     anew += faults.anew ? 1 : 0;
-    CHECK(faults.finished);
-    CHECK_FALSE(faults.failed);
-    CHECK_FALSE(faults.words_wrong);
-    CHECK(faults.velocity <= 1e-6);
-    CHECK(faults.acceleration <= 1e-6);
-    CHECK(faults.jerk <= 1e-6);
-    CHECK(faults.way <= 0);
-    CHECK(faults.rate <= 1e-6);
-    CHECK(faults.change <= 1e-6);
-    CHECK(faults.place <= 0);
+    check_kept(faults);
     if (faults.anew) CHECK(faults.end < 1e-6);
   }
   CHECK(anew > 200);
