@@ -163,9 +163,10 @@ class BasicPlans {
   }
 
   /// Whether it can take over at a waypoint, at a place that is passed at a speed. What is not made of it is
-  /// made now, as far as that goes at once; where it cannot take over there it is dropped.
+  /// made now, as far as that goes at once; where it cannot take over there it is dropped. It is not begun
+  /// where no plan may be made to its end any more.
   bool next_takes_over(BasicPathAhead<S>& path, const BasicPlace<S>& at, S speed, std::size_t waypoint) {
-    if (!next_.begun()) begin_next_if_borne(path, at, speed, waypoint, S(1));
+    if (!next_.begun() && at_once_ > 0) begin_next_if_borne(path, at, speed, waypoint, S(1));
     if (!next_.begun() || next_begins_at_ != waypoint) return false;
     if (at_once_ > 0) budget_ = work_at_once(), --at_once_;
     const bool good = work() && next_.holds();
