@@ -159,13 +159,17 @@ class BasicPathAhead {
       if (ahead.blocks == out.size() || horizon.reached()) return {ahead.blocks, false, true};
       const bool first = ahead.blocks == 0;
       const Block& block = ring[at.block];
-      BasicBlockCaps<S> caps = block.caps;
-      caps.limits = limits_of(block);
-      caps.length = std::max(caps.length - at.along, S(0));
-      caps.limits.velocity = std::max(wanted_speed_of(block), first ? speed : S(0));
-      if (!(caps.limits.velocity > S(0))) return ahead;
+      const S velocity = std::max(wanted_speed_of(block), first ? speed : S(0));
+      if (!(velocity > S(0))) return ahead;
+      // One by one: the processor waits where it loads as a whole what has just been stored in parts.
+      const BasicLimits<S>& own = limits_of(block);
+      BasicBlockCaps<S>& caps = out[ahead.blocks++];
+      caps.length = std::max(block.caps.length - at.along, S(0));
       caps.entry = first ? speed : junction_cap(at.block);
-      out[ahead.blocks++] = caps;
+      caps.limits.velocity = velocity;
+      caps.limits.acceleration = own.acceleration;
+      caps.limits.jerk = own.jerk;
+      caps.pause = block.caps.pause;
       if (stops_behind(at.block)) return ahead;
       const bool steady = !shared || !shared->take(caps.limits, caps.length);
       if (steady) shared.emplace(caps.limits, caps.length);
