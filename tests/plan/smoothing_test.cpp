@@ -134,6 +134,20 @@ TEST_CASE("the tool stops where it turns back, and where it must be exact", "[sm
   CHECK(passes->blocks()[0].exit > 5);
 }
 
+TEST_CASE("a corner that is passed at rest is exact, into an arc as well", "[smoothing]") {
+  const std::string program = "G1 Y10\nG3 Y20 J5\nG1 X-10\nY30\n";  // sharp, tangent, sharp
+  const auto planned = smoothed("F1800 " + program), stops = smoothed("F1800 G61.1 " + program);
+  REQUIRE((planned && stops));
+  CHECK(planned->blocks()[0].exit == Approx(0).margin(1e-6));
+  for (const double s : {0.0, 0.5, 2.0}) {
+    CHECK(planned->path(0).position_at(10 - s) == planned->program()[0].path.position_at(10 - s));
+    CHECK(planned->path(1).position_at(s) == planned->program()[1].path.position_at(s));
+  }
+  const double first = stops->start_time(1);
+  CHECK(planned->start_time(1) == Approx(first).epsilon(1e-12));
+  CHECK(planned->duration() < stops->duration());
+}
+
 // Distance of the programmed corner from the curve.
 double left_by(const std::string& program, const PlanOptions& options) {
   const auto planned = plan_text(program, mill, options);

@@ -108,8 +108,7 @@ class Smoother {
       for (std::size_t i = 0; i < sizings_.size(); ++i) {
         auto& behind = result_.blocks[moving_[junctions_[i]]];
         if (rests_at(i)) behind.passing = Passing::stop;
-        // A jump of direction does no harm at rest.
-        if (behind.passing == Passing::stop && sizings_[i].jump == smooth::Jump::direction) continue;
+        if (behind.passing == Passing::stop) continue;  // jumps do no harm at rest
         result_.corrections.push_back({sizings_[i].at, sizings_[i].size, sizings_[i].jump, steps_[i]});
         reach_blocks(result_.corrections.size() - 1, junctions_[i]);
       }

@@ -222,8 +222,7 @@ class SmoothingAhead {
       const auto& sizing = sizings_[k];
       if (faster_at_rest(BasicJump<Scalar, n>{sizing, steps_[k]}, mover(at - 1).beside, own.beside))
         own.own.passing = Passing::stop;
-      // A jump of direction does no harm at rest.
-      if (own.own.passing == Passing::stop && sizing.jump == smooth::Jump::direction) continue;
+      if (own.own.passing == Passing::stop) continue;  // jumps do no harm at rest
       const Correction correction{sizing.at, sizing.size, sizing.jump, steps_[k]};
       // Twice, so that any of them that follow each other stand side by side.
       const auto slot = static_cast<std::size_t>(corrected_ % most_corrections);
