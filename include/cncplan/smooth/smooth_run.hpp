@@ -39,7 +39,7 @@ template <std::floating_point S>
 struct BasicSmoothOptions {
   int passes = 1;          ///< of geometry, each after one of speed
   int joint_rounds = 4;    ///< the most of geometry and speed together
-  S joint_gain = S(2e-3);  ///< of the time by a round, for which there is another
+  S joint_gain = S(5e-3);  ///< of the time that is lost to the feeds, by a round, for which there is another
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
@@ -252,6 +252,8 @@ template <Path P>
     band.smoothen(planner.speeds_sq(band.cell_count()));
     time = coarse_time();
   }
+  S at_feeds = S(0);
+  for (const auto& block : blocks) at_feeds += block.path->length() / block.feed;
   for (int round = 0; round < options.joint_rounds; ++round) {
     const auto before = band.points();
     const S last = time;
@@ -262,7 +264,7 @@ template <Path P>
       band.set_points(before);
       time = coarse_time();
     }
-    if (!(time < (S(1) - options.joint_gain) * last)) break;
+    if (!(last - time > options.joint_gain * (last - at_feeds))) break;
   }
   planner.take(band);
   run.speed = planner.plan(options.gap, true);
