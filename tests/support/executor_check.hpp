@@ -153,6 +153,13 @@ class TickCheck {
                             static_cast<double>(now.along.position));
   }
 
+  // A place is known to 1e-9 mm of path: what that is for an axis, where the set point before is.
+  [[nodiscard]] double resolution_of(int axis) const {
+    if constexpr (MappedModel<M>) return 0;
+    const B& block = blocks_[before_.block];
+    return 1e-9 * std::abs(static_cast<double>(block.path.point_at(path_length(block, before_)).first[axis]));
+  }
+
   [[nodiscard]] auto path_length(const B& block, const Point& now) const {
     typename M::Scalar start = 0;
     for (std::size_t i = 0; i < now.block; ++i) {
@@ -181,11 +188,12 @@ class TickCheck {
   }
 
   void compare(const Point& now) {
-    const double period = how_.period, rounding = rounding_of(now);
+    const double period = how_.period;
     const bool inside = (now.block == before_.block || (how_.tolerance > 0 && !exact_between(now))) &&
                         now.along.velocity * before_.along.velocity >= 0;
     for (int i = 0; i < n; ++i) {
       const auto& axis = machine_.axes[static_cast<std::size_t>(i)];
+      const double rounding = rounding_of(now) + resolution_of(i);
       const double way = static_cast<double>(now.position[i]) - static_cast<double>(before_.position[i]);
       grow(faults.way,
            std::abs(way) - static_cast<double>(axis.velocity) * period * (1 + how_.rounding) - 4 * rounding);
