@@ -171,3 +171,28 @@ TEST_CASE("arcs at half the machine's speed keep their limits at twice the feed"
   }
   CHECK(fastest > 1.9);
 }
+
+TEST_CASE("a feed that is raised before an arc and taken back keeps the arc's limits", "[executor]") {
+  using Exact = Executor<Machine<3>, 32>;
+  const auto blocks =
+      test::blocks_of({"F110", "G0 X-0.064010 Y0.073309 Z0.034608", "G0 X0.196560 Y-0.116558 Z0.034608",
+                       "G2 X0.255135 Y-0.117841 Z0.034608 I0.000043 J-1.335670", "M30"},
+                      test::slow_axes<double>);
+  for (int share = 160; share < 180; ++share) {
+    CAPTURE(share);
+    const auto executor = std::make_unique<Exact>(test::slow_axes<double>, Exact::Options{.tolerance = 0});
+    test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(test::slow_axes<double>, blocks,
+                                                                             {1, 1, period, 1e-12});
+    for (const auto& block : blocks) REQUIRE(executor->push(block));
+    executor->end_of_program();
+    for (int tick = 0; tick < 1000 && !executor->finished(); ++tick) {
+      if (tick == 52) executor->feed_hold();
+      if (tick == 60) executor->resume(), executor->feed_override(share / 100.0);
+      if (tick == 100) executor->feed_override(1);
+      check.take(executor->tick(period));
+    }
+    CHECK(executor->finished());
+    CHECK(check.faults.acceleration < 1e-9);
+    CHECK(check.faults.jerk < 1e-9);
+  }
+}

@@ -101,6 +101,7 @@ class BasicPlans {
   /// Plans the blocks from a place on that coming to rest takes, and a few more, at once. False if the speed
   /// is too high there, or `short_rounds` are too few.
   bool plan_short(BasicPathAhead<S>& path, const BasicPlace<S>& from, S speed) {
+    if (!bears(path, from, speed)) return false;
     const std::size_t most = std::min(ahead_.size(), most_short_blocks);
     const std::size_t blocks = std::min(path.blocks_to_rest(from, speed, most) + more_short_blocks, most);
     short_plan_.begin(path, from, speed, ahead_.first(blocks), short_waypoints_);
@@ -177,6 +178,7 @@ class BasicPlans {
   /// Makes it at once, behind a ramp; whether both are better than what is driven. Else it is dropped.
   bool next_betters(BasicPathAhead<S>& path, const BasicRunningProfile<S>& running,
                     const profile::BasicProfile<S>& ramp, const BasicPlace<S>& from, S speed) {
+    if (!bears(path, from, speed)) return false;
     begin_next(path, from, speed, no_waypoint, S(1));
     const bool better = finish_next() && betters(running, ramp, next_.waypoints());
     if (!better) next_.drop();
@@ -209,10 +211,11 @@ class BasicPlans {
     return done;
   }
 
-  // Whether a plan may begin with a speed at a place: the limits up to the feed hold no farther than that.
-  [[nodiscard]] bool bears(BasicPathAhead<S>& path, const BasicPlace<S>& from, S speed) const {
+  // Whether a plan may begin with a speed at a place: limits hold no farther than up to their velocity.
+  [[nodiscard]] static bool bears(BasicPathAhead<S>& path, const BasicPlace<S>& from, S speed) {
     path.above = path.asks_above();
-    return path.above || !above_ || !path.ring.holds(from.block) || speed <= path.wanted_speed(from.block);
+    return !path.ring.holds(from.block) ||
+           speed <= path.limits(from.block).velocity * (S(1) + path_rounding<S>);
   }
 
   void take(const BasicPlanAhead<S>& plan, BasicPathAhead<S>& path) {
