@@ -293,6 +293,18 @@ TEST_CASE("a rotary axis that turns back slows down to what its limits allow", "
   }
 }
 
+TEST_CASE("an axis beside the tool slows down where it alone changes its rate", "[trajectory]") {
+  using V = VectorN<double, 4>;
+  Machine<4> machine{.limits = mill.limits};
+  machine.axes[3] = {.letter = 'U', .velocity = 100, .acceleration = 300, .jerk = 4000};
+  const std::vector<Block<4>> blocks{{.path = path::Line<4>(V(0, 0, 0, 0), V(50, 0, 0, 0)), .feed = 30},
+                                     {.path = path::Line<4>(V(50, 0, 0, 0), V(99, 0, 0, 49)), .feed = 30}};
+  const auto planned = plan_blocks(blocks, machine, {.junction_deviation = 0.02});
+  REQUIRE(planned);
+  // At a blend of half length l = 4 tolerance / d with d = 1: v^2 d / (2 l) = A.
+  CHECK(planned->blocks()[0].exit == Approx(std::sqrt(2 * 0.08 * 300)).epsilon(1e-9));
+}
+
 TEST_CASE("blocks that do not meet are refused, with the axis", "[trajectory]") {
   std::vector<Block<3>> blocks{{.path = line({0, 0, 0}, {20, 0, 0}), .feed = 20},
                                {.path = line({20, 0.5, 0}, {40, 0, 0}), .feed = 20}};

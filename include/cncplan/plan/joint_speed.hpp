@@ -25,9 +25,9 @@ struct BasicJoint {
 /// The highest speed at which the axes may change from one block's direction to the next one's, if the joint
 /// were rounded within the tolerances: over a blend of half length l the derivative of an axis changes by d,
 /// so v^2 d / (2 l) is its acceleration; where that has no limit, a blend at the jerk J has v^3 d / l^2 = J.
-/// The tool's deviation of a blend with jump D of its direction is l D
-/// / 4, that of a rotary axis l d / 4 (rad): the shortest l that one of them allows holds. Infinite where no
-/// axis with a limit of acceleration or jerk changes its direction.
+/// The tool's deviation of a blend with jump D of its direction is l D / 4, that of an axis l d / 4 (a rotary
+/// one: rad): the shortest l that one of them allows holds. Infinite where no axis with a limit of
+/// acceleration or jerk changes its direction.
 template <MachineModel M>
 [[nodiscard]] typename M::Scalar axis_corner_speed(const BasicJoint<typename M::Scalar, M::axis_count>& joint,
                                                    const M& machine, typename M::Scalar tolerance,
@@ -45,9 +45,10 @@ template <MachineModel M>
   };
   if constexpr (!MappedModel<M>)
     for (int i = 0; i < M::axis_count; ++i)
-      if (const S jump = jump_of(i);
-          jump > S(0) && machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary)
-        blend = std::min(blend, S(4) * rotary_tolerance / jump);
+      if (const S jump = jump_of(i); jump > S(0)) {
+        const bool rotary = machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
+        blend = std::min(blend, S(4) * (rotary ? rotary_tolerance : tolerance) / jump);
+      }
   S speed = none;
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
