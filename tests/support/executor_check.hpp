@@ -212,7 +212,7 @@ class TickCheck {
     const auto [first, last] = std::minmax(now.block, before_.block);
     return std::any_of(blocks_.begin() + static_cast<std::ptrdiff_t>(first),
                        blocks_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
-                       [](const B& block) { return block.exact_path; });
+                       [](const B& block) { return block.exact_path || block.tolerance == 0; });
   }
 
   const M& machine_;
