@@ -313,6 +313,34 @@ TEST_CASE("blocks go on coming however many are to be kept behind") {
   }
 }
 
+TEST_CASE("backwards it comes to rest where the oldest block begins, whenever it is told") {
+  constexpr double length = 0.02, period = 1e-3;
+  for (int told = 20; told < 300; ++told) {
+    CAPTURE(told);
+    Rig rig(32, 4);
+    int pushed = 0;
+    const auto go = [&](double seconds) {
+      while (pushed < 1000 && rig.player.push(straight(length))) ++pushed;
+      return rig.player.tick(seconds);
+    };
+    for (int tick = 0; tick < told; ++tick) go(period);
+    rig.player.backwards(true);
+    plan::Played before = go(0.07);  // comes to rest, some blocks further on, and turns
+    const auto place_of = [](const plan::Played& now) {
+      return length * static_cast<double>(now.block) + now.along;
+    };
+    double jump = 0;
+    for (int tick = 0; tick < 300; ++tick) {
+      const auto now = go(period);
+      const double way = period * (before.velocity + now.velocity) / 2;
+      jump = std::max(jump, std::abs(place_of(now) - place_of(before) - way));
+      before = now;
+    }
+    CHECK(jump < limits.jerk * period * period * period / 4);
+    CHECK(before == plan::Played{rig.player.oldest(), 0.0, 0.0, 0.0, 0.0, true});
+  }
+}
+
 TEST_CASE("backwards as far as blocks are kept, and forwards again") {
   Rig rig(8, 4);
   for (int i = 0; i < 4; ++i) rig.player.push(straight(5.0));

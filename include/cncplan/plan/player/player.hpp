@@ -51,9 +51,10 @@ class BasicPlayer {
   /// The oldest block that is kept; the one behind the last that a tick has seen.
   [[nodiscard]] std::int64_t oldest() const { return path_.ring.oldest(); }
   [[nodiscard]] std::int64_t end() const { return path_.ring.end(); }
-  /// Lets the oldest block go, the last one too, if the machine is behind it; whether it was.
+  /// Lets the oldest block go, the last one too, if the machine is behind it and runs forwards; whether it
+  /// did.
   bool forget_oldest() {
-    if (path_.ring.oldest() >= at_.block) return false;
+    if (path_.ring.oldest() >= at_.block || going_back()) return false;
     return path_.ring.release(path_.ring.oldest() + 1);
   }
 
@@ -158,7 +159,7 @@ class BasicPlayer {
     if (!answers) prepare(period);
     rested_ = idle_ && !(waits() > S(0)) ? rested_ + left : S(0);
     const BasicPlayed<S> now = played();
-    path_.ring.release(std::min(at_.block - keep_behind_, path_.ring.end() - 1));
+    if (!going_back()) path_.ring.release(std::min(at_.block - keep_behind_, path_.ring.end() - 1));
     return now;
   }
 
@@ -228,6 +229,9 @@ class BasicPlayer {
   }
 
   [[nodiscard]] bool profile_over() const { return !idle_ && !(running_.left() > S(0)); }
+
+  // The plan goes to the oldest block then.
+  [[nodiscard]] bool going_back() const { return path_.direction < 0; }
 
   // Where it is now. At rest a block of no length is not passed by.
   BasicPlace<S> locate() {
