@@ -16,6 +16,7 @@
 #include "cncplan/core/extremals.hpp"
 #include "cncplan/core/fixed_list.hpp"
 #include "cncplan/core/frame.hpp"
+#include "cncplan/core/in_space.hpp"
 #include "cncplan/core/interval.hpp"
 #include "cncplan/core/jerk_phase.hpp"
 #include "cncplan/core/jet.hpp"

@@ -32,7 +32,8 @@ void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, doubl
   const plan::SmoothingRules<double> rules{tolerance, 1e-3, false};
   const auto whole = plan::smoothing(std::span(blocks), machine, rules);
   const auto ahead =
-      std::make_unique<plan::SmoothingAhead<M, ProgramBlock<M>, room, smooth::most_neighbours>>(rules);
+      std::make_unique<plan::SmoothingAhead<M, ProgramBlock<M>, room, smooth::most_neighbours>>(rules,
+                                                                                                machine);
   const auto tool = tool_axes(machine);
   std::size_t told = 0;
   const auto look = [&] {
@@ -84,7 +85,7 @@ TEST_CASE("blocks one by one are smoothed as the whole program is", "[executor]"
 TEST_CASE("a block is known once those are there that can act on it, or none will", "[executor]") {
   constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
   const auto blocks = test::blocks_of({"F600", "G1 X1", "Y1", "X2", "G4 P0.1", "Y2", "X3"}, mill);
-  plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> ahead({0.1, 1e-3, false});
+  plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> ahead({0.1, 1e-3, false}, mill);
   const auto after = [&](std::size_t i) {
     ahead.push(blocks[i], mill, blocks[i].path.length());
     return ahead.known();

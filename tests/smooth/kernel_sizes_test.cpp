@@ -11,29 +11,51 @@
 
 using namespace cncplan;
 using smooth::Jump;
-using smooth::Sizing;
+using Sizing = smooth::BasicSizing<double, 5>;
+using Vector = VectorN<double, 5>;
 
 namespace {
+
+// X Y Z, U and a rotary axis.
+const smooth::BasicAxisTolerances<double, 5> axes{
+    {0, 1, 2}, Vector{0, 0, 0, 1, 0}, Vector{0, 0, 0, 0, 1 / 1e-3}};
 
 std::string pasteable(const std::vector<Sizing>& all) {
   std::ostringstream text;
   text.precision(17);
   for (const Sizing& s : all)
-    text << "{.at = " << s.at << ", .jump = Jump(" << static_cast<int>(s.jump) << "), .wanted = " << s.wanted
-         << ", .room = " << s.room << ", .tool = " << s.tool << ", .others = " << s.others
-         << ", .tolerance = " << s.tolerance << "},\n";
+    text << "{.at = " << s.at << ", .jump = Jump(" << static_cast<int>(s.jump) << "), .step = Vector{"
+         << s.step[0] << ", " << s.step[1] << ", " << s.step[2] << ", " << s.step[3] << ", " << s.step[4]
+         << "}, .wanted = " << s.wanted << ", .room = " << s.room << ", .tolerance = " << s.tolerance
+         << ", .left = " << s.left << "},\n";
   return text.str();
 }
 
-// The most that all corrections together may deviate at a place: as if all steps had one direction.
-double deviation(const std::vector<Sizing>& all, double place, double tolerance) {
-  double sum = 0;
+// What corrections together deviate at a place over the tolerances there.
+double deviation(const std::vector<Sizing>& all, double place, double tolerance, double left) {
+  Vector sum = Vector::Zero();
   for (const Sizing& s : all) {
-    const double u = std::abs(place - s.at) / s.size;
-    const double scale = s.jump == Jump::direction ? s.size : s.size * s.size;
-    sum += scale * std::abs(smooth::kernel(s.jump, u)[0]) * std::max(s.tool / tolerance, s.others);
+    const double u = (place - s.at) / s.size;
+    const double scale = s.jump == Jump::direction ? s.size : (u < 0 ? -1 : 1) * s.size * s.size;
+    if (s.size > 0) sum += scale * smooth::kernel(s.jump, std::abs(u))[0] * s.step;
   }
-  return sum;
+  return std::max(
+      {sum.head<3>().norm() / tolerance, std::abs(sum[3]) / tolerance, std::abs(sum[4]) / (left * 1e-3)});
+}
+
+// The most that they deviate anywhere. Between two centres the lower tolerance of both holds, or more.
+double most_deviation(const std::vector<Sizing>& all) {
+  double most = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Sizing& here = all[i];
+    const Sizing& behind = all[std::min(i + 1, all.size() - 1)];
+    const double next = i + 1 < all.size() ? behind.at : here.at + 1;
+    for (int k = 0; k <= 20; ++k)
+      most = std::max(
+          most, deviation(all, here.at + (next - here.at) * k / 20,
+                          std::max(here.tolerance, behind.tolerance), std::max(here.left, behind.left)));
+  }
+  return most;
 }
 
 }  // namespace
@@ -65,11 +87,15 @@ TEST_CASE("wanted sizes take their share of the limits", "[smooth]") {
 }
 
 TEST_CASE("a lone kernel is as large as wanted, has room for, or may be", "[smooth]") {
-  const Sizing corner{
-      .at = 10, .jump = Jump::direction, .wanted = 1, .room = 10, .tool = 1.4, .tolerance = 0.01};
+  const Sizing corner{.at = 10,
+                      .jump = Jump::direction,
+                      .step = {0, 1.4, 0, 0, 0},
+                      .wanted = 1,
+                      .room = 10,
+                      .tolerance = 0.01};
   const auto fitted = [](Sizing sizing) {
     std::vector<Sizing> all{sizing};
-    smooth::fit_sizes(std::span(all));
+    smooth::fit_sizes(std::span(all), axes);
     return all[0].size;
   };
   CHECK(fitted(corner) == Approx(0.01 / (28.0 / 120 * 1.4)));
@@ -80,61 +106,103 @@ TEST_CASE("a lone kernel is as large as wanted, has room for, or may be", "[smoo
   other.room = 0.02;
   CHECK(fitted(other) == 0.01);
   other = corner;
-  other.others = 1000;
-  CHECK(fitted(other) == Approx(1 / (28.0 / 120 * 1000)));
+  other.step[3] = -2;  // an axis by itself is as far as the tool is
+  CHECK(fitted(other) == Approx(0.01 / (28.0 / 120 * 2)));
+  other = corner;
+  other.step[4] = 1;
+  CHECK(fitted(other) == Approx(1e-3 / (28.0 / 120)));
+  other.left = 0.5;
+  CHECK(fitted(other) == Approx(0.5e-3 / (28.0 / 120)));
   other = corner;
   other.jump = Jump::curvature;
   other.wanted = 2;
-  other.tool = 0.2;
+  other.step = {0.2, 0, 0, 0, 0};
   CHECK(fitted(other) == Approx(std::sqrt(0.005 / (0.0230487 * 0.2))));
 }
 
-TEST_CASE("kernels that overlap stay within the tolerance together", "[smooth]") {
+TEST_CASE("kernels that overlap stay within the tolerance together, and so do any of them", "[smooth]") {
   test::Random random;
-  double nearest = 0;
+  double nearest = 0, nearest_of_some = 0;
   for (int round = 0; round < 400; ++round) {
     std::vector<Sizing> all;
     double at = 0;
     const double spacing = random.log_uniform(0.01, 3), tolerance = random.log_uniform(1e-3, 0.1);
     const int count = random.integer(1, 60);
+    const auto direction = [&] {
+      return Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    };
+    const Vector3 common = direction();
+    const int turns = random.integer(0, 2);  // all one way, to and fro, anywhere
     for (int i = 0; i < count; ++i) {
       at += spacing * random.log_uniform(0.2, 5);
       const double here = tolerance * (random.coin() ? 1.0 : random.uniform(0.3, 1));
+      const double left = random.coin() ? 1.0 : random.uniform(0.3, 1);
       const auto add = [&](Jump kind) {
+        const Vector3 way = turns == 2                    ? direction()
+                            : turns == 1 && random.coin() ? Vector3(-common)
+                                                          : common;
+        Vector step = Vector::Zero();
+        step.head<3>() = random.log_uniform(1e-4, 2) * way;
+        if (random.coin()) step[3] = random.log_uniform(1e-3, 2) * (random.coin() ? 1 : -1);
+        if (random.coin()) step[4] = random.log_uniform(1e-4, 0.1) * (random.coin() ? 1 : -1);
         all.push_back({.at = at,
                        .jump = kind,
+                       .step = step,
                        .wanted = random.log_uniform(0.01, 10),
                        .room = 10 * spacing,
-                       .tool = random.log_uniform(1e-4, 2),
-                       .others = random.coin() ? 0.0 : random.log_uniform(1e-2, 100),
-                       .tolerance = here});
+                       .tolerance = here,
+                       .left = left});
       };
       const int kinds = random.integer(0, 2);
       if (kinds != 1) add(Jump::direction);
       if (kinds != 0) add(Jump::curvature);
     }
-    smooth::fit_sizes(std::span(all));
+    smooth::fit_sizes(std::span(all), axes);
     INFO(pasteable(all));
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      REQUIRE(all[i].size > 0);
-      REQUIRE(all[i].size <= all[i].wanted);
-      REQUIRE(all[i].size * smooth::reach<double>(all[i].jump) <= all[i].room * (1 + 1e-12));
-      // Between two centres the lower tolerance of both holds, or more.
-      const double next = i + 1 < all.size() ? all[i + 1].at : at + 1;
-      const double allowed = std::max(all[i].tolerance, i + 1 < all.size() ? all[i + 1].tolerance : 0.0);
-      for (int k = 0; k <= 20; ++k) {
-        const double used = deviation(all, all[i].at + (next - all[i].at) * k / 20, allowed);
-        REQUIRE(used <= 1 + 1e-9);
-        nearest = std::max(nearest, used);
-      }
+    for (const Sizing& own : all) {
+      REQUIRE(own.size > 0);
+      REQUIRE(own.size <= own.wanted);
+      REQUIRE(own.size * smooth::reach<double>(own.jump) <= own.room * (1 + 1e-12));
+    }
+    const double used = most_deviation(all);
+    REQUIRE(used <= 1 + 1e-9);
+    nearest = std::max(nearest, used);
+    // Where corners come to rest their kernels go; what is left has to be within the tolerance as well.
+    for (int choice = 0; choice < 8; ++choice) {
+      std::vector<Sizing> some = all;
+      for (Sizing& own : some)
+        if (choice < 4 ? random.coin() : own.step.head<3>().dot(common) < 0)
+          own.size *= choice % 2 == 0 ? 0 : random.uniform(0, 1);
+      const double left = most_deviation(some);
+      REQUIRE(left <= 1 + 1e-9);
+      if (turns == 1) nearest_of_some = std::max(nearest_of_some, left);
     }
   }
   CHECK(nearest > 0.99);
+  CHECK(nearest_of_some > 0.99);
+}
+
+TEST_CASE("kernels to and fro are as large as those one way are by themselves", "[smooth]") {
+  const auto size_of = [](int apart, double sign) {
+    std::vector<Sizing> all;
+    for (int i = 0; i < 101; i += apart)
+      all.push_back({.at = 0.1 * i,
+                     .jump = Jump::direction,
+                     .step = {0, i % 2 == 0 ? 0.1 : 0.1 * sign, 0, 0, 0},
+                     .wanted = 10,
+                     .room = 1.6,
+                     .tolerance = 0.01});
+    smooth::fit_sizes(std::span(all), axes);
+    return all[all.size() / 2].size;
+  };
+  CHECK(size_of(1, -1) == Approx(size_of(2, 1)).epsilon(1e-12));
+  CHECK(size_of(1, -1) > 1.8 * size_of(1, 1));
 }
 
 TEST_CASE("sizes are found without the heap", "[smooth]") {
   std::vector<Sizing> all(
-      100, Sizing{.jump = Jump::direction, .wanted = 1, .room = 5, .tool = 0.5, .tolerance = 0.01});
+      100,
+      Sizing{.jump = Jump::direction, .step = {0.5, 0, 0, 0, 0}, .wanted = 1, .room = 5, .tolerance = 0.01});
   for (std::size_t i = 0; i < all.size(); ++i) all[i].at = static_cast<double>(i) * 0.1;
-  CHECK(test::heap_allocations_of([&] { smooth::fit_sizes(std::span(all)); }) == 0);
+  CHECK(test::heap_allocations_of([&] { smooth::fit_sizes(std::span(all), axes); }) == 0);
 }

@@ -96,41 +96,46 @@ template <MachineModel M, BlockModel B>
 
 }  // namespace detail
 
-/// A jump of a derivative at a junction: what its correction has to keep to, and the jump.
-template <std::floating_point S, int N>
-struct BasicJump {
-  smooth::BasicSizing<S> sizing;
-  VectorN<S, N> step = VectorN<S, N>::Zero();
-};
-
-/// The jumps between two blocks that follow each other, of direction and of curvature; one that is only
-/// rounding is none. `at` is where the junction is, `speed` what both blocks allow.
-template <MachineModel M, BlockModel B>
-[[nodiscard]] FixedList<BasicJump<typename M::Scalar, M::axis_count>, 2> jumps_between(
-    const B& before, const B& behind, double at, typename M::Scalar speed, const M& machine,
-    const SmoothingRules<typename M::Scalar>& rules) {
+/// The tolerances of a machine's axes.
+template <MachineModel M>
+[[nodiscard]] smooth::BasicAxisTolerances<typename M::Scalar, M::axis_count> axis_tolerances(
+    const M& machine, const SmoothingRules<typename M::Scalar>& rules) {
   using S = typename M::Scalar;
+  smooth::BasicAxisTolerances<S, M::axis_count> tolerances{.tool = tool_axes(machine)};
+  const auto& tool = tolerances.tool;
+  for (int i = 0; i < M::axis_count; ++i) {
+    if (std::find(tool.begin(), tool.end(), i) != tool.end()) continue;
+    const bool rotary = machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
+    (rotary ? tolerances.per_angle : tolerances.linear)[i] = rotary ? S(1) / rules.rotary_tolerance : S(1);
+  }
+  return tolerances;
+}
+
+/// The jumps between two blocks that follow each other, of direction and of curvature, as far as that tells
+/// what their corrections have to keep to; one that is only rounding is none. `at` is where the junction is,
+/// `speed` what both blocks allow.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] FixedList<smooth::BasicSizing<typename M::Scalar, M::axis_count>, 2> jumps_between(
+    const B& before, const B& behind, double at, typename M::Scalar speed, const M& machine) {
+  using S = typename M::Scalar;
+  using Sizing = smooth::BasicSizing<S, M::axis_count>;
   constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();
   constexpr S smallest = S(1e-3);  // mm: what is only rounding has the size of what is next to it
   const auto tool = tool_axes(machine);
   const detail::Junction<M, B> junction(before, behind, tool);
-  FixedList<BasicJump<S, M::axis_count>, 2> jumps;
+  FixedList<Sizing, 2> jumps;
   const auto add = [&](smooth::Jump kind, const VectorN<S, M::axis_count>& step) {
     if (!(step.cwiseAbs().maxCoeff() > rounding)) return;
-    smooth::BasicSizing<S> sizing{.at = at, .jump = kind, .wanted = smallest};
+    Sizing sizing{.at = at, .jump = kind, .step = step, .wanted = smallest};
     const auto want = [&](S size, S acceleration, S jerk) {
       sizing.wanted = std::max(sizing.wanted, smooth::wanted_size(kind, size, speed, acceleration, jerk));
     };
-    sizing.tool = in_space(step, tool).norm();
-    want(sizing.tool, machine.limits.acceleration, machine.limits.jerk);
+    want(in_space(step, tool).norm(), machine.limits.acceleration, machine.limits.jerk);
     for (int i = 0; i < M::axis_count; ++i) {
       const auto& axis = machine.axes[static_cast<std::size_t>(i)];
       want(std::abs(step[i]), least_acceleration(axis), axis.jerk);
-      if (std::find(tool.begin(), tool.end(), i) != tool.end()) continue;
-      const S allowed = axis.kind == AxisKind::rotary ? rules.rotary_tolerance : rules.tolerance;
-      sizing.others = std::max(sizing.others, std::abs(step[i]) / allowed);
     }
-    jumps.push_back({sizing, step});
+    jumps.push_back(sizing);
   };
   add(smooth::Jump::direction, junction.direction);
   add(smooth::Jump::curvature, junction.curvature);
@@ -145,15 +150,14 @@ struct BasicBeside {
 };
 
 /// Whether coming to rest at a corner takes less time than going round it: at the speed u at which its kernel
-/// of length 4 w takes half of the jerk J, with a ramp down to that and one up again. On each side, from V to
-/// u at J a ramp loses sqrt((V - u) / J) (V - u) / V. V is what the block there has room for.
+/// of length 4 w takes two fifths of the jerk J, with a ramp down to that and one up again. On each side,
+/// from V to u at J a ramp loses sqrt((V - u) / J) (V - u) / V. V is what the block there has room for.
 template <std::floating_point S, int N>
-[[nodiscard]] bool faster_at_rest(const BasicJump<S, N>& jump, const BasicBeside<S>& before,
+[[nodiscard]] bool faster_at_rest(const smooth::BasicSizing<S, N>& sizing, const BasicBeside<S>& before,
                                   const BasicBeside<S>& behind) {
-  const smooth::BasicSizing<S>& sizing = jump.sizing;
   if (sizing.jump != smooth::Jump::direction || !(sizing.size < sizing.wanted)) return false;
   const S J = std::min(before.limits.jerk, behind.limits.jerk), w = sizing.size;
-  const S highest = std::cbrt(S(0.75) * J * w * w / jump.step.norm());
+  const S highest = std::cbrt(S(0.6) * J * w * w / sizing.step.norm());
   S rest = S(0), round = S(0);
   for (const auto& [length, limits] : {before, behind}) {
     const S V = std::min(limits.velocity, std::cbrt(J * length * length / S(4)));

@@ -53,7 +53,7 @@ class Smoother {
   using Result = BasicSmoothing<S, n>;
 
   Smoother(std::span<const B> blocks, const M& machine, const SmoothingRules<S>& rules)
-      : blocks_(blocks), machine_(machine), rules_(rules) {}
+      : blocks_(blocks), machine_(machine), rules_(rules), axes_(axis_tolerances(machine, rules)) {}
 
   [[nodiscard]] Result run() {
     result_.blocks.resize(blocks_.size());
@@ -92,10 +92,9 @@ class Smoother {
   void add_junction(std::size_t before, std::size_t behind) {
     const S speed = std::min(top_limits(blocks_[before], machine_).velocity,
                              top_limits(blocks_[behind], machine_).velocity);
-    for (const auto& jump : jumps_between(blocks_[before], blocks_[behind], result_.blocks[behind].start,
-                                          speed, machine_, rules_)) {
-      sizings_.push_back(jump.sizing);
-      steps_.push_back(jump.step);
+    for (const auto& jump :
+         jumps_between(blocks_[before], blocks_[behind], result_.blocks[behind].start, speed, machine_)) {
+      sizings_.push_back(jump);
       junctions_.push_back(moving_.size());
     }
   }
@@ -104,16 +103,15 @@ class Smoother {
   void finish(double end) {
     if (!sizings_.empty()) {
       set_rooms(end);
-      smooth::fit_sizes(std::span(sizings_));
+      smooth::fit_sizes(std::span(sizings_), axes_);
       for (std::size_t i = 0; i < sizings_.size(); ++i) {
         auto& behind = result_.blocks[moving_[junctions_[i]]];
         if (rests_at(i)) behind.passing = Passing::stop;
         if (behind.passing == Passing::stop) continue;  // jumps do no harm at rest
-        result_.corrections.push_back({sizings_[i].at, sizings_[i].size, sizings_[i].jump, steps_[i]});
+        result_.corrections.push_back({sizings_[i].at, sizings_[i].size, sizings_[i].jump, sizings_[i].step});
         reach_blocks(result_.corrections.size() - 1, junctions_[i]);
       }
       sizings_.clear();
-      steps_.clear();
       junctions_.clear();
     }
     moving_.clear();
@@ -148,8 +146,7 @@ class Smoother {
 
   [[nodiscard]] bool rests_at(std::size_t i) const {
     const std::size_t behind = junctions_[i];
-    return faster_at_rest(BasicJump<S, n>{sizings_[i], steps_[i]}, beside(moving_[behind - 1]),
-                          beside(moving_[behind]));
+    return faster_at_rest(sizings_[i], beside(moving_[behind - 1]), beside(moving_[behind]));
   }
 
   void reach_blocks(std::size_t correction, std::size_t junction) {
@@ -178,11 +175,11 @@ class Smoother {
   std::span<const B> blocks_;
   const M& machine_;
   SmoothingRules<S> rules_;
+  smooth::BasicAxisTolerances<S, n> axes_;
   Result result_;
   std::vector<std::size_t> moving_;  // of the part that is open: blocks that move, of a merged line the first
   std::size_t last_ = 0;             // block of it that moves
-  std::vector<smooth::BasicSizing<S>> sizings_;
-  std::vector<VectorN<S, n>> steps_;
+  std::vector<smooth::BasicSizing<S, n>> sizings_;
   std::vector<std::size_t> junctions_;  // of each, the block behind it among those that move
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/in_space.hpp"
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/plan/machine.hpp"
@@ -20,13 +21,6 @@ template <MachineModel M>
     for (int i = 0; i < M::axis_count; ++i)
       if (machine.axes[static_cast<std::size_t>(i)].letter == "XYZ"[k]) result[k] = i;
   return result;
-}
-
-/// X Y Z of the axes' positions, or of their derivatives.
-template <class V>
-[[nodiscard]] BasicVector3<typename V::Scalar> in_space(const V& axes, const std::array<int, 3>& tool) {
-  const auto along = [&](int axis) { return axis >= 0 ? axes[axis] : typename V::Scalar(0); };
-  return {along(tool[0]), along(tool[1]), along(tool[2])};
 }
 
 /// The tool's point and its derivatives by length: what a path says of it, else the axes X, Y and Z.

@@ -2,41 +2,43 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <utility>
 
+#include "cncplan/core/in_space.hpp"
+#include "cncplan/core/vector.hpp"
 #include "cncplan/smooth/kernel.hpp"
 
 namespace cncplan::smooth {
 
-/// What the size of one correction has to keep to, and the size. `tool` and `others` are sizes of its jump,
-/// per mm where curvature jumps.
-template <std::floating_point S>
+/// Which deviations count together, and which alone: that of the tool in space, and that of each axis beside
+/// it.
+template <std::floating_point S, int N>
+struct BasicAxisTolerances {
+  std::array<int, 3> tool{-1, -1, -1};              ///< as for `in_space`
+  VectorN<S, N> linear = VectorN<S, N>::Zero();     ///< 1 for an axis that has the tolerance of the tool
+  VectorN<S, N> per_angle = VectorN<S, N>::Zero();  ///< 1 / tolerance of a rotary axis, per rad
+};
+
+/// What the size of one correction has to keep to, and the size.
+template <std::floating_point S, int N>
 struct BasicSizing {
   double at{};  ///< mm, as in `BasicCorrection`
   Jump jump{};
-  S wanted{};     ///< mm: where the motion needs no larger one
-  S room{};       ///< mm on each side that it may reach
-  S tool{};       ///< length of the jump in space
-  S others{};     ///< largest jump of another axis, over the tolerance of that axis
-  S tolerance{};  ///< mm, > 0: how far the tool may leave the path here
-  S left = 1;     ///< share of the tolerances of other axes that there is here, > 0
-  S widest{};     ///< mm, of the kernel if it were alone; by `fit_sizes`
-  S sum{};        ///< what the widest kernels deviate here, over the tolerance; by `fit_sizes`
-  S size{};       ///< mm, by `fit_sizes`
-
-  /// What a kernel of this size deviates at its centre over the tolerances at a place.
-  [[nodiscard]] S deviation(S kernel_size, const BasicSizing& there) const {
-    return largest<S>(jump) * std::max(tool / there.tolerance, others / there.left) *
-           (jump == Jump::direction ? kernel_size : kernel_size * kernel_size);
-  }
+  VectorN<S, N> step = VectorN<S, N>::Zero();  ///< the jump, per mm where curvature jumps
+  S wanted{};                                  ///< mm: where the motion needs no larger one
+  S room{};                                    ///< mm on each side that it may reach
+  S tolerance{};                               ///< mm, > 0: how far the tool may leave the path here
+  S left = 1;  ///< share of the tolerances of rotary axes that there is here, > 0
+  S tool{};    ///< length of the jump in space; by `fit_sizes`
+  S widest{};  ///< mm, of the kernel if it were alone; by `fit_sizes`
+  S sum{};     ///< what the widest kernels may deviate here, over the tolerance; by `fit_sizes`
+  S size{};    ///< mm, by `fit_sizes`
 };
-
-using Sizing = BasicSizing<double>;
 
 /// Kernels reach over no more than so many junctions on each side: what bounds the work for one.
 inline constexpr std::size_t most_neighbours = 16;
@@ -64,69 +66,103 @@ template <std::floating_point S>
 
 namespace detail {
 
-/// What kernel i deviates at centre j or next to it, over the tolerance there. phi is convex on both sides of
-/// its centre, so a sum of them is largest at a centre; psi is counted with its largest value at every centre
-/// next to which it acts.
-template <std::floating_point S>
-[[nodiscard]] S deviation_at(std::span<const BasicSizing<S>> all, std::size_t i, std::size_t j) {
-  const BasicSizing<S>& own = all[i];
-  const S size = own.widest;
+/// The tolerances that the larger of two bounds takes at a place: of deviations that add up, and of their
+/// lengths that do.
+template <std::floating_point S, int N>
+[[nodiscard]] S share_of(const VectorN<S, N>& sum, S lengths, const VectorN<S, N>& sizes,
+                         const BasicSizing<S, N>& there, const BasicAxisTolerances<S, N>& axes) {
+  const S tool = (in_space(sum, axes.tool).norm() + lengths) / S(2);
+  const VectorN<S, N> others = (sum.cwiseAbs() + sizes) / S(2);
+  const S linear = others.cwiseProduct(axes.linear).maxCoeff();
+  const S rotary = others.cwiseProduct(axes.per_angle).maxCoeff();
+  return std::max(std::max(tool, linear) / there.tolerance, rotary / there.left);
+}
+
+/// How far the widest kernel i may reach at centre j or next to it, as a share of its own size; where it does
+/// not, `reach`. A curvature's kernel counts at every centre next to which it acts.
+template <std::floating_point S, int N>
+[[nodiscard]] S distance_at(std::span<const BasicSizing<S, N>> all, std::size_t i, std::size_t j) {
+  const BasicSizing<S, N>& own = all[i];
   double place = all[j].at;
   if (own.jump == Jump::curvature)
     for (std::size_t k = j; k != i && place == all[j].at;) place = all[k < i ? ++k : --k].at;
-  const S x = static_cast<S>(std::abs(own.at - place));
-  if (!(x < size * reach<S>(own.jump))) return S(0);
-  const S most = own.deviation(size, all[j]);
-  if (own.jump == Jump::curvature) return most;
-  return most * kernel(Jump::direction, x / size)[0] / largest<S>(Jump::direction);
+  return std::min(static_cast<S>(std::abs(own.at - place)) / own.widest, reach<S>(own.jump));
 }
 
 }  // namespace detail
 
 /// The first of three steps to a size: that of the kernel alone, as large as wanted, as there is room for,
 /// and as the tolerance allows.
-template <std::floating_point S>
-void set_widest(BasicSizing<S>& own) {
-  const S share = own.deviation(S(1), own);
+template <std::floating_point S, int N>
+void set_widest(BasicSizing<S, N>& own, const BasicAxisTolerances<S, N>& axes) {
+  own.tool = in_space(own.step, axes.tool).norm();
+  const S share =
+      largest<S>(own.jump) * detail::share_of<S, N>(own.step, own.tool, own.step.cwiseAbs(), own, axes);
   // A curvature's correction leaves half of the tolerance to those of directions.
   const S most = own.jump == Jump::direction ? S(1) / share : std::sqrt(S(0.5) / share);
   own.widest = own.size = std::min({own.wanted, most, own.room / reach<S>(own.jump)});
 }
 
-/// The second: the sum of what the widest kernels of `all` deviate at number j of them, over the tolerance.
-template <std::floating_point S>
-[[nodiscard]] S deviation_sum(std::span<const BasicSizing<S>> all, std::size_t j) {
-  S sum = S(0);
-  for (std::size_t i = 0; i < all.size(); ++i) sum += detail::deviation_at(all, i, j);
-  return sum;
+/// The second: what any choice of kernels of `all`, up to the widest of each, may deviate at number j of
+/// them or next to it, over the tolerance.
+///
+/// A kernel phi of a direction only adds, so with c_i where the widest is, each deviates by part of c_i e_i,
+/// e_i being the direction of its jump. Their sum along a direction u is at most
+///
+///     sum c_i max(0, u e_i)  <=  (|sum c_i e_i| + sum c_i) / 2,
+///
+/// and for each u convex between two centres, as phi is on both sides of its own: largest at a centre. psi of
+/// a curvature is negative before its centre; it counts with its largest value at every centre next to which
+/// it acts, at its own with both signs.
+template <std::floating_point S, int N>
+[[nodiscard]] S deviation_sum(std::span<const BasicSizing<S, N>> all, std::size_t j,
+                              const BasicAxisTolerances<S, N>& axes) {
+  VectorN<S, N> sum = VectorN<S, N>::Zero(), sizes = sum;
+  S lengths = S(0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const BasicSizing<S, N>& own = all[i];
+    const S u = detail::distance_at(all, i, j);
+    if (!(u < reach<S>(own.jump))) continue;
+    S deviates = own.jump == Jump::direction ? own.widest * kernel(own.jump, u)[0]
+                                             : own.widest * own.widest * largest<S>(own.jump);
+    if (own.jump == Jump::direction || own.at < all[j].at)
+      sum += deviates * own.step;
+    else if (own.at > all[j].at)
+      sum -= deviates * own.step;
+    else
+      deviates *= S(2);  // on both sides
+    sizes += deviates * own.step.cwiseAbs();
+    lengths += deviates * own.tool;
+  }
+  return detail::share_of(sum, lengths, sizes, all[j], axes);
 }
 
 /// The third: the size of number i of `all`. One pass is enough: where the deviations add up to D > 1
 /// tolerances, kernels made smaller by D deviate less by D at least.
-template <std::floating_point S>
-[[nodiscard]] S fitted_size(std::span<const BasicSizing<S>> all, std::size_t i) {
+template <std::floating_point S, int N>
+[[nodiscard]] S fitted_size(std::span<const BasicSizing<S, N>> all, std::size_t i) {
   S size = all[i].size;
   for (std::size_t j = 0; j < all.size(); ++j)
-    if (all[j].sum > S(1) && detail::deviation_at(all, i, j) > S(0))
+    if (all[j].sum > S(1) && detail::distance_at(all, i, j) < reach<S>(all[i].jump))
       size = std::min(size, all[i].widest / all[j].sum);
   return size;
 }
 
 /// Finds the sizes for corrections in order of their places, at most two at one: as large as wanted, as there
 /// is room for, and as the tolerance allows where kernels overlap.
-template <std::floating_point S>
-void fit_sizes(std::span<BasicSizing<S>> all) {
+template <std::floating_point S, int N>
+void fit_sizes(std::span<BasicSizing<S, N>> all, const BasicAxisTolerances<S, N>& axes) {
   constexpr std::size_t window = 2 * most_neighbours + 1;
   const auto around = [&](std::size_t j) {
     const std::size_t first = j > window ? j - window : 0;
     return std::pair(
-        std::span<const BasicSizing<S>>(all).subspan(first, std::min(j + window + 1, all.size()) - first),
+        std::span<const BasicSizing<S, N>>(all).subspan(first, std::min(j + window + 1, all.size()) - first),
         j - first);
   };
-  for (BasicSizing<S>& own : all) set_widest(own);
+  for (BasicSizing<S, N>& own : all) set_widest(own, axes);
   for (std::size_t j = 0; j < all.size(); ++j) {
     const auto [near, at] = around(j);
-    all[j].sum = deviation_sum(near, at);
+    all[j].sum = deviation_sum(near, at, axes);
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [near, at] = around(i);

@@ -63,7 +63,7 @@ class CellFeed {
         tool_(tool_axes(machine)),
         maker_(machine, rules, true),
         merger_(machine_, smoothing, merged_lines_for(room)),
-        smoothing_(smoothing) {
+        smoothing_(smoothing, machine_) {
     if (const auto ok = validate(machine); !ok) fail({ok.error(), 0, 0, {}});
   }
 

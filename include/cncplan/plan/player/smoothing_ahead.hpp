@@ -34,7 +34,8 @@ class SmoothingAhead {
   static constexpr bool possible = EnclosedPath<typename B::Path> && !MappedModel<M>;
 
   /// A tolerance of 0: every path is kept exactly.
-  explicit SmoothingAhead(const Rules& rules) : rules_(rules) {}
+  SmoothingAhead(const Rules& rules, const M& machine)
+      : rules_(rules), axes_(axis_tolerances(machine, rules)) {}
 
   [[nodiscard]] const Rules& rules() const { return rules_; }
   [[nodiscard]] bool smooths() const { return possible && rules_.tolerance > Scalar(0); }
@@ -85,6 +86,7 @@ class SmoothingAhead {
   static constexpr std::int64_t most_corrections = 2 * (room + neighbours + 1);
 
   using Correction = smooth::BasicCorrection<Scalar, n>;
+  using Sizing = smooth::BasicSizing<Scalar, n>;
 
   struct OfBlock {
     std::int64_t first{};  // of the corrections
@@ -144,10 +146,9 @@ class SmoothingAhead {
 
   void add_junction(Mover& own, const B& block, const M& machine) {
     const Scalar speed = std::min(mover(end_ - 1).beside.limits.velocity, own.beside.limits.velocity);
-    for (const auto& jump : jumps_between(*last_, block, place_, speed, machine, rules_)) {
+    for (const auto& jump : jumps_between(*last_, block, place_, speed, machine)) {
       if (sizings_end_ == most_sizings) own.sizing = make_room();
-      sizings_[sizings_end_] = jump.sizing;
-      steps_[sizings_end_++] = jump.step;
+      sizings_[sizings_end_++] = jump;
       ++own.sizing_count;
     }
   }
@@ -156,7 +157,6 @@ class SmoothingAhead {
     const std::int64_t oldest = std::max(begin_, sized_ - reach - 1);
     const std::size_t by = mover(oldest).sizing;
     std::move(sizings_.begin() + static_cast<std::ptrdiff_t>(by), sizings_.end(), sizings_.begin());
-    std::move(steps_.begin() + static_cast<std::ptrdiff_t>(by), steps_.end(), steps_.begin());
     for (std::int64_t i = oldest; i <= end_; ++i) mover(i).sizing -= by;
     sizings_end_ -= by;
     return mover(end_).sizing;
@@ -167,8 +167,8 @@ class SmoothingAhead {
     const auto up_to = [&](std::int64_t known, std::int64_t ahead) { return ended ? end_ : known - ahead; };
     for (; widest_ < up_to(end_, reach); ++widest_) find_widest(widest_);
     for (; summed_ < up_to(widest_, reach + 1); ++summed_)
-      for_each_sizing(summed_, [](auto& sizing, auto near, std::size_t at) {
-        sizing.sum = smooth::deviation_sum(near, at);
+      for_each_sizing(summed_, [this](auto& sizing, auto near, std::size_t at) {
+        sizing.sum = smooth::deviation_sum(near, at, axes_);
       });
     for (; sized_ < up_to(summed_, reach + 1); ++sized_) {
       for_each_sizing(sized_, [](auto& sizing, auto near, std::size_t at) {
@@ -185,8 +185,8 @@ class SmoothingAhead {
     const Mover& own = mover(at);
     const std::size_t first = mover(std::max(at - reach - 1, begin_)).sizing;
     const Mover& last = mover(std::min(at + reach + 1, end_ - 1));
-    const auto near = std::span<const smooth::BasicSizing<Scalar>>(sizings_).subspan(
-        first, last.sizing + last.sizing_count - first);
+    const auto near =
+        std::span<const Sizing>(sizings_).subspan(first, last.sizing + last.sizing_count - first);
     for (std::size_t k = own.sizing; k < own.sizing + own.sizing_count; ++k)
       visit(sizings_[k], near, k - first);
   }
@@ -211,7 +211,7 @@ class SmoothingAhead {
       sizing.room = static_cast<Scalar>(std::min(sizing.at - mover(left).own.start, end - sizing.at));
       sizing.tolerance = tolerance;
       sizing.left = left_over;
-      smooth::set_widest(sizing);
+      smooth::set_widest(sizing, axes_);
     }
   }
 
@@ -220,10 +220,9 @@ class SmoothingAhead {
     Mover& own = mover(at);
     for (std::size_t k = own.sizing; k < own.sizing + own.sizing_count; ++k) {
       const auto& sizing = sizings_[k];
-      if (faster_at_rest(BasicJump<Scalar, n>{sizing, steps_[k]}, mover(at - 1).beside, own.beside))
-        own.own.passing = Passing::stop;
+      if (faster_at_rest(sizing, mover(at - 1).beside, own.beside)) own.own.passing = Passing::stop;
       if (own.own.passing == Passing::stop) continue;  // jumps do no harm at rest
-      const Correction correction{sizing.at, sizing.size, sizing.jump, steps_[k]};
+      const Correction correction{sizing.at, sizing.size, sizing.jump, sizing.step};
       // Twice, so that any of them that follow each other stand side by side.
       const auto slot = static_cast<std::size_t>(corrected_ % most_corrections);
       corrections_[slot] = corrections_[slot + static_cast<std::size_t>(most_corrections)] = correction;
@@ -250,6 +249,7 @@ class SmoothingAhead {
   }
 
   Rules rules_;
+  smooth::BasicAxisTolerances<Scalar, n> axes_;
   const B* last_ = nullptr;  // that moves
   bool rests_ = true;        // behind it
   double place_ = 0;         // mm from the start of the part to its end so far
@@ -259,8 +259,7 @@ class SmoothingAhead {
   std::int64_t corrected_ = 0;
   std::array<Mover, most_movers> movers_{};
   std::size_t sizings_end_ = 0;
-  std::array<smooth::BasicSizing<Scalar>, most_sizings> sizings_{};
-  std::array<VectorN<Scalar, n>, most_sizings> steps_{};
+  std::array<Sizing, most_sizings> sizings_{};
   std::array<OfBlock, room> of_blocks_{};
   std::array<Correction, 2 * static_cast<std::size_t>(most_corrections)> corrections_{};
 };
