@@ -66,8 +66,8 @@ template <std::floating_point S>
 
 namespace detail {
 
-/// The tolerances that the larger of two bounds takes at a place: of deviations that add up, and of their
-/// lengths that do.
+/// The largest share of the tolerances at a place that deviations may take, by half of their sum and half of
+/// what they add up to by size: `lengths` of the tool, `sizes` axis by axis.
 template <std::floating_point S, int N>
 [[nodiscard]] S share_of(const VectorN<S, N>& sum, S lengths, const VectorN<S, N>& sizes,
                          const BasicSizing<S, N>& there, const BasicAxisTolerances<S, N>& axes) {
@@ -78,8 +78,8 @@ template <std::floating_point S, int N>
   return std::max(std::max(tool, linear) / there.tolerance, rotary / there.left);
 }
 
-/// How far the widest kernel i may reach at centre j or next to it, as a share of its own size; where it does
-/// not, `reach`. A curvature's kernel counts at every centre next to which it acts.
+/// How far centre j is from that of kernel i, in units of its widest size; no more than it reaches. A
+/// curvature's kernel counts at every centre next to which it acts: there the place next to j counts.
 template <std::floating_point S, int N>
 [[nodiscard]] S distance_at(std::span<const BasicSizing<S, N>> all, std::size_t i, std::size_t j) {
   const BasicSizing<S, N>& own = all[i];
