@@ -12,6 +12,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/core/in_space.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/smooth/correction.hpp"
 
@@ -228,10 +229,7 @@ class Smoothed {
   static Scalar radius(const Interval& range) { return (range.high - range.low) / Scalar(2); }
 
   [[nodiscard]] BasicVector3<Scalar> in_space(const Vector& axes) const {
-    BasicVector3<Scalar> result = BasicVector3<Scalar>::Zero();
-    for (int k = 0; k < 3; ++k)
-      if (const int axis = tool_[static_cast<std::size_t>(k)]; axis >= 0) result[k] = axes[axis];
-    return result;
+    return cncplan::in_space(axes, tool_);
   }
 
   // In the frame of r' in the middle, from which the direction of r' elsewhere differs by an angle whose sine
