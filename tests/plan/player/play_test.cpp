@@ -73,6 +73,8 @@ TEST_CASE("programs of others are played in the time that is planned", "[player]
     CAPTURE(name);
     std::ifstream file(*shared + "/data/" + name);
     const auto [planned, played] = durations(first_lines(file, 700), 0.01);
-    CHECK(played == Approx(planned).epsilon(1e-3));
+    CHECK(played < planned * (1 + 1e-3));
+    // The last way down may begin where the plan has no waypoint, and go past a steady one of the plan.
+    CHECK(played > planned * (1 - 2e-3));
   }
 }
