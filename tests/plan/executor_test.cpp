@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "cncplan/plan/live_steps.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
@@ -26,6 +28,7 @@ void check(const test::ExecutorFaults& faults, double relative) {
   CHECK(faults.place <= 0);
   CHECK(faults.dwell <= 0);
   CHECK(faults.end < relative);
+  CHECK(faults.parts <= LiveSteps<Executor<Machine<3>, 4>>::most_parts);
   CHECK_FALSE(faults.words_wrong);
   CHECK_FALSE(faults.failed);
   CHECK(faults.finished);
@@ -78,6 +81,30 @@ TEST_CASE("random requests break no limit on curves of one's own", "[executor]")
     const auto blocks = test::random_waves(random, random.integer(1, 12));
     CAPTURE(sequence);
     check(test::run<8>(slow_axes<double>, blocks, random, {random.integer(1, 50), 1000, 1e-3, 1e-12}), 1e-9);
+  }
+}
+
+TEST_CASE("blocks too short to be measured take no time and no more parts of a tick", "[executor]") {
+  test::Random random;
+  for (int sequence = 0; sequence < 200; ++sequence) {
+    std::vector<std::string> lines{"G1 F1200"};
+    char text[100];
+    for (int i = 0; i < random.integer(1, 6); ++i) {
+      std::snprintf(text, sizeof text, "X-%.3f Y0", random.log_uniform(0.01, 5));
+      lines.emplace_back(text);
+      lines.emplace_back("X0");
+      for (int tiny = 0; tiny < random.integer(0, 3); ++tiny) {
+        std::snprintf(text, sizeof text, "X%.40f", random.log_uniform(1e-38, 1e-7));
+        lines.emplace_back(text);
+        const std::array between{"", "", "", "", "M8", "G4 P0.01", "G61", "G64"};
+        lines.emplace_back(between[static_cast<std::size_t>(random.integer(0, 7))]);
+      }
+      std::snprintf(text, sizeof text, "X%.3f Y%.3f", random.log_uniform(0.01, 5), random.uniform(-1, 1));
+      lines.emplace_back(text);
+    }
+    const auto blocks = test::blocks_of(lines, slow_axes<double>);
+    CAPTURE(sequence, test::literal(lines));
+    check(test::run<16>(slow_axes<double>, blocks, random, {random.integer(1, 100), 500, 1e-3, 1e-12}), 1e-9);
   }
 }
 

@@ -102,7 +102,8 @@ int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count, int most_
                       Worst{"change of acceleration (relative)", &Faults::change, std::max(relative, 1e-6)},
                       Worst{"place (mm)", &Faults::place, 0},
                       Worst{"dwells (s)", &Faults::dwell, 0},
-                      Worst{"end (mm)", &Faults::end, relative}};
+                      Worst{"end (mm)", &Faults::end, relative},
+                      Worst{"parts of a tick", &Faults::parts, 64}};
   };
   auto all = table(1e-9), all_float = table(1e-3), all_smoothed = table(1e-9),
        all_smoothed_float = table(1e-3);

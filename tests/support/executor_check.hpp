@@ -29,6 +29,7 @@ struct ExecutorFaults {
   double place{};   ///< mm or rad, distance from the block that the set point names
   double dwell{};   ///< s that a dwell was too short; where nothing was asked, too long
   double end{};     ///< mm or rad from the end of the last block
+  double parts{};   ///< the most that a tick was made of
   bool words_wrong{};
   bool finished{};
   bool failed{};
@@ -256,7 +257,9 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
         ask(executor, random, lines);
       }
       if (fed == 0) continue;
-      last = executor.tick(static_cast<S>(how.period));
+      double parts = 0;
+      last = executor.tick(static_cast<S>(how.period), [&](const auto&) { ++parts; });
+      check.faults.parts = std::max(check.faults.parts, parts);
       check.take(last);
       if (!executor.finished()) continue;
       check.faults.finished = true;
@@ -291,7 +294,7 @@ ExecutorFaults run(const M& machine, const std::vector<B>& blocks, Random& rando
   second.ticks += faults.ticks, second.requests += faults.requests;
   for (const auto member :
        {&ExecutorFaults::velocity, &ExecutorFaults::acceleration, &ExecutorFaults::jerk, &ExecutorFaults::way,
-        &ExecutorFaults::rate, &ExecutorFaults::change, &ExecutorFaults::place})
+        &ExecutorFaults::rate, &ExecutorFaults::change, &ExecutorFaults::place, &ExecutorFaults::parts})
     second.*member = std::max(second.*member, faults.*member);
   second.anew = true;
   second.failed = second.failed || faults.failed;

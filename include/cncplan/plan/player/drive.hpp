@@ -42,19 +42,25 @@ template <std::floating_point S, class Visit>
 void drive(const BasicPathAhead<S>& path, BasicPlace<S>& start, BasicRunningProfile<S>& running, S seconds,
            S passed, Visit& visit) {
   const BlockRing<S>& ring = path.ring;
+  // Along a long path neither a place nor an instant lies in so short a block, and at the end of what is over
+  // the time to there is what rounding makes of it: a tick would take billions of such parts.
+  constexpr S shortest = path_rounding<S> / S(16);
+  const auto too_short = [&](const BasicPlace<S>& at) {
+    return ring.holds(at.block) && ring.length(at.block) - at.along <= shortest;
+  };
   while (seconds > S(0)) {
     const BasicState<S> now = running.state();
-    const BasicPlace<S> at = path.snapped(locate(path, start, running, now.position));
+    BasicPlace<S> at = path.snapped(locate(path, start, running, now.position));
+    while (ring.holds(at.block + path.direction) && too_short(at)) at = {at.block + path.direction, S(0)};
     const S edge = running.to_edge();
     BasicPlayedPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
                              now.acceleration, now.jerk},
                             at.block,
                             at.along,
                             path.direction};
-    if (ring.holds(at.block + path.direction) && ring.holds(at.block)) {
-      const S until = part.phase.tau_at(ring.length(at.block) - at.along);
-      if (until > S(0)) part.phase.duration = std::min(part.phase.duration, until);
-    }
+    if (ring.holds(at.block + path.direction) && ring.holds(at.block))
+      if (const S until = part.phase.tau_at(ring.length(at.block) - at.along); until > S(0))
+        part.phase.duration = std::min(part.phase.duration, until);
     if (ring.holds(at.block)) {
       if (path.direction < 0) part.along = ring.length(at.block) - at.along;
       visit(std::as_const(part));
