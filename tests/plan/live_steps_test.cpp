@@ -52,7 +52,8 @@ double between(const SetPoint<3>& a, const SetPoint<3>& b, int axis, double peri
 TEST_CASE("edges of an executor are those of the plan of the whole", "[live]") {
   test::Random random;
   const auto machine = stepped();
-  for (int sequence = 0; sequence < 10; ++sequence) {
+  int the_same = 0;
+  for (int sequence = 0; sequence < 20; ++sequence) {
     const auto lines = test::random_lines(random, random.integer(1, 20), {0, 0, 0}, 20, "");
     const auto blocks = test::blocks_of(lines, machine);
     CAPTURE(sequence, test::literal(lines));
@@ -63,20 +64,28 @@ TEST_CASE("edges of an executor are those of the plan of the whole", "[live]") {
     const auto executor = loaded(machine, blocks, 0);
     LiveSteps steps(*executor);
     REQUIRE(steps.motor_count() == 4);
+    double end = 0.0;
     while (!executor->finished()) {
-      steps.tick(1e-3);
+      end = steps.tick(1e-3).time;
       while (const auto edge = steps.next()) found[edge->motor].push_back(*edge);
     }
+    // The ways that an executor finds anew from where it is can be others: there are no times to compare
+    // then.
+    end -= executor->rested();
+    CHECK(end == Approx(planned->duration()).epsilon(0.06));
+    const bool same = std::abs(end - planned->duration()) < 1e-9;
+    the_same += same ? 1 : 0;
     for (std::size_t motor = 0; motor < 4; ++motor) {
       CAPTURE(motor);
       REQUIRE(found[motor].size() == expected[motor].size());
       for (std::size_t i = 0; i < found[motor].size(); ++i) {
         CHECK(found[motor][i].direction == expected[motor][i].direction);
         CHECK(found[motor][i].axis == expected[motor][i].axis);
-        CHECK(found[motor][i].time == Approx(expected[motor][i].time).margin(2e-6));
+        if (same) CHECK(found[motor][i].time == Approx(expected[motor][i].time).margin(2e-6));
       }
     }
   }
+  CHECK(the_same >= 15);
 }
 
 TEST_CASE("edges come where the axes pass their boundaries, whatever is asked", "[live]") {
