@@ -42,8 +42,8 @@ template <std::floating_point S, class Visit>
 void drive(const BasicPathAhead<S>& path, BasicPlace<S>& start, BasicRunningProfile<S>& running, S seconds,
            S passed, Visit& visit) {
   const BlockRing<S>& ring = path.ring;
-  // Along a long path neither a place nor an instant lies in so short a block, and at the end of what is over
-  // the time to there is what rounding makes of it: a tick would take billions of such parts.
+  // Rounding hides so short a rest of a block: no place along a long path lies in it, and the time to its end
+  // is noise. With parts of their own for such blocks, a tick could have billions.
   constexpr S shortest = path_rounding<S> / S(16);
   const auto too_short = [&](const BasicPlace<S>& at) {
     return ring.holds(at.block) && ring.length(at.block) - at.along <= shortest;
