@@ -81,7 +81,14 @@ TEST_CASE("edges of an executor are those of the plan of the whole", "[live]") {
       for (std::size_t i = 0; i < found[motor].size(); ++i) {
         CHECK(found[motor][i].direction == expected[motor][i].direction);
         CHECK(found[motor][i].axis == expected[motor][i].axis);
-        if (same) CHECK(found[motor][i].time == Approx(expected[motor][i].time).margin(2e-6));
+        if (!same) continue;
+        // The first edge behind a reversal waits for the hysteresis, or for the end of a piece, and the
+        // pieces of an executor are not those of the plan: what is late is so by no more than that way.
+        const double late = found[motor][i].time - expected[motor][i].time;
+        const int axis = expected[motor][i].axis;
+        const double way = planned->at(found[motor][i].time).position[axis] -
+                           planned->at(expected[motor][i].time).position[axis];
+        CHECK((std::abs(late) < 2e-6 || std::abs(way) * steps_per_unit[motor] < 1e-4 + 1e-6));
       }
     }
   }
