@@ -158,12 +158,20 @@ template <std::floating_point S, int N>
     }
     std::size_t end = k;
     while (end < inner && levels[end - 1] > S(0)) ++end;
+    bool again = false;
     for (std::size_t first = k; first < end;) {
-      const std::size_t last = std::min(first + most, end);
+      const std::size_t last = std::min(first + (again ? most - most / 4 : most), end);
       const auto result = optimise(problem, law, first, last, options.window, memory.window);
       plan.rounds += result.rounds;
       plan.windows += 1;
+      // Between other ends it may find its way.
+      if (!result.converged && !again) {
+        again = true;
+        first -= std::min(first - k, most / 8);
+        continue;
+      }
       plan.unconverged += result.converged ? 0 : 1;
+      again = false;
       if (last == end) break;
       first += most / 2;
     }
