@@ -37,6 +37,8 @@ struct Example {
       cell.length = length(i + 2);
       cell.weights =
           cubic_weights<double>({length(i), length(i + 1), length(i + 2), length(i + 3), length(i + 4)});
+      cell.third = Vector3(0.3, -1, 2);
+      cell.price = 0.1;
       cell.first_sample = samples.size();
       for (const double share : {0.0, 0.5}) {
         BasicBandSample<double, 3> sample;
@@ -53,7 +55,7 @@ struct Example {
     cells.emplace_back().first_sample = samples.size();
     limits.tool = {30, 1000, 1e5};
     limits.axes[1] = {4.5, 400, 8e4};
-    curve = {cells, samples, Vector3::Ones(), 0};
+    curve = {cells, samples, Vector3(1, 0.5, 2), 0};
     problem = {&curve, feeds, skews, &limits};
   }
 };

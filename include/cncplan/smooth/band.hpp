@@ -130,13 +130,14 @@ class Band {
   /// the Newton steps.
   int improve(std::span<const S> speeds_sq, std::span<const S> skews,
               const BasicMotionLimits<S, axis_count>& limits, const BasicJointOptions<S>& solver) {
-    constexpr S slow = S(0.9);
+    constexpr S slow = S(0.97), price = S(0.05);  // of a jerk as large as the limit
     const std::size_t cells = cell_count();
     std::vector<S> feeds(cells), speeds(points_.size(), S(0));
     std::vector<char> moves(points_.size(), 0);
     for (std::size_t cell = 0; cell < cells; ++cell) {
       feeds[cell] = feed(cell);
       speeds[cell + 1] = speeds_sq[cell];
+      cells_[cell].price = price * speeds_sq[cell] * speeds_sq[cell] * speeds_sq[cell];
       if (speeds_sq[cell] < slow * feeds[cell] * feeds[cell])
         for (std::size_t k = cell >= reach_ ? cell - reach_ : 0;
              k < std::min(cell + 4 + reach_, moves.size()); ++k)

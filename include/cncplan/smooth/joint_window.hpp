@@ -21,7 +21,9 @@ struct BasicJointOptions {
 };
 
 /// A curve in its tube and a speed along it. Cell k hangs on control points k to k + 3 and on coefficients of
-/// speed k to k + 2, the middle one its own.
+/// speed k to k + 2, the middle one its own. The prices that the cells have of q''' belong to the barrier and
+/// vanish with it. The tube leaves a curve room to go to and fro along itself with a speed that makes up for
+/// it, which costs a law of b nothing; phases of constant jerk cannot follow it.
 template <std::floating_point S, int N>
 struct BasicJointProblem {
   const BasicBandProblem<S, N>* curve{};
@@ -145,6 +147,7 @@ class JointWindow {
   JointWindow(const BasicJointProblem<S, N>& problem, std::size_t first, std::size_t count,
               std::span<JointPlace<S>> places)
       : curve_(*problem.curve),
+        jerk_sq_(curve_.jerk_scale.cwiseAbs2()),
         feeds_(problem.feeds),
         first_(first - 3),
         last_(std::min(first + count, curve_.cell_count() - 1)),
@@ -184,7 +187,7 @@ class JointWindow {
   /// Of control points and their speeds from the first cell's on; infinite where a limit is not kept.
   [[nodiscard]] BasicLawCost<S> cost(std::span<const Both> at) const {
     constexpr S none = std::numeric_limits<S>::infinity();
-    S time{};
+    S time{}, bends{};
     BasicBarrier<S> barrier;
     for (std::size_t cell = first_; cell < last_; ++cell) {
       const Both* four = &at[cell - first_];
@@ -209,8 +212,9 @@ class JointWindow {
         barrier.settle();
       }
       if (!barrier.kept()) return {none, none};
+      bends += curve_.cells[cell].price * more_bend(cell, four).cwiseAbs2().dot(jerk_sq_);
     }
-    return {time, barrier.sum()};
+    return {time, barrier.sum() + bends};
   }
 
   /// The derivatives of time + weight * barrier in a cell.
@@ -267,6 +271,10 @@ class JointWindow {
       bend.diagonal().template head<N>() += once * scale_sq;
       model.add_position(sample.weights, once * scaled, bend);
     }
+    const Vector stiff = (S(2) * weight * curve_.cells[cell].price) * jerk_sq_;
+    typename JointModel<S, N>::Matrix stiffness = JointModel<S, N>::Matrix::Zero();
+    stiffness.diagonal().template head<N>() = stiff;
+    model.add_position(curve_.cells[cell].weights[3], more_bend(cell, four).cwiseProduct(stiff), stiffness);
     return model;
   }
 
@@ -302,6 +310,13 @@ class JointWindow {
     const std::size_t from = curve_.cells[cell].first_sample;
     return curve_.samples.subspan(from, curve_.cells[cell + 1].first_sample - from);
   }
+  // What q''' is more than the programmed path's.
+  [[nodiscard]] Vector more_bend(std::size_t cell, const Both* four) const {
+    Vector third = -curve_.cells[cell].third;
+    for (std::size_t q = 0; q < 4; ++q)
+      third += curve_.cells[cell].weights[3][q] * four[q].template head<N>();
+    return third;
+  }
   [[nodiscard]] static Vector off(const BasicBandSample<S, N>& sample, const Both* four) {
     Vector result = -sample.target;
     for (std::size_t q = 0; q < 4; ++q) result += sample.weights[q] * four[q].template head<N>();
@@ -309,6 +324,7 @@ class JointWindow {
   }
 
   const BasicBandProblem<S, N>& curve_;
+  Vector jerk_sq_;
   std::span<const S> feeds_;
   std::size_t first_, last_;
   std::span<JointPlace<S>> places_;

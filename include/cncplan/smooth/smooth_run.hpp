@@ -38,12 +38,12 @@ struct BasicPiecePhase {
 template <std::floating_point S>
 struct BasicSmoothOptions {
   int passes = 1;          ///< of geometry, each after one of speed
-  int joint_rounds = 4;    ///< the most of geometry and speed together
-  S joint_gain = S(5e-3);  ///< of the time that is lost to the feeds, by a round, for which there is another
+  int joint_rounds = 2;    ///< of geometry and speed together
+  S joint_loss = S(0.03);  ///< of the time that is lost to the feeds: a round that costs more is taken back
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
-  std::size_t speed_window = 400;  ///< coefficients of speed that move at once, at least 150
+  std::size_t speed_window = 400;  ///< coefficients of speed that move at once, at least 200
   std::size_t band_window = 300;   ///< control points that move at once, at least 150
 };
 
@@ -260,11 +260,11 @@ template <Path P>
     band.improve(planner.uncut_speeds_sq(band.cell_count()), planner.uncut_skews(band.cell_count()), limits,
                  options.joint);
     time = coarse_time();
-    if (!(time < last)) {
-      band.set_points(before);
-      time = coarse_time();
-    }
-    if (!(last - time > options.joint_gain * (last - at_feeds))) break;
+    // Both times are coarse: what seems a little worse may be better.
+    if (time - last < options.joint_loss * (last - at_feeds)) continue;
+    band.set_points(before);
+    coarse_time();
+    break;
   }
   planner.take(band);
   run.speed = planner.plan(options.gap, true);
