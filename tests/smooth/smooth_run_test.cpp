@@ -168,7 +168,7 @@ TEST_CASE("the time does not depend on the windows") {
   program.line(Vector3(20, 50, 3), Vector3(20, 49, 3), 30);
   program.line(Vector3(20, 49, 3), Vector3(50, 49, 3), 30);
   const double reference = smooth_run<Segment>(program.blocks(), program.limits).duration;
-  for (const std::size_t window : {150U, 210U, 250U, 600U, 1000U}) {
+  for (const std::size_t window : {200U, 210U, 250U, 300U, 600U, 1000U}) {
     INFO("window " << window);
     BasicSmoothOptions<double> options;
     options.speed_window = window;

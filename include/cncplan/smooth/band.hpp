@@ -311,9 +311,9 @@ class Band {
     add(starts_[block] + middle, own, middle - from);
   }
 
-  // Cells a quarter of a corner's width near it, and growing with the distance; short on narrow bends;
-  // and short where the feed changes, for from a low speed to a high one b grows by decades on a short
-  // length.
+  // Cells a quarter of a corner's width near it, a thirteenth where it is a right angle, and growing with the
+  // distance; short on narrow bends; and short where the feed changes, for from a low speed to a high one b
+  // grows by decades on a short length.
   void make_knots() {
     S feed = S(0), tolerance = std::numeric_limits<S>::infinity();
     for (const auto& block : blocks_) {
@@ -335,7 +335,8 @@ class Band {
       const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
       if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
       if (corner != corners_.end() && !(corner->at > starts_[i])) {
-        add(corner->at, corner->width / S(4), S(0.6) * corner->width);
+        const S parts = std::max(S(4), S(9) * corner->jump.norm());
+        add(corner->at, corner->width / parts, S(0.6) * corner->width);
         ++corner;
       }
       fit_bends(i, S(0), blocks_[i].path->length(), halvings, add);
