@@ -130,7 +130,8 @@ class Band {
   /// the Newton steps.
   int improve(std::span<const S> speeds_sq, std::span<const S> skews,
               const BasicMotionLimits<S, axis_count>& limits, const BasicJointOptions<S>& solver) {
-    constexpr S slow = S(0.97), price = S(0.05);  // of a jerk as large as the limit
+    constexpr S slow = S(0.97);
+    constexpr S price = S(0.05);  // of a q''' that takes the whole limit of the jerk
     const std::size_t cells = cell_count();
     std::vector<S> feeds(cells), speeds(points_.size(), S(0));
     std::vector<char> moves(points_.size(), 0);

@@ -187,7 +187,7 @@ class JointWindow {
   /// Of control points and their speeds from the first cell's on; infinite where a limit is not kept.
   [[nodiscard]] BasicLawCost<S> cost(std::span<const Both> at) const {
     constexpr S none = std::numeric_limits<S>::infinity();
-    S time{}, bends{};
+    S time{}, thirds{};
     BasicBarrier<S> barrier;
     for (std::size_t cell = first_; cell < last_; ++cell) {
       const Both* four = &at[cell - first_];
@@ -212,9 +212,9 @@ class JointWindow {
         barrier.settle();
       }
       if (!barrier.kept()) return {none, none};
-      bends += curve_.cells[cell].price * more_bend(cell, four).cwiseAbs2().dot(jerk_sq_);
+      thirds += curve_.cells[cell].price * third_off(cell, four).cwiseAbs2().dot(jerk_sq_);
     }
-    return {time, barrier.sum() + bends};
+    return {time, barrier.sum() + thirds};
   }
 
   /// The derivatives of time + weight * barrier in a cell.
@@ -274,7 +274,7 @@ class JointWindow {
     const Vector stiff = (S(2) * weight * curve_.cells[cell].price) * jerk_sq_;
     typename JointModel<S, N>::Matrix stiffness = JointModel<S, N>::Matrix::Zero();
     stiffness.diagonal().template head<N>() = stiff;
-    model.add_position(curve_.cells[cell].weights[3], more_bend(cell, four).cwiseProduct(stiff), stiffness);
+    model.add_position(curve_.cells[cell].weights[3], third_off(cell, four).cwiseProduct(stiff), stiffness);
     return model;
   }
 
@@ -310,8 +310,8 @@ class JointWindow {
     const std::size_t from = curve_.cells[cell].first_sample;
     return curve_.samples.subspan(from, curve_.cells[cell + 1].first_sample - from);
   }
-  // What q''' is more than the programmed path's.
-  [[nodiscard]] Vector more_bend(std::size_t cell, const Both* four) const {
+  // q''' less that of the programmed path.
+  [[nodiscard]] Vector third_off(std::size_t cell, const Both* four) const {
     Vector third = -curve_.cells[cell].third;
     for (std::size_t q = 0; q < 4; ++q)
       third += curve_.cells[cell].weights[3][q] * four[q].template head<N>();

@@ -164,7 +164,7 @@ template <std::floating_point S, int N>
       const auto result = optimise(problem, law, first, last, options.window, memory.window);
       plan.rounds += result.rounds;
       plan.windows += 1;
-      // Between other ends it may find its way.
+      // It keeps the law that it starts from, which can be slow: another window is tried, with other ends.
       if (!result.converged && !again) {
         again = true;
         first -= std::min(first - k, most / 8);
