@@ -5,17 +5,20 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/step_edges.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/shared.hpp"
 
 using namespace cncplan;
 using namespace cncplan::test;
@@ -261,4 +264,24 @@ TEST_CASE("best: step edges end where the program does", "[smooth-blocks]") {
   }
   CHECK(steps == std::array{3000, 100, -200});
   CHECK(time <= best->duration());
+}
+
+TEST_CASE("best: a real program takes no longer than a prototype did", "[smooth-blocks][slow]") {
+  const auto shared = test::shared();
+  if (!shared) {
+    WARN("SKIPPED: CNCPLAN_SHARED is not set");
+    return;
+  }
+  std::ifstream stream(*shared + "/data/ngc/51MeanderAve.ngc", std::ios::binary);
+  auto program = read_blocks(gcode::StreamLines(stream), mill, PlanOptions{});
+  REQUIRE(program);
+  std::erase_if(program->blocks, [](const auto& block) { return !(block.path.length() > 0); });
+  for (auto& block : program->blocks) {
+    block.exact_stop = block.exact_path = false;
+    block.pause = block.merge = 0;
+    block.tolerance.reset();
+  }
+  const auto best = plan_smooth(program->blocks, mill, {.tolerance = 0.01});
+  REQUIRE(best);
+  CHECK(best->duration() < 218.4);
 }

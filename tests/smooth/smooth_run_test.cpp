@@ -162,6 +162,22 @@ TEST_CASE("one corner: limits, tolerance, and the time of the study") {
   }
 }
 
+TEST_CASE("sharp corners take little more than any motion must") {
+  // The least losses are those of an independent program (docs/smoothing.md, how far from the optimum).
+  struct Row {
+    double degrees, tolerance, least;
+  };
+  for (const auto& [degrees, tolerance, least] :
+       {Row{90, 0.01, 0.0700}, Row{150, 0.01, 0.0509}, Row{90, 0.05, 0.0386}}) {
+    CAPTURE(degrees, tolerance);
+    const Program program = corner(degrees, {30, 1000, 1e4}, tolerance);
+    const auto run = smooth_run<Segment>(program.blocks(), program.limits);
+    const double loss = run.duration - 100.0 / 30 - 2 * std::sqrt(30 / 1e4);
+    CHECK(loss > 0.99 * least);
+    CHECK(loss < 1.12 * least);
+  }
+}
+
 TEST_CASE("the time does not depend on the windows") {
   Program program = corner(90);
   program.line(program.paths.back().position_at(50), Vector3(20, 50, 3), 30);
