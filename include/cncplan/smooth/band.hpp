@@ -205,8 +205,10 @@ class Band {
         const S share = deviation(cell);
         worst = std::max(worst, share);
         if (share <= S(1)) continue;
+        // Little by little: a curve that goes back far at one place bends there.
+        const S kept = std::max(S(1) - S(2) * (share - S(1)) - S(1e-3), S(0.8));
         for (std::size_t k = std::max<std::size_t>(cell, 3); k < std::min(cell + 4, points_.size() - 3); ++k)
-          points_[k] = start_[k] + S(0.8) * (points_[k] - start_[k]);
+          points_[k] = start_[k] + kept * (points_[k] - start_[k]);
       }
       if (!(worst > S(1))) break;
     }
