@@ -13,7 +13,7 @@ namespace {
 using namespace cncplan;
 
 // The blocks of the program as one run. An item is a block; `seconds` is the motion's duration.
-void smooth_ball_best(benchmark::State& state) {
+void smooth_ball(benchmark::State& state, const smooth::BasicSmoothOptions<double>& options) {
   using Segment = bench::Block::Path;
   const Limits& tool = bench::mill.limits;
   const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, PlanOptions{});
@@ -26,10 +26,13 @@ void smooth_ball_best(benchmark::State& state) {
   smooth::MotionLimits<3> limits;
   limits.tool = tool;
   double seconds = 0;
-  for (auto _ : state) seconds = smooth::smooth_run<Segment>(blocks, limits).duration;
+  for (auto _ : state) seconds = smooth::smooth_run<Segment>(blocks, limits, options).duration;
   state.counters["seconds"] = seconds;
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
-BENCHMARK(smooth_ball_best)->Name("smooth/ball/best")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(smooth_ball, good, smooth::good_smoothing<double>)
+    ->Name("smooth/ball/good")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(smooth_ball, best, {})->Name("smooth/ball/best")->Unit(benchmark::kMillisecond);
 
 }  // namespace

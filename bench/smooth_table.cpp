@@ -1,5 +1,5 @@
 // Prints what smoothing takes on the cases of docs/smoothing.md: the exact path with jumps at its corners,
-// the level fast, the level best, and the processor time of each level for a block, reading excluded.
+// the levels fast, good and best, and the processor time of each level for a block, reading excluded.
 //   cncplan_smooth_table FOLDER [WORD]    programs are read from FOLDER; only cases whose names hold WORD
 #include <cmath>
 #include <cstdio>
@@ -154,6 +154,8 @@ bool print(const Case& c, const std::string& folder) {
   const PlanOptions exact{.junction_deviation = c.tolerance}, smooth{.tolerance = c.tolerance};
   const Time jumping = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, exact); });
   const Time fast = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, smooth); });
+  const Time good =
+      time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, SmoothLevel::good); });
   const Time best = time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth); });
   double straight = 0;
   if (c.loss) {
@@ -169,13 +171,15 @@ bool print(const Case& c, const std::string& folder) {
   cell(jumping.motion - straight, " %.3f");
   cell(fast.motion - straight, " %.3f");
   cell(c.fast, " %g");
+  cell(good.motion - straight, " %.3f");
   cell(best.motion - straight, " %.3f");
   cell(c.best, " %g");
   cell(fast.work, " %.0f");
+  cell(good.work, " %.0f");
   cell(best.work, " %.0f");
   std::printf("\n");
   std::fflush(stdout);
-  return std::isfinite(jumping.motion + fast.motion + best.motion);
+  return std::isfinite(jumping.motion + fast.motion + good.motion + best.motion);
 }
 
 }  // namespace
@@ -187,8 +191,9 @@ int main(int argc, char** argv) {
   }
   const std::string_view word = argc > 2 ? argv[2] : "";
   std::printf(
-      "| case | exact, jumping | fast | wanted | best | wanted | fast, us a block | best, us a block |\n");
-  std::printf("|---|---|---|---|---|---|---|---|\n");
+      "| case | exact, jumping | fast | wanted | good | best | wanted | fast, us a block | good, us | best, "
+      "us |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
   bool ok = true;
   for (const Case& c : cases())
     if (c.name.find(word) != std::string::npos) ok = print(c, argv[1]) && ok;

@@ -1,10 +1,11 @@
-// Plans blocks at the level `best` of smoothing: the fastest motion within the tolerance (set-up).
+// Plans blocks at the levels `good` and `best` of smoothing, within the tolerance (set-up).
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <ranges>
 #include <span>
@@ -31,6 +32,13 @@ struct BasicSmoothBlock : BasicBlock<S, N, Curves..., smooth::BasicCubic<S, N>> 
 template <int N, class... Curves>
 using SmoothBlock = BasicSmoothBlock<double, N, Curves...>;
 
+/// How much work smoothing may be. Beside these there is what `plan_blocks` and `Executor` do, the level
+/// `fast` in closed form.
+enum class SmoothLevel : std::uint8_t {
+  good,  ///< nearly the time of the best, for a small part of its work
+  best
+};
+
 namespace plan {
 
 /// The kind of block that smoothing makes of blocks of a kind.
@@ -43,10 +51,10 @@ struct SmoothBlockType<BasicBlock<S, N, Curves...>> {
 template <class B>
 using SmoothBlockOf = typename SmoothBlockType<B>::Type;
 
-/// Whether the level `best` can plan for a machine: it needs finite limits of the tool, X Y Z as the first
-/// axes, and motors whose backlash takes no time. A map has no such plan.
+/// Whether the levels `good` and `best` can plan for a machine: it needs finite limits of the tool, X Y Z as
+/// the first axes, and motors whose backlash takes no time. A map has no such plan.
 template <MachineModel M>
-[[nodiscard]] bool has_best_level(const M& machine) {
+[[nodiscard]] bool has_curve_level(const M& machine) {
   using S = typename M::Scalar;
   if constexpr (MappedModel<M>) return false;
   const auto& [velocity, acceleration, jerk] = machine.limits;
@@ -68,12 +76,13 @@ class SmoothPlanner {
   using Out = SmoothBlockOf<B>;
   using Result = Trajectory<M, Out>;
 
-  SmoothPlanner(std::span<const B> blocks, const M& machine, const PlanOptions& options)
+  SmoothPlanner(std::span<const B> blocks, const M& machine, const PlanOptions& options, SmoothLevel level)
       : blocks_(blocks),
         machine_(machine),
         options_(options),
         rules_(smoothing_rules<S>(options)),
-        best_(options.tolerance > 0 && has_best_level(machine)) {}
+        work_(level == SmoothLevel::good ? smooth::good_smoothing<S> : smooth::BasicSmoothOptions<S>{}),
+        possible_(options.tolerance > 0 && has_curve_level(machine)) {}
 
   [[nodiscard]] Expected<Result, ProgramError> run() {
     if (const auto ok = check(); !ok) return tl::unexpected(ok.error());
@@ -85,7 +94,7 @@ class SmoothPlanner {
         continue;
       }
       if (const auto ok = add_fast(left, i); !ok) return tl::unexpected(ok.error());
-      if (!add_best(i, end))
+      if (!add_smoothed(i, end))
         if (const auto ok = add_fast(i, end); !ok) return tl::unexpected(ok.error());
       left = i = end;
     }
@@ -114,7 +123,7 @@ class SmoothPlanner {
   [[nodiscard]] S speed(std::size_t i) const { return wanted_speed(blocks_[i], machine_, LengthOf::tool); }
 
   [[nodiscard]] bool smooth(std::size_t i) const {
-    return best_ && tolerance_of(blocks_[i], rules_) > S(0) && speed(i) > S(0) &&
+    return possible_ && tolerance_of(blocks_[i], rules_) > S(0) && speed(i) > S(0) &&
            length_of(blocks_[i].path, machine_) == LengthOf::tool;
   }
 
@@ -176,8 +185,8 @@ class SmoothPlanner {
     return {};
   }
 
-  // A run at the level `best`; false where it has no plan.
-  [[nodiscard]] bool add_best(std::size_t first, std::size_t end) {
+  // A run on a curve of its own; false where it has no plan.
+  [[nodiscard]] bool add_smoothed(std::size_t first, std::size_t end) {
     if constexpr (MappedModel<M>) {
       return false;
     } else {
@@ -191,7 +200,7 @@ class SmoothPlanner {
         sources.push_back(i);
       }
       const auto smoothed =
-          smooth::smooth_run(std::span<const smooth::BandBlock<typename B::Path>>(run), limits);
+          smooth::smooth_run(std::span<const smooth::BandBlock<typename B::Path>>(run), limits, work_);
       if (!(smoothed.deviation <= S(1)) || !std::isfinite(smoothed.duration) || smoothed.pieces.empty() ||
           !has_room(smoothed) || fast_is_faster(smoothed.duration, first, end))
         return false;
@@ -276,7 +285,8 @@ class SmoothPlanner {
   const M& machine_;
   const PlanOptions& options_;
   SmoothingRules<S> rules_;
-  bool best_;
+  smooth::BasicSmoothOptions<S> work_;
+  bool possible_;
   std::vector<Out> out_;
   std::vector<BasicBlockPhase<S>> phases_;
   BasicSmoothing<S, n> smoothing_;
@@ -287,8 +297,9 @@ class SmoothPlanner {
 
 }  // namespace plan
 
-/// The motion along blocks as `plan_blocks` has it, at the level `best`: runs of blocks that are smoothed are
-/// driven along the fastest curve within their tolerances, at the fastest speed along it. A run ends at a
+/// The motion along blocks as `plan_blocks` has it, at a higher level of smoothing: runs of blocks that are
+/// smoothed are driven along the fastest curve within their tolerances, at the fastest speed along it, as far
+/// as the level searches for it. A run ends at a
 /// stop, a pause, a block that is to be exact, a turn by more than 175 degrees, and where the unit of length
 /// changes. What belongs to no run is planned as `plan_blocks` does, from rest to rest.
 ///
@@ -302,7 +313,8 @@ class SmoothPlanner {
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, plan::SmoothBlockOf<BlockOf<R>>>, ProgramError> plan_smooth(
-    const R& blocks, const M& machine, const PlanOptions& options = {}) {
+    const R& blocks, const M& machine, const PlanOptions& options = {},
+    SmoothLevel level = SmoothLevel::best) {
   std::span<const BlockOf<R>> given(std::ranges::data(blocks), std::ranges::size(blocks));
   std::vector<BlockOf<R>> merged;
   if constexpr (!MappedModel<M>)
@@ -311,7 +323,7 @@ template <std::ranges::contiguous_range R, MachineModel M>
       merge_lines(std::span(merged), machine, plan::smoothing_rules<typename M::Scalar>(options));
       given = merged;
     }
-  return plan::detail::SmoothPlanner<M, BlockOf<R>>(given, machine, options).run();
+  return plan::detail::SmoothPlanner<M, BlockOf<R>>(given, machine, options, level).run();
 }
 
 }  // namespace cncplan

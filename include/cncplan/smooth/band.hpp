@@ -45,6 +45,7 @@ class Band {
     S jerk_share = S(0.15);  ///< of the jerk limit, by corners that may be run through at the feed
     S centring = S(0.1);
     std::size_t window = 300;  ///< control points that one window moves
+    S coarseness = S(1);       ///< how many times longer the cells are
     BasicBandOptions<S> solver{};
   };
 
@@ -315,8 +316,8 @@ class Band {
   }
 
   // Cells a quarter of a corner's width near it, a thirteenth where it is a right angle, and growing with the
-  // distance; short on narrow bends; and short where the feed changes, for from a low speed to a high one b
-  // grows by decades on a short length.
+  // distance, all of that times the coarseness; short on narrow bends; and short where the feed changes, for
+  // from a low speed to a high one b grows by decades on a short length.
   void make_knots() {
     S feed = S(0), tolerance = std::numeric_limits<S>::infinity();
     for (const auto& block : blocks_) {
@@ -324,8 +325,10 @@ class Band {
       tolerance = std::min(tolerance, block.tolerance.minCoeff());
     }
     // Where the feed is so low that ramps are shorter than the tolerance, no more of them is gained.
-    const S widest = std::min(std::max(S(0.1) * ramp_length(feed), S(4) * tolerance), length() / S(8));
-    constexpr S growth = S(0.12);
+    const S longer = options_.coarseness;
+    const S widest =
+        std::min(std::max(longer * S(0.1) * ramp_length(feed), S(4) * tolerance), length() / S(8));
+    const S growth = longer * S(0.12);
     constexpr int halvings = 6;
     std::vector<Fine> fine;
     fine.push_back({S(0), widest / S(30), S(0)});
@@ -338,7 +341,7 @@ class Band {
       const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
       if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
       if (corner != corners_.end() && !(corner->at > starts_[i])) {
-        const S parts = std::max(S(4), S(9) * corner->jump.norm());
+        const S parts = std::max(S(4), S(9) * corner->jump.norm()) / longer;
         add(corner->at, corner->width / parts, S(0.6) * corner->width);
         ++corner;
       }

@@ -1,4 +1,4 @@
-// The level `best` of smoothing: the fastest motion within a tolerance of a run of blocks (set-up).
+// The levels `good` and `best` of smoothing: a run of blocks within a tolerance (set-up).
 //
 // For the planner. A run are blocks that follow each other without a stop; it begins and ends at rest.
 // `smooth_run` gives cubic pieces q(s) by the *programmed* length, each within one block, and phases of
@@ -43,9 +43,16 @@ struct BasicSmoothOptions {
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
+  S coarseness = S(1);             ///< how many times longer the cells are
   std::size_t speed_window = 400;  ///< coefficients of speed that move at once, at least 200
   std::size_t band_window = 300;   ///< control points that move at once, at least 150
 };
+
+/// The level `good`: curve and speed are not moved together, and cells are longer. It has nearly the time of
+/// `best` for a small part of its work.
+template <std::floating_point S>
+inline constexpr BasicSmoothOptions<S> good_smoothing{
+    .joint_rounds = 0, .coarse_gap = S(0.4), .gap = S(0.03), .coarseness = S(2)};
 
 template <std::floating_point S, int N>
 struct BasicSmoothRun {
@@ -239,6 +246,7 @@ template <Path P>
   typename Band<P>::Options geometry;
   geometry.along = limits.tool;
   geometry.window = options.band_window;
+  geometry.coarseness = options.coarseness;
   Band<P> band(blocks, geometry);
   detail::SpeedPlanner<S, N> planner(limits, options.speed_window);
   // The time that the curve takes, about.
@@ -247,11 +255,15 @@ template <Path P>
     planner.take(band);
     return planner.plan(options.coarse_gap, false).duration;
   };
-  S time = coarse_time();
   for (int pass = 0; pass < options.passes; ++pass) {
+    coarse_time();
     band.smoothen(planner.speeds_sq(band.cell_count()));
-    time = coarse_time();
   }
+  S time = S(0);
+  if (options.joint_rounds > 0)
+    time = coarse_time();
+  else
+    run.deviation = band.settle();
   S at_feeds = S(0);
   for (const auto& block : blocks) at_feeds += block.path->length() / block.feed;
   for (int round = 0; round < options.joint_rounds; ++round) {
