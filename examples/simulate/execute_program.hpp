@@ -113,7 +113,7 @@ int write_out(const Options& options, const support::Machine& file, const Progra
 }
 
 // Plans a program and hands it to `take` with the blocks that it is planned as: pieces of its own, where it
-// is a mill's within a tolerance at the level `best`.
+// is a mill's within a tolerance at the level `good` or `best`.
 template <class M, class Take>
 int with_plan(const Options& options, const support::Machine& file, const M& machine,
               const Program<M>& program, const Take& take) {
@@ -126,7 +126,8 @@ int with_plan(const Options& options, const support::Machine& file, const M& mac
         return cncplan::plan_smooth(
             program.blocks, Smoothed{machine},
             {.tolerance = options.tolerance,
-             .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree});
+             .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree},
+            options.smooth == Smooth::good ? cncplan::SmoothLevel::good : cncplan::SmoothLevel::best);
       }();
       if (!planned) {
         auto error = planned.error();

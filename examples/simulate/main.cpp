@@ -44,8 +44,8 @@ void settle(Options& options, const support::Machine& machine) {
     refuse("--serve goes with --profile seven, --plan span and --interpolator exact only");
   if (options.compare.value_or(0.0) > 0.0 && (!as_planned || machine.kinematics != Kinematics::cartesian))
     refuse("--compare above 0 is for what --tolerance above 0 is for");
-  if (options.events && options.smooth == Smooth::best)
-    refuse("--smooth best is for motion without events: its speed is planned as a whole");
+  if (options.events && options.smooth.value_or(Smooth::fast) != Smooth::fast)
+    refuse("--smooth good and best are for motion without events: its speed is planned as a whole");
   if (machine.kinematics != Kinematics::cartesian) {
     if (options.tolerance_given && options.tolerance > 0.0)
       refuse(

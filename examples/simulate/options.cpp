@@ -84,11 +84,12 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option_function<std::string>(
          "--smooth",
          [&options](const std::string& level) {
-           options.smooth = level == "best" ? Smooth::best : Smooth::fast;
+           options.smooth = level == "best" ? Smooth::best : level == "good" ? Smooth::good : Smooth::fast;
          },
-         "with --tolerance, fast: closed form; best: the fastest motion; best if not given, fast with "
-         "--events")
-      ->check(CLI::IsMember({"fast", "best"}));
+         "with --tolerance, fast: closed form, as an executor does; best: the fastest motion; good: nearly "
+         "that, "
+         "with less work; best if not given, fast with --events")
+      ->check(CLI::IsMember({"fast", "good", "best"}));
   app.add_option("--junction", junction,
                  "corners of the exact path: table, table-absolute, stop, tangent=MM/S, deviation=MM, "
                  "acceleration-step=MM/S^2; several joined by +; deviation=0.01 if not given");

@@ -14,7 +14,7 @@ namespace simulate {
 enum class Law { five, seven };
 enum class Planning { span, block };
 enum class Interpolator { exact, taylor, constant };
-enum class Smooth { fast, best };
+enum class Smooth { fast, good, best };
 
 struct Options : support::RunOptions {
   std::string program;

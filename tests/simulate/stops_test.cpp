@@ -102,7 +102,7 @@ TEST_CASE("a program's own G64 P wins over --tolerance") {
 TEST_CASE("G64 Q merges lines, of which each has its row, all within P") {
   constexpr std::size_t count = 120;
   constexpr double step = 0.05, P = 0.01;
-  const std::string level = GENERATE("fast", "best");
+  const std::string level = GENERATE("fast", "good", "best");
   const test::Folder folder;
   test::Random random;
   std::string lines;
@@ -151,7 +151,7 @@ TEST_CASE("option --tolerance: within limits as samples show, within the toleran
   const test::Folder folder;
   const std::string program = "G1 X10\nX10.1 Y0.05\nX20 Y9\nG3 X30 Y19 R10\nG1 X30 Y30\nX29 Y30\nX10\nY0\n";
   const double tolerance = GENERATE(0.002, 0.01, 0.1);
-  const std::string level = GENERATE("fast", "best");
+  const std::string level = GENERATE("fast", "good", "best");
   CAPTURE(tolerance, level);
   const auto run = folder.run_text(program, "--json --period 1e-4 --samples s.csv --smooth " + level +
                                                 " --tolerance " + std::to_string(tolerance));
@@ -182,13 +182,15 @@ TEST_CASE("option --tolerance: within limits as samples show, within the toleran
   CHECK(json["tool_peak"]["jerk"].get<double>() >= jerk * (1 - 1e-4));
 }
 
-TEST_CASE("option --smooth goes with a tolerance, and its best level with no events") {
+TEST_CASE("option --smooth goes with a tolerance, and its higher levels with no events") {
   const test::Folder folder;
   folder.write("part.ngc", "G1 X10\nX20 Y1\n");
   folder.write("events.csv", "0.1,hold\n0.2,resume\n");
   CHECK(folder.run("part.ngc --smooth fast --tolerance 0").exit == 2);
   CHECK(folder.run("part.ngc --smooth fine --tolerance 0.01").exit == 2);
   CHECK(folder.run("part.ngc --smooth best --tolerance 0.01 --events events.csv").exit == 2);
+  CHECK(folder.run("part.ngc --smooth good --tolerance 0.01 --events events.csv").exit == 2);
+  CHECK(folder.run("part.ngc --smooth good --tolerance 0.01 --quiet").exit == 0);
   CHECK(folder.run("part.ngc --smooth best --tolerance 0.01 --quiet").exit == 0);
   CHECK(folder.run("part.ngc --tolerance 0.01 --quiet --events events.csv").exit == 0);
 }
