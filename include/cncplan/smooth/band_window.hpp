@@ -68,10 +68,11 @@ struct BandResult {
 
 namespace detail {
 
-/// Solves H x = -gradient by Cholesky factors of blocks; H has three blocks beside the diagonal.
+/// Solves H x = -gradient by Cholesky factors of blocks; H has three blocks beside the diagonal. False where
+/// rounding leaves less of H than a definite matrix; x is of no use then.
 template <std::floating_point S, int N>
-void solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
-                  std::span<const VectorN<S, N>> gradient, std::span<VectorN<S, N>> x) {
+[[nodiscard]] bool solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
+                                std::span<const VectorN<S, N>> gradient, std::span<VectorN<S, N>> x) {
   using Matrix = Eigen::Matrix<S, N, N>;
   const std::size_t n = rows.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -89,7 +90,6 @@ void solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
       }
     }
     Matrix& own = rows[i][0];
-    // Rounding may leave less of a definite matrix.
     const VectorN<S, N> least = std::numeric_limits<S>::epsilon() * own.diagonal();
     for (std::size_t k = 1; k <= 3 && k <= i; ++k) own.noalias() -= rows[i][k] * rows[i][k].transpose();
     Matrix factor = Matrix::Zero();
@@ -97,8 +97,8 @@ void solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
       for (int c = 0; c <= r; ++c) {
         S sum = own(r, c);
         for (int k = 0; k < c; ++k) sum -= factor(r, k) * factor(c, k);
-        factor(r, c) =
-            r == c ? std::sqrt(std::max({sum, least[r], std::numeric_limits<S>::min()})) : sum / factor(c, c);
+        if (r == c && !(sum > least[r])) return false;
+        factor(r, c) = r == c ? std::sqrt(sum) : sum / factor(c, c);
       }
     own = factor;
     x[i] = -gradient[i];
@@ -109,6 +109,23 @@ void solve_blocks(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows,
     for (std::size_t k = 1; k <= 3 && i + k < n; ++k) x[i].noalias() -= rows[i + k][k].transpose() * x[i + k];
     rows[i][0].template triangularView<Eigen::Lower>().transpose().solveInPlace(x[i]);
   }
+  return true;
+}
+
+/// The step that `derive` asks for, which writes gradient and Hessian. Where cells of very different lengths
+/// meet, rounding leaves less than a definite matrix: its diagonal is raised by as small a share as it takes,
+/// which goes on from step to step. No step where none helps.
+template <std::floating_point S, int N, class Derive>
+void find_step(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows, std::span<VectorN<S, N>> gradient,
+               std::span<VectorN<S, N>> step, S& raised, Derive&& derive) {
+  constexpr S least = S(50) * std::numeric_limits<S>::epsilon(), most = S(1e-4), more = S(100), less = S(10);
+  raised = raised > least ? raised / less : S(0);
+  for (; raised < most; raised = std::max(more * raised, least)) {
+    derive();
+    for (auto& row : rows) row[0].diagonal() *= S(1) + raised;
+    if (solve_blocks<S, N>(rows, gradient, step)) return;
+  }
+  std::fill(step.begin(), step.end(), VectorN<S, N>::Zero());
 }
 
 }  // namespace detail
@@ -164,7 +181,7 @@ BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, 
   if (!(cost.barrier < none)) return result;
   const auto terms = static_cast<S>(problem.cells[cell1].first_sample - problem.cells[cell0].first_sample);
   S weight = S(0.3) * cost.energy / terms + std::numeric_limits<S>::min();
-  for (; result.rounds < options.rounds; ++result.rounds) {
+  const auto derive = [&] {
     for (std::size_t i = 0; i < count; ++i) {
       gradient[i].setZero();
       for (auto& block : rows[i]) block.setZero();
@@ -204,7 +221,10 @@ BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, 
         }
       }
     }
-    detail::solve_blocks<S, N>(rows, std::span<const Vector>(gradient), step);
+  };
+  S raised{};
+  for (; result.rounds < options.rounds; ++result.rounds) {
+    detail::find_step<S, N>(rows, gradient, step, raised, derive);
     S decrease = S(0);
     for (std::size_t i = 0; i < count; ++i) decrease -= gradient[i].dot(step[i]);
     const S before = cost.energy + weight * cost.barrier;

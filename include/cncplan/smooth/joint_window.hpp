@@ -352,7 +352,6 @@ template <std::floating_point S, int N>
 BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, N>> points,
                    std::span<S> speeds, std::size_t first, std::size_t last,
                    const BasicJointOptions<S>& options, const BasicJointMemory<S, N>& memory) {
-  using Both = VectorN<S, N + 1>;
   const std::size_t count = std::min({last - first, memory.rows.size(), memory.trial.size() - 6});
   BandResult result;
   if (count == 0) return result;
@@ -366,7 +365,7 @@ BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, 
   if (!(cost.barrier < std::numeric_limits<S>::infinity())) return result;
   const auto terms = static_cast<S>(window.terms());
   S weight = S(0.1) * cost.time / terms;
-  for (; result.rounds < options.rounds; ++result.rounds) {
+  const auto derive = [&] {
     for (std::size_t i = 0; i < count; ++i) {
       gradient[i].setZero();
       for (auto& block : rows[i]) block.setZero();
@@ -381,7 +380,10 @@ BandResult improve(const BasicJointProblem<S, N>& problem, std::span<VectorN<S, 
           if (cell + p - first < count) rows[at][q - p] += model.block(q, p);
       }
     }
-    detail::solve_blocks<S, N + 1>(rows, std::span<const Both>(gradient), step);
+  };
+  S raised{};
+  for (; result.rounds < options.rounds; ++result.rounds) {
+    detail::find_step<S, N + 1>(rows, gradient, step, raised, derive);
     S decrease = S(0);
     for (std::size_t i = 0; i < count; ++i) decrease -= gradient[i].dot(step[i]);
     const S before = cost.time + weight * cost.barrier;

@@ -45,7 +45,7 @@ struct BasicSmoothOptions {
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
   S coarseness = S(1);             ///< how many times longer the cells are
   std::size_t speed_window = 400;  ///< coefficients of speed that move at once, at least 200
-  std::size_t band_window = 300;   ///< control points that move at once, at least 150
+  std::size_t band_window = 300;   ///< control points that move at once, at least 200
 };
 
 /// The level `good`: curve and speed are not moved together, and cells are longer. It has nearly the time of
