@@ -17,7 +17,7 @@ namespace cncplan::smooth {
 template <std::floating_point S>
 struct BasicJointOptions {
   S gap = S(0.01);  ///< of the time, by the barrier
-  int rounds = 40;
+  int rounds = 32;
 };
 
 /// A curve in its tube and a speed along it. Cell k hangs on control points k to k + 3 and on coefficients of
