@@ -87,8 +87,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
            options.smooth = level == "best" ? Smooth::best : level == "good" ? Smooth::good : Smooth::fast;
          },
          "with --tolerance, fast: closed form, as an executor does; best: the fastest motion; good: nearly "
-         "that, "
-         "with less work; best if not given, fast with --events")
+         "that, with less work; best if not given, fast with --events")
       ->check(CLI::IsMember({"fast", "good", "best"}));
   app.add_option("--junction", junction,
                  "corners of the exact path: table, table-absolute, stop, tangent=MM/S, deviation=MM, "

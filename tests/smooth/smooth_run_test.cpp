@@ -196,6 +196,7 @@ TEST_CASE("the time does not depend on the windows") {
 
 TEST_CASE("windows of curve and speed do not stick on many sharp corners") {
   // Rounding took the Hessian's definiteness here, and windows stayed as they were: times differed by 3 %.
+  // 5.84 s is what windows of 200 to 2000 points agree on; it says nothing of the optimum.
   Program program;
   program.limits.tool = {30, 1000, 1e4};
   Vector3 at = Vector3::Zero();

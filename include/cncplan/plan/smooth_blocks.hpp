@@ -299,9 +299,9 @@ class SmoothPlanner {
 
 /// The motion along blocks as `plan_blocks` has it, at a higher level of smoothing: runs of blocks that are
 /// smoothed are driven along the fastest curve within their tolerances, at the fastest speed along it, as far
-/// as the level searches for it. A run ends at a
-/// stop, a pause, a block that is to be exact, a turn by more than 175 degrees, and where the unit of length
-/// changes. What belongs to no run is planned as `plan_blocks` does, from rest to rest.
+/// as the level searches for it. A run ends at a stop, a pause, a block that is to be exact, a turn by more
+/// than 175 degrees, and where the unit of length changes. What belongs to no run is planned as `plan_blocks`
+/// does, from rest to rest.
 ///
 /// So is all of the program under a map, where the tool has a limit that is infinite, where X Y Z are not the
 /// first axes, where backlash takes time, and where the tolerance of the options is 0; blocks that move only
