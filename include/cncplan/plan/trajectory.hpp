@@ -111,6 +111,23 @@ class Trajectory {
   [[nodiscard]] SetPoint at(Scalar time) const {
     return phases_.empty() ? at_rest(time) : in_phase(phase_at(time), time);
   }
+  /// The set point where the trajectory's time runs by a clock: velocity, acceleration and jerk are by real
+  /// time, `time` is the trajectory's.
+  [[nodiscard]] SetPoint at(const BasicState<Scalar>& clock) const {
+    if (phases_.empty()) return at_rest(clock.position);
+    const std::size_t index = phase_at(clock.position);
+    return evaluate(phases_[index].block, by_clock(along(index, clock.position), clock), clock.position);
+  }
+
+  /// The phase that a time lies in, of two that meet there the later one; the first and the last before the
+  /// start and behind the end. There has to be one.
+  [[nodiscard]] std::size_t phase_at(Scalar time) const {
+    const auto later = [](Scalar t, const Phase& phase) { return t < phase.phase.time; };
+    if (phases_.empty()) return 0;
+    return static_cast<std::size_t>(std::upper_bound(phases_.begin() + 1, phases_.end(), time, later) -
+                                    phases_.begin()) -
+           1;
+  }
 
   /// The set points at k period while that is before the end, and one at the end. A range.
   class Samples;
@@ -207,25 +224,20 @@ class Trajectory {
     return phase.velocity == Scalar(0) && phase.acceleration == Scalar(0) && phase.jerk == Scalar(0);
   }
 
-  [[nodiscard]] std::size_t phase_at(Scalar time) const {
-    const auto later = [](Scalar t, const Phase& phase) { return t < phase.phase.time; };
-    if (phases_.empty()) return 0;
-    return static_cast<std::size_t>(std::upper_bound(phases_.begin() + 1, phases_.end(), time, later) -
-                                    phases_.begin()) -
-           1;
+  [[nodiscard]] SetPoint in_phase(std::size_t index, Scalar time) const {
+    return evaluate(phases_[index].block, along(index, time), time);
   }
 
-  [[nodiscard]] SetPoint in_phase(std::size_t index, Scalar time) const {
+  // Along the block of a phase.
+  [[nodiscard]] BasicState<Scalar> along(std::size_t index, Scalar time) const {
     const auto& [phase, number] = phases_[index];
-    const B& block = blocks_[number];
+    const Scalar length = blocks_[number].path.length();
     const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
-    BasicState<Scalar> along = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
-    if (ended) {  // at rest; a program may be stopped before a block's end
-      const Scalar length = block.path.length();
-      along = {is_whole(along.position, length) ? length : along.position, Scalar(0), Scalar(0), Scalar(0)};
-    }
-    along.position = std::min(along.position, block.path.length());
-    return evaluate(number, along, time);
+    BasicState<Scalar> state = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
+    if (ended)  // at rest; a program may be stopped before a block's end
+      state = {is_whole(state.position, length) ? length : state.position, Scalar(0), Scalar(0), Scalar(0)};
+    state.position = std::min(state.position, length);
+    return state;
   }
 
   [[nodiscard]] SetPoint evaluate(std::size_t number, BasicState<Scalar> along, Scalar time) const {
