@@ -234,6 +234,8 @@ TEST_CASE("words have the time at which the motion reaches them", "[program]") {
   CHECK(time_of('M', 9) == Approx(move + 0.75));
   CHECK(time_of('T', 1) == Approx(move + 0.75));
   CHECK(time_of('M', 5) == Approx(2 * move + 0.75));
+  CHECK(time_of('M', 6) == Approx(move + 0.75));  // stops are words, too
+  CHECK(time_of('M', 30) == Approx(2 * move + 0.75));
   for (std::size_t i = 1; i < times.size(); ++i) CHECK(times[i] >= times[i - 1]);
 }
 

@@ -67,6 +67,8 @@ template <MachineModel M, gcode::LineSource Lines>
   const auto read = gcode::read_program(lines, reader, [&](const gcode::Item& item) {
     if (const auto* word = std::get_if<gcode::Word>(&item))
       program.words.push_back({*word, program.blocks.size()});
+    if (const auto* stop = std::get_if<gcode::Stop>(&item))
+      program.words.push_back({{'M', static_cast<double>(stop->code), stop->line, 0}, program.blocks.size()});
     if (const auto* warning = std::get_if<gcode::Warning>(&item);
         warning != nullptr && !(smoothed && gcode::void_if_smoothed(warning->about)))
       program.warnings.push_back(gcode::to_text(file_here(), warning->about, "warning"));
@@ -118,6 +120,25 @@ template <MachineModel M, gcode::LineSource Lines>
   return program;
 }
 
+/// The words of a program that others act on, each with the time at which a trajectory that was planned of
+/// its blocks, of all of them, comes to it: for `Trajectory::set_words`.
+template <MachineModel M, class T>
+[[nodiscard]] std::vector<TimedWord> timed_words(const ProgramBlocks<M>& program, const T& trajectory) {
+  const auto blocks = trajectory.program();
+  const auto first_of = [&](std::size_t source) {
+    if constexpr (requires { blocks[0].source; })
+      return static_cast<std::size_t>(
+          std::ranges::lower_bound(blocks, source, {}, [](const auto& block) { return block.source; }) -
+          blocks.begin());
+    else
+      return source;
+  };
+  std::vector<TimedWord> words;
+  for (const auto& [word, block] : program.words)
+    words.push_back({word, static_cast<double>(trajectory.start_time(first_of(block)))});
+  return words;
+}
+
 namespace plan {
 
 template <MachineModel M, gcode::LineSource Lines>
@@ -133,10 +154,7 @@ template <MachineModel M, gcode::LineSource Lines>
     planned.error().file = at ? program->file_of(*at) : file;
     return planned;
   }
-  std::vector<TimedWord> words;
-  for (const auto& [word, block] : program->words)
-    words.push_back({word, static_cast<double>(planned->start_time(block))});
-  planned->set_words(std::move(words));
+  planned->set_words(timed_words(*program, *planned));
   planned->set_warnings(std::move(program->warnings));
   return planned;
 }
