@@ -1,0 +1,166 @@
+// Proof that the axes keep their limits while the clock of a trajectory changes its rate: bounds, not
+// samples.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "cncplan/core/in_space.hpp"
+#include "cncplan/path/segment.hpp"
+#include "cncplan/plan/limits_along.hpp"
+#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/smooth/cubic.hpp"
+#include "cncplan/state/motion.hpp"
+
+namespace cncplan::plan {
+
+namespace detail {
+
+/// The largest change of q''' from the middle of an interval of lengths to its ends, in any axis: none on
+/// lines and cubics; on an arc of curvature k the fourth derivative is k^3; else no more than twice what q'''
+/// is.
+template <Path P, std::floating_point S, int N>
+[[nodiscard]] S third_change(const BasicPathBounds<S, N>& bounds, S half) {
+  if constexpr (std::same_as<P, path::BasicLine<S, N>> || std::same_as<P, smooth::BasicCubic<S, N>>)
+    return S(0);
+  if constexpr (std::same_as<P, path::ArcOf<S, N>>) {
+    const S k = bounds.tool.second_across;
+    return half * k * k * k;
+  }
+  return S(2) * bounds.third.norm();
+}
+
+}  // namespace detail
+
+/// Whether a trajectory keeps the limits of a machine while the rate of its clock changes: those of
+/// acceleration and jerk, of the tool's vector and of each axis. (Velocities are no higher than planned, as
+/// the rate is 1 at most.) With the state s, v, a, j along the path by the clock, an interval of time is
+/// proven by what the axes do in its middle,
+///
+///     q' a + q'' v^2     and     q' j + 3 q'' v a + q''' v^3,
+///
+/// and by bounds of how far these may change to its ends; where that is not enough it is halved.
+template <MachineModel M, BlockModel B>
+class ClockProof {
+ public:
+  using S = typename M::Scalar;
+  static constexpr int n = M::axis_count;
+
+  ClockProof(const Trajectory<M, B>& trajectory, const M& machine)
+      : trajectory_(&trajectory), limits_(machine_limits(machine)), tool_(tool_axes(machine)) {}
+
+  [[nodiscard]] const BasicMachineLimits<S, n>& limits() const { return limits_; }
+
+  /// From the start of the motion of a clock to its end, or to where it shows `until`. It goes one way. Every
+  /// interval that is looked at takes one from `work`: false too where nothing is left of it.
+  [[nodiscard]] bool holds(const state::BasicMotion<S>& clock, bool backwards, S until, int& work) const {
+    const auto phases = trajectory_->phases();
+    const S sense = backwards ? S(-1) : S(1);
+    std::size_t now = trajectory_->phase_at(clock.start().position);
+    BasicAxisState<S> from = clock.start();
+    for (const BasicJerkPhase<S>& part : clock.phases()) {
+      const BasicPhase<S> way{S(0),
+                              part.duration,
+                              S(0),
+                              std::max(S(0), sense * from.velocity),
+                              sense * part.acceleration,
+                              sense * part.jerk};
+      for (S t = S(0); t < part.duration;) {
+        const auto& phase = phases[now].phase;
+        const S end = backwards ? std::max(phase.time, until) : std::min(phase.time + phase.duration, until);
+        const S to = std::clamp(way.tau_at(sense * (end - from.position)), t, part.duration);
+        if (to > t && !keeps(now, from, part, t, to, 0, work)) return false;
+        t = to;
+        if (t >= part.duration) break;
+        if (end == until || (backwards ? now == 0 : now + 1 == phases.size())) return true;
+        backwards ? --now : ++now;
+      }
+      from = part.after(from, part.duration);
+    }
+    return true;
+  }
+
+ private:
+  using Vector = VectorN<S, n>;
+  static constexpr int deepest = 5;
+  static constexpr S rounding = S(1) + S(1e-9);
+
+  enum class Answer { yes, no, unknown };
+
+  [[nodiscard]] bool keeps(std::size_t phase, const BasicAxisState<S>& from, const BasicJerkPhase<S>& part,
+                           S low, S high, int depth, int& work) const {
+    if (--work < 0) return false;
+    const Answer answer = look(phase, from, part, low, high);
+    if (answer != Answer::unknown) return answer == Answer::yes;
+    if (depth == deepest) return false;
+    const S middle = low + (high - low) / S(2);
+    return keeps(phase, from, part, low, middle, depth + 1, work) &&
+           keeps(phase, from, part, middle, high, depth + 1, work);
+  }
+
+  // One interval of a part of the clock's motion, within one phase.
+  [[nodiscard]] Answer look(std::size_t index, const BasicAxisState<S>& from, const BasicJerkPhase<S>& part,
+                            S low, S high) const {
+    const auto& [phase, block] = trajectory_->phases()[index];
+    return trajectory_->path(block).visit(
+        [&, &phase = phase](const auto& path) { return look(path, phase, from, part, low, high); });
+  }
+  template <Path P>
+  [[nodiscard]] Answer look(const P& path, const BasicPhase<S>& phase, const BasicAxisState<S>& from,
+                            const BasicJerkPhase<S>& part, S low, S high) const {
+    const S half = (high - low) / S(2);
+    const BasicAxisState<S> middle = part.after(from, low + half);
+    const BasicState<S> clock{middle.position, middle.velocity, middle.acceleration, part.jerk};
+    const S tau = std::clamp(clock.position - phase.time, S(0), phase.duration);
+    const BasicState<S> planned = phase.at(tau), now = by_clock(planned, clock);
+
+    // Bounds of the clock, of the plan's acceleration by it, and from these of s'''' downwards to s.
+    const S change = std::abs(clock.acceleration) + half * std::abs(clock.jerk);
+    const S rate = std::abs(clock.velocity) + half * change;
+    const S steep = std::abs(planned.acceleration) + half * rate * std::abs(planned.jerk);
+    const S snap = S(6) * std::abs(planned.jerk) * rate * rate * change +
+                   steep * (S(3) * change * change + S(4) * rate * std::abs(clock.jerk));
+    const S jerk_off = half * snap, jerk = std::abs(now.jerk) + jerk_off;
+    const S acceleration_off = half * jerk, acceleration = std::abs(now.acceleration) + acceleration_off;
+    const S velocity_off = half * acceleration, velocity = std::abs(now.velocity) + velocity_off;
+    const S way = half * velocity;
+
+    const S length = path.length(), s = std::clamp(now.position, S(0), length);
+    const PathPoint<Vector> at = path.point_at(s);
+    const BasicPathBounds<S, n> bounds = path.bounds(std::max(s - way, S(0)), std::min(s + way, length));
+    const AxisMotion<Vector> axes = motion(at, now);
+    const S product_off = velocity * acceleration_off + std::abs(now.acceleration) * velocity_off;
+    const S square = now.velocity * now.velocity, cube = std::abs(now.velocity) * square;
+    const Vector acceleration_spread =
+        bounds.first * acceleration_off +
+        bounds.second * (S(2) * velocity * velocity_off + way * std::abs(now.acceleration)) +
+        bounds.third * (way * square);
+    const Vector jerk_spread = bounds.first * jerk_off +
+                               bounds.second * (S(3) * product_off + way * std::abs(now.jerk)) +
+                               bounds.third * (S(3) * velocity * velocity * velocity_off +
+                                               S(3) * way * std::abs(now.velocity * now.acceleration)) +
+                               Vector::Constant(detail::third_change<P>(bounds, way) * cube);
+
+    bool proven = true;
+    const auto fits = [&](S value, S spread, S limit) {
+      proven = proven && value + spread <= limit * rounding;
+      return value <= limit * rounding;
+    };
+    const auto tool = [&](const Vector& v) { return in_space(v, tool_).norm(); };
+    if (!fits(tool(axes.acceleration), tool(acceleration_spread), limits_.tool.acceleration) ||
+        !fits(tool(axes.jerk), tool(jerk_spread), limits_.tool.jerk))
+      return Answer::no;
+    for (const auto& [i, own] : limits_.axes)
+      if (!fits(std::abs(axes.acceleration[i]), acceleration_spread[i], own.acceleration) ||
+          !fits(std::abs(axes.jerk[i]), jerk_spread[i], own.jerk))
+        return Answer::no;
+    return proven ? Answer::yes : Answer::unknown;
+  }
+
+  const Trajectory<M, B>* trajectory_;
+  BasicMachineLimits<S, n> limits_;
+  std::array<int, 3> tool_;
+};
+
+}  // namespace cncplan::plan

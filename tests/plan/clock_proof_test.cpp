@@ -1,0 +1,127 @@
+// What a changing clock is proven to keep, against positions on a fine grid of time.
+#include "cncplan/plan/clock_proof.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "cncplan/core/state.hpp"
+#include "cncplan/gcode/lines.hpp"
+#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan/smooth_blocks.hpp"
+#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/state/velocity_change.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::test;
+
+namespace {
+
+const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+
+auto planned(const std::string& text, const Machine<3>& machine) {
+  const auto program = read_blocks(gcode::TextLines(text), machine, {});
+  REQUIRE(program);
+  auto trajectory = plan_smooth(program->blocks, machine, {.tolerance = 0.01}, SmoothLevel::good);
+  REQUIRE(trajectory);
+  return *std::move(trajectory);
+}
+
+// From a rate of 1 or so to rest, with so much jerk and acceleration of the clock.
+state::Motion change(double at, double rate, double to, double jerk, double acceleration) {
+  AxisLimits limits;
+  limits.velocity_up = limits.velocity_down = 2;
+  limits.acceleration_up = limits.acceleration_down = acceleration;
+  limits.jerk = jerk;
+  return state::BasicVelocityChange<double>({at, rate, 0}, to, limits).fastest();
+}
+
+struct Most {
+  double acceleration = 0, jerk = 0;  // as shares of the limits
+};
+
+// By differences of positions, a hundred thousandth of a second apart.
+template <class T>
+Most most_of(const T& trajectory, const state::Motion& clock, const Machine<3>& machine) {
+  constexpr double period = 1e-5;
+  Most most;
+  const auto share = [&](const Vector3& value, double tool, auto of_axis) {
+    double result = value.norm() / tool;
+    for (int i = 0; i < 3; ++i)
+      result = std::max(result, std::abs(value[i]) / of_axis(machine.axes[static_cast<std::size_t>(i)]));
+    return result;
+  };
+  const auto at = [&](double t) -> Vector3 { return trajectory.at(clock.at(t).position).position; };
+  for (double t = 0; t + 3 * period < clock.duration(); t += period) {
+    const Vector3 a = at(t), b = at(t + period), c = at(t + 2 * period), d = at(t + 3 * period);
+    const Vector3 bend = (c - 2 * b + a) / (period * period);
+    const Vector3 jerk = (d - 3 * c + 3 * b - a) / (period * period * period);
+    most.acceleration = std::max(most.acceleration, share(bend, machine.limits.acceleration,
+                                                          [](const Axis& x) { return x.acceleration; }));
+    most.jerk = std::max(most.jerk, share(jerk, machine.limits.jerk, [](const Axis& x) { return x.jerk; }));
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("a motion by a clock has the derivatives of the function of the function", "[clock]") {
+  const State of{3, 2, -5, 7};
+  const State clock{1, 0.5, -2, 4};
+  // s(u) = 3 + 2 u - 5 u^2/2 + 7 u^3/6 with u(t) = t/2 - t^2 + 4 t^3/6: the Taylor series of s(u(t)), by hand
+  const State by = by_clock(of, clock);
+  CHECK(by.position == 3);
+  CHECK(by.velocity == Approx(2 * 0.5));
+  CHECK(by.acceleration == Approx(2 * (2 * -1 - 2.5 * 0.25)));
+  CHECK(by.jerk == Approx(6 * (2 * 4.0 / 6 - 2.5 * 2 * 0.5 * -1 + 7.0 / 6 * 0.125)));
+}
+
+TEST_CASE("clock: a hold on a line is proven just as far as the limits go", "[clock]") {
+  const auto trajectory = planned("F1800 G1 X60\nY1\n", mill);
+  const plan::ClockProof proof(trajectory, mill);
+  const double jerk = 10000.0 / 30, acceleration = 1000.0 / 30;
+  const auto holds = [&](double share) {
+    int work = 10000;
+    return proof.holds(change(0.5, 1, 0, share * jerk, acceleration), false, 1e9, work);
+  };
+  CHECK(holds(1));
+  CHECK(holds(0.99));
+  CHECK_FALSE(holds(1.001));
+  int work = 3;  // not enough to look at all of it
+  CHECK_FALSE(proof.holds(change(0.5, 1, 0, jerk / 4, acceleration), false, 1e9, work));
+  CHECK(work < 0);
+}
+
+TEST_CASE("clock: what is proven is within the limits, both ways, on lines, arcs and corners", "[clock]") {
+  Machine<3> machine = mill;
+  machine.axes[0].jerk = 8000;
+  machine.axes[1].acceleration = 400;
+  const auto trajectory = planned(
+      "F1800 G1 X8\nY5\nX9 Y5.5\nG3 X14 Y0.5 R6\nG1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\nG1 X4 Y0\n",
+      with_reserve(machine, 0.1));
+  const plan::ClockProof proof(trajectory, machine);
+  Random random;
+  int proven = 0, refused = 0;
+  for (int i = 0; i < 600; ++i) {
+    const bool back = random.coin();
+    const double at = random.uniform(0, trajectory.duration());
+    const double sense = back ? -1 : 1, from = sense * (random.coin() ? 1 : random.uniform(0, 1));
+    const double to = sense * (random.coin() ? 0 : random.uniform(0, 1));
+    const double v = random.log_uniform(2, 400);
+    const auto clock = change(at, from, to, 10000 / v, 400 / v);
+    const double end = clock.end().position;
+    if (end < 0 || end > trajectory.duration()) continue;
+    int work = 20000;
+    const bool ok = proof.holds(clock, back, back ? 0 : trajectory.duration(), work);
+    (ok ? proven : refused)++;
+    if (!ok) continue;
+    INFO("from " << at << " at " << from << " to " << to << ", v " << v);
+    const Most most = most_of(trajectory, clock, machine);
+    CHECK(most.acceleration < 1 + 1e-5);
+    CHECK(most.jerk < 1 + 1e-3);  // rounding of positions
+  }
+  CHECK(proven > 100);
+  CHECK(refused > 100);
+}
