@@ -1,4 +1,4 @@
-// Runs a planned trajectory: hold, resume, override, stop, backwards, at any instant, one set point a tick.
+// Runs a planned trajectory: hold, resume, override, stop, back, one set point a tick (set-up).
 #pragma once
 
 #include <algorithm>
