@@ -200,6 +200,31 @@ TEST_CASE("trajectory executor: words come once, and stops wait where that is sw
   }
 }
 
+TEST_CASE(
+    "trajectory executor: more words than a set point holds are told before a stop is left, and at the end",
+    "[trajectory-executor]") {
+  const std::string many = "M3 S1\nM8\nM9\nM8\nM9\nM8\nM9\nM8\nM9\n";
+  const auto trajectory = planned("F1800 G1 X5\n" + many + "M0\nX0\n" + many, mill);
+  TrajectoryExecutor executor(trajectory, mill);
+  executor.program_stop(true);
+  std::size_t told = 0;
+  double time = 0;
+  const auto go_on = [&] {
+    told += executor.tick(period).words.size();
+    return !executor.finished() && (time += period) < 2;
+  };
+  while (go_on()) {
+  }
+  CHECK(executor.clock().position == Approx(trajectory.duration() / 2));
+  CHECK(told == 11);
+  executor.resume();
+  time = 0;
+  while (go_on()) {
+  }
+  CHECK(executor.finished());
+  CHECK(told == 21);
+}
+
 TEST_CASE("trajectory executor: a level that an executor has, and axes that turn", "[trajectory-executor]") {
   Machine<4> machine{.limits = mill.limits};
   machine.axes[3].velocity = 2;

@@ -26,12 +26,12 @@ constexpr double period = 1e-4;
 
 struct Errors {
   double velocity = -1, acceleration = -1, jerk = -1;  // over their limits, as shares
-  double place = -1;                                   // mm from the curve
-  double end = -1;                                     // mm from where the program ends
-  double dwell = -1;                                   // s that rests are too short
-  double words = -1;                                   // not told, or not in order
-  double hold = -1;                                    // s from a hold to rest, at most
-  double ticks = -1;                                   // of a case that does not end
+  double place = -1;  // from the programmed path over the tolerance, as a share
+  double end = -1;    // mm from where the program ends
+  double dwell = -1;  // s that rests are too short
+  double words = -1;  // not told, or not in order
+  double hold = -1;   // s from a hold to rest, at most
+  double ticks = -1;  // of a case that does not end
 };
 
 // What to do at a tick. A request is a character: hold, resume, feed, reverse, forwards.
@@ -93,7 +93,10 @@ Case draw(std::uint64_t seed, double seconds) {
 }
 
 template <class T>
-void examine(const T& trajectory, const Case& c, Errors& errors) {
+void examine(const T& trajectory, const std::vector<ProgramBlock<Mill>>& blocks, const Case& c,
+             Errors& errors) {
+  std::vector<double> ends;  // mm of the program up to the end of each block
+  for (const auto& block : blocks) ends.push_back((ends.empty() ? 0 : ends.back()) + block.path.length());
   const Mill& machine = c.program.machine;
   TrajectoryExecutor executor(trajectory, machine);
   const auto share = [&](const Vector3& value, double rounding, double of_tool, auto of_axis) {
@@ -136,7 +139,13 @@ void examine(const T& trajectory, const Case& c, Errors& errors) {
       in_order = in_order && told < words.size() && word == words[told++].word;
     const double shown = executor.clock().position;
     if (point.velocity.isZero(0)) rested += period;
-    errors.place = std::max(errors.place, (trajectory.at(shown).position - point.position).norm());
+    const double s = point.along.position;
+    const auto block = std::min(static_cast<std::size_t>(std::ranges::lower_bound(ends, s) - ends.begin()),
+                                blocks.size() - 1);
+    const auto& path = blocks[block].path;
+    const double within = std::clamp(path.length() - (ends[block] - s), 0.0, path.length());
+    errors.place =
+        std::max(errors.place, (path.position_at(within) - point.position).norm() / c.program.tolerance - 1);
     p = {Vector3(point.position), p[0], p[1], p[2]};
     if (++known < 4) continue;
     const Vector3 v = (p[0] - p[1]) / period, a = (p[0] - 2 * p[1] + p[2]) / (period * period),
@@ -164,7 +173,7 @@ bool examine(const Case& c, Errors& errors) {
   auto trajectory = plan_smooth(program->blocks, planned_for, options, c.level);
   if (!trajectory) return false;
   trajectory->set_words(timed_words(*program, *trajectory));
-  examine(*trajectory, c, errors);
+  examine(*trajectory, program->blocks, c, errors);
   return true;
 }
 
@@ -174,7 +183,7 @@ int soak(std::uint64_t seed, std::uint64_t count, double seconds) {
   test::Worst<E, std::uint64_t> all[] = {{"velocity over its limit", &E::velocity, 1e-6},
                                          {"acceleration over its limit", &E::acceleration, 1e-5},
                                          {"jerk over its limit", &E::jerk, 1e-4},
-                                         {"way from the curve (mm)", &E::place, 0},
+                                         {"way from the program", &E::place, 1e-6},
                                          {"end position (mm)", &E::end, 1e-9},
                                          {"dwells too short (s)", &E::dwell, 0},
                                          {"words not told once", &E::words, 0},

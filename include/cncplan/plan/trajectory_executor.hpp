@@ -82,8 +82,8 @@ class TrajectoryExecutor {
 
   /// Whether it is over: at rest at the end of the trajectory, or where it was stopped.
   [[nodiscard]] bool finished() const {
-    return rests() &&
-           (stopped_ || (standing_ && !backwards_ && rest_ + 1 == rests_.size() && dwell_ == Scalar(0)));
+    const bool at_end = standing_ && !backwards_ && rest_ + 1 == rests_.size() && dwell_ == Scalar(0);
+    return rests() && (stopped_ || (at_end && told_ == words_.size()));
   }
   /// Whether the axes stand.
   [[nodiscard]] bool rests() const {
@@ -157,16 +157,16 @@ class TrajectoryExecutor {
 
   [[nodiscard]] Scalar wanted() const { return held_ ? Scalar(0) : backwards_ ? -share_ : share_; }
 
-  // Dwells; goes on if that is wanted and there is time left: at a rest the clock may take any rate at once.
+  // Dwells; goes on if that is wanted, there is time left and all words are told, as one of them may be M0.
+  // At a rest the clock may take any rate at once.
   bool leave(Scalar& left) {
-    tell_words();
+    if (!tell_words()) return false;
     if (dwell_ > Scalar(0)) {
       const Scalar now = std::min(dwell_, left);
       dwell_ -= now;
       left -= now;
       shown_ = rests_[rest_].to - dwell_;
-      if (dwell_ > Scalar(0)) return false;
-      tell_words();
+      if (dwell_ > Scalar(0) || !tell_words()) return false;
     }
     const Scalar rate = wanted();
     if (rate == Scalar(0) || (rate > Scalar(0) ? rest_ + 1 == rests_.size() : rest_ == 0)) return false;
@@ -294,16 +294,18 @@ class TrajectoryExecutor {
     return true;
   }
 
-  // Words that the clock has come to, each once; what the set point has no room for comes with the next one.
-  void tell_words() {
+  // Words that the clock has come to, each once; false where the set point has no room for more of them: they
+  // come with the next one.
+  bool tell_words() {
     const Scalar shown = clock().position;
     for (; told_ < words_.size() && words_[told_].time <= static_cast<double>(shown); ++told_) {
       const gcode::Word& word = words_[told_].word;
-      if (!reached_.push_back(word)) return;
+      if (!reached_.push_back(word)) return false;
       if (word.letter == 'M' && ((program_stop_ && (word.number == 0 || word.number == 60)) ||
                                  (optional_stop_ && word.number == 1)))
         held_ = true;
     }
+    return true;
   }
 
   const Trajectory<M, B>* trajectory_;
