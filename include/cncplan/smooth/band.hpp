@@ -1,4 +1,4 @@
-// The smoothest curve within a tolerance of a run of blocks, from rest to rest (set-up).
+// The smoothest curve within a tolerance of a run of blocks (set-up).
 #pragma once
 
 #include <Eigen/LU>
@@ -8,11 +8,13 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/limits.hpp"
+#include "cncplan/core/path_point.hpp"
 #include "cncplan/smooth/band_window.hpp"
 #include "cncplan/smooth/cubic.hpp"
 #include "cncplan/smooth/joint_window.hpp"
@@ -28,8 +30,18 @@ struct BandBlock {
   typename P::Vector tolerance{};
 };
 
+/// Where a curve goes on that was cut: its point and derivatives at a length into the first block. Blocks
+/// before that may come along: the corners between them reach beyond it.
+template <Path P>
+struct BandCut {
+  std::size_t block{};
+  typename P::Scalar at{};  ///< mm of the block
+  PathPoint<typename P::Vector> point{};
+};
+
 /// A cubic B-spline q(s) over the programmed length with |q(s) - p(s)| below the tolerance. It is made of a
-/// start that is inside, and moves from there to where a speed-weighted sum of |q'''|^2 is least.
+/// start that is inside, and moves from there to where a speed-weighted sum of |q'''|^2 is least. Its first
+/// and last point, with tangent and curvature, are those of the path, or those at which it was cut.
 template <Path P>
 class Band {
  public:
@@ -49,14 +61,22 @@ class Band {
     BasicBandOptions<S> solver{};
   };
 
-  /// Blocks that follow each other without a stop, each of a length > 0.
-  Band(std::span<const BandBlock<P>> blocks, const Options& options) : blocks_(blocks), options_(options) {
+  /// Blocks that follow each other without a stop, each of a length > 0. Lengths count from where the curve
+  /// begins.
+  Band(std::span<const BandBlock<P>> blocks, const Options& options,
+       const std::optional<BandCut<P>>& cut = std::nullopt)
+      : blocks_(blocks), options_(options), cut_(cut) {
     S at = S(0);
+    if (cut_) {
+      at = -cut_->at;
+      for (std::size_t block = 0; block < cut_->block; ++block) at -= blocks_[block].path->length();
+    }
     for (const auto& block : blocks_) {
       starts_.push_back(at);
       at += block.path->length();
     }
     starts_.push_back(at);
+    length_ = at;
     size_corners();
     for (int round = 0; round < 30; ++round) {
       make_knots();
@@ -69,7 +89,7 @@ class Band {
 
   [[nodiscard]] std::size_t cell_count() const { return lengths_.size(); }
   [[nodiscard]] S cell_start(std::size_t cell) const { return knots_[cell]; }
-  [[nodiscard]] S length() const { return starts_.back(); }
+  [[nodiscard]] S length() const { return length_; }
   [[nodiscard]] std::size_t block_at(S s) const {
     const auto next = std::upper_bound(starts_.begin(), starts_.end() - 1, s);
     return static_cast<std::size_t>(next - starts_.begin()) - 1;
@@ -103,6 +123,7 @@ class Band {
              ++k)
           slow[k] = 1;
     }
+    hold_ends(slow);
     prepare_memory();
     const BasicBandMemory<S, axis_count> memory{rows_, gradient_, step_, trial_};
     const BasicBandProblem<S, axis_count> problem{cells_, samples_, jerk_scale(), options_.centring};
@@ -150,6 +171,7 @@ class Band {
       if (!(speeds_sq[cell] > S(0)))
         for (std::size_t k = cell >= 2 ? cell - 2 : 0; k < std::min(cell + 6, moves.size()); ++k)
           moves[k] = 0;
+    hold_ends(moves);
     std::vector<std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>> rows(options_.window);
     std::vector<VectorN<S, axis_count + 1>> gradient(options_.window), step(options_.window),
         trial(options_.window + 6);
@@ -216,6 +238,30 @@ class Band {
     return worst;
   }
 
+  /// Where the curve may be cut before a cell.
+  [[nodiscard]] BandCut<P> cut_before(std::size_t cell) const {
+    const std::size_t block = block_at(knots_[cell]);
+    return {block, knots_[cell] - starts_[block], cubic(cell).start()};
+  }
+  /// Lets go of the cells from one on. What is left ends as the curve goes on there.
+  void end_before(std::size_t cell) {
+    length_ = knots_[cell];
+    knots_.resize(cell + 1);
+    lengths_.resize(cell);
+    points_.resize(cell + 3);
+    start_.resize(cell + 3);
+    cells_.resize(cell + 1);
+    samples_.resize(cells_.back().first_sample);
+  }
+
+  /// Keeps the curve as it is on a length from its start and from its end.
+  void hold(S start, S end) {
+    held_start_ = start;
+    held_end_ = end;
+  }
+
+  /// Goes back to the curve that the search began with.
+  void reset() { points_ = start_; }
   /// The control points, to keep and to come back to.
   [[nodiscard]] const std::vector<Vector>& points() const { return points_; }
   void set_points(std::vector<Vector> points) { points_ = std::move(points); }
@@ -278,7 +324,8 @@ class Band {
       const S v = std::min(before.feed, after.feed);
       const S need = std::max(std::sqrt(S(2) / S(3) * jump * v * v * v / (options_.jerk_share * limits.jerk)),
                               S(2) / S(3) * jump * v * v / (options_.jerk_share * limits.acceleration));
-      const S room = std::min(corner.at, length() - corner.at) / S(2);
+      // Rest is left on the path itself.
+      const S room = std::min(cut_ ? length() : corner.at, length() - corner.at) / S(2);
       corner.width = std::min({need, options_.start_share / (S(28) / S(120) * share), room});
       corners_.push_back(corner);
     }
@@ -331,7 +378,7 @@ class Band {
     const S growth = longer * S(0.12);
     constexpr int halvings = 6;
     std::vector<Fine> fine;
-    fine.push_back({S(0), widest / S(30), S(0)});
+    fine.push_back({starts_.front(), cut_ ? widest : widest / S(30), S(0)});
     const auto add = [&](S at, S size, S reach) {
       if (size < widest) fine.push_back({at, std::max(size, widest / S(1000)), reach});
     };
@@ -415,8 +462,7 @@ class Band {
           points_[i] +=
               (corners_[c].width * kernel((s - corners_[c].at) / corners_[c].width)) * corners_[c].jump;
     }
-    // Both ends have the position, tangent and curvature of the programmed path.
-    fix_end(cells_.front().weights, 0, blocks_.front().path->point_at(S(0)), 0);
+    fix_end(cells_.front().weights, 0, cut_ ? cut_->point : blocks_.front().path->point_at(S(0)), 0);
     fix_end(moved(cells_[cells - 1].weights, lengths_.back()), 1,
             blocks_.back().path->point_at(blocks_.back().path->length()), cells);
   }
@@ -437,7 +483,7 @@ class Band {
 
   void make_samples() {
     samples_.clear();
-    std::size_t block = 0;
+    std::size_t block = block_at(S(0));
     for (std::size_t cell = 0; cell < cell_count(); ++cell) {
       cells_[cell].first_sample = samples_.size();
       const S from = knots_[cell], h = lengths_[cell];
@@ -480,6 +526,16 @@ class Band {
     return inside;
   }
 
+  void hold_ends(std::span<char> moves) const {
+    for (std::size_t k = 0; k < moves.size() && knots_[std::min(k, cell_count())] < held_start_; ++k)
+      moves[k] = 0;
+    for (std::size_t k = moves.size(); k-- > 0;)
+      if (knots_[std::min(k - std::min<std::size_t>(k, 3), cell_count())] > length_ - held_end_)
+        moves[k] = 0;
+      else
+        break;
+  }
+
   void prepare_memory() {
     rows_.resize(options_.window);
     gradient_.resize(options_.window);
@@ -489,6 +545,8 @@ class Band {
 
   std::span<const BandBlock<P>> blocks_;
   Options options_;
+  std::optional<BandCut<P>> cut_;
+  S length_{}, held_start_{}, held_end_{};
   std::vector<S> starts_, knots_, lengths_;
   std::vector<Corner> corners_;
   std::vector<Vector> points_, start_;

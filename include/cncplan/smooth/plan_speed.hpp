@@ -1,4 +1,4 @@
-// The fastest motion from rest to rest along cells: phases of constant jerk that provably keep all limits.
+// The fastest motion along cells: phases of constant jerk that provably keep all limits.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,7 @@ template <std::floating_point S>
 struct BasicPlanSpeedOptions {
   BasicSpeedOptions<S> window;
   std::size_t window_cells = 400;  ///< coefficients that one window moves
+  bool fastest = true;             ///< else the law stays what the search begins with
 };
 
 /// Memory of a plan for n cells: n paces and levels, n + 2 plateaus, n + 2 coefficients, and room for
@@ -33,7 +34,7 @@ struct BasicPlanSpeedMemory {
 template <std::floating_point S>
 struct BasicSpeedPlan {
   BasicRestCell<S> start, end;
-  S duration{};
+  S duration{};           ///< infinite where no motion keeps the limits and begins and ends as asked for
   BasicUse<S> use;        ///< of the limits, by the phases as `emit_phases` gives them; 0 if not to be proven
   S slow_down = 1;        ///< by which their clock must run slower to keep the limits; 1 as a rule
   S start_slow_down = 1;  ///< by which the start of the search had to be made slower, rests included
@@ -83,12 +84,13 @@ void emit_phases(std::span<const BasicSpeedCell<S, N>> cells, std::span<const S>
     time += phase.duration;
     emit(cell, phase);
   };
-  at_time(0, {S(0), start.duration(), S(0), S(0), S(0), start.jerk});
+  if (start.from_rest()) at_time(0, {S(0), start.duration(), S(0), S(0), S(0), start.jerk});
   const BasicSpeedProblem<S, N> inner{cells.subspan(1, cells.size() - 2), {}, nullptr};
   for (std::size_t cell = 1; cell + 1 < cells.size(); ++cell)
     emit_cell(inner.speed(law, cell - 1), cells[cell].shape(),
               [&](const BasicPhase<S>& phase) { at_time(cell, phase); });
-  at_time(cells.size() - 1, {S(0), end.duration(), S(0), end.speed, -end.acceleration, end.jerk});
+  if (end.from_rest())
+    at_time(cells.size() - 1, {S(0), end.duration(), S(0), end.speed, -end.acceleration, end.jerk});
 }
 
 /// The same phase where the clock runs slower by a factor.
@@ -102,13 +104,24 @@ template <std::floating_point S>
           phase.jerk / (by * by * by)};
 }
 
+/// How motion begins and ends: at speeds, mm/s, without acceleration; 0: at rest. It may begin with cells for
+/// which the memory's law has coefficients already, from b at the start on, that keep the limits: the speed
+/// is the one behind them then.
+template <std::floating_point S>
+struct BasicSpeedEnds {
+  S start{};
+  S end{};
+  std::size_t given{};
+};
+
 /// Plans the speed over cells of which the first and the last, short ones, are those in which motion leaves
-/// rest and comes to it.
+/// rest and comes to it; where it begins or ends at a speed, they have no length.
 template <std::floating_point S, int N>
 [[nodiscard]] BasicSpeedPlan<S> plan_speed(std::span<const BasicSpeedCell<S, N>> cells,
                                            const BasicMotionLimits<S, N>& limits,
                                            const BasicPlanSpeedOptions<S>& options,
-                                           const BasicPlanSpeedMemory<S>& memory) {
+                                           const BasicPlanSpeedMemory<S>& memory,
+                                           const BasicSpeedEnds<S>& ends = {}) {
   BasicSpeedPlan<S> plan;
   const std::size_t inner = cells.size() - 2;
   const auto law = memory.law.first(inner + 2);
@@ -116,18 +129,30 @@ template <std::floating_point S, int N>
   const auto levels = memory.levels.first(inner);
   std::fill(paces.begin(), paces.end(), BasicPace<S>{});
   const BasicSpeedProblem<S, N> problem{cells.subspan(1, inner), paces.subspan(1, inner), &limits};
+  const BasicSpeedProblem<S, N> sought{problem.cells.subspan(ends.given), problem.paces.subspan(ends.given),
+                                       &limits};
   const BasicLimits<S> along = tangential_limits(cells, limits);
-  for (std::size_t i = 0; i < inner; ++i) {
+  S length = S(0);  // of the cells without a law
+  plan.start =
+      ends.start > S(0) ? BasicRestCell<S>::at_speed(ends.start) : detail::rest_cell(cells.front(), limits);
+  plan.end = ends.end > S(0) ? BasicRestCell<S>::at_speed(ends.end)
+                             : detail::rest_cell(detail::reversed(cells.back()), limits);
+  for (std::size_t i = ends.given; i < inner; ++i) {
     const S speed = leisurely_speed(problem.cells[i], limits, problem.paces[i]);
     levels[i] = speed * speed;
+    length += problem.cells[i].length;
   }
-  plan.start = detail::rest_cell(cells.front(), limits);
-  plan.end = detail::rest_cell(detail::reversed(cells.back()), limits);
   // A start that keeps the limits: where it does not yet, it becomes slower, in the end everywhere.
   for (int round = 0; round < 12; ++round) {
-    gentle_law(problem, std::span<const S>(levels), plan.start, plan.end, along, memory.plateaus, law);
-    S worst = S(0);
-    for (std::size_t i = 0; i < inner; ++i) {
+    gentle_law(sought, std::span<const S>(levels).subspan(ends.given), plan.start, plan.end, along,
+               memory.plateaus, law.subspan(ends.given));
+    const S leaves = BasicDeparture<S>(plan.start, along).length(),
+            comes = BasicDeparture<S>(plan.end, along).length();
+    bool start_too_fast = false, end_too_fast = false;
+    S worst = S(0), at = S(0);
+    for (std::size_t i = ends.given; i < inner; ++i) {
+      const S before = at;
+      at += problem.cells[i].length;
       const BasicUse<S> use =
           sampled_use(problem.cells[i], limits, problem.speed(std::span<const S>(law), i));
       const S slow =
@@ -135,10 +160,20 @@ template <std::floating_point S, int N>
                    std::max(std::sqrt(use.acceleration), std::cbrt(use.jerk)) / problem.paces[i].force);
       worst = std::max(worst, slow);
       if (slow < S(1)) continue;
-      for (std::size_t k = i >= 2 ? i - 2 : 0; k < std::min(i + 3, inner); ++k) levels[k] *= S(0.8);
+      start_too_fast = start_too_fast || before <= leaves;
+      end_too_fast = end_too_fast || at >= length - comes;
+      for (std::size_t k = std::max(i, ends.given + 2) - 2; k < std::min(i + 3, inner); ++k)
+        levels[k] *= S(0.8);
     }
     if (worst < S(1)) break;
+    if (plan.start.from_rest() && start_too_fast)
+      plan.start = {cells.front().length, S(0.5) * plan.start.jerk};
+    if (plan.end.from_rest() && end_too_fast) plan.end = {cells.back().length, S(0.5) * plan.end.jerk};
     if (round < 11) continue;
+    if (!plan.start.from_rest() || !plan.end.from_rest()) {
+      plan.duration = std::numeric_limits<S>::infinity();
+      return plan;
+    }
     const S slower = worst * S(1.01);
     for (S& b : law) b /= slower * slower;
     plan.start = {cells.front().length, plan.start.jerk / (slower * slower * slower)};
@@ -146,12 +181,12 @@ template <std::floating_point S, int N>
     plan.start_slow_down = slower;
   }
   // Windows move the coefficients that are slower than the feed.
-  for (std::size_t k = 2; k < inner; ++k) {
+  for (std::size_t k = 2; k < inner && options.fastest; ++k) {
     const S feed = problem.cells[k - 1].feed * problem.paces[k - 1].speed;
     levels[k - 1] = law[k] > feed * feed * (S(1) - S(1e-4)) ? S(0) : S(1);
   }
   const std::size_t most = std::min(options.window_cells, memory.window.capacity(limit_count(limits)) - 4);
-  for (std::size_t k = 2; k < inner;) {
+  for (std::size_t k = 2; k < inner && options.fastest;) {
     if (!(levels[k - 1] > S(0))) {
       ++k;
       continue;
@@ -164,10 +199,16 @@ template <std::floating_point S, int N>
       const auto result = optimise(problem, law, first, last, options.window, memory.window);
       plan.rounds += result.rounds;
       plan.windows += 1;
-      // It keeps the law that it starts from, which can be slow: another window is tried, with other ends.
+      // It keeps the law that it starts from, which can be slow: another window is tried, with other ends;
+      // then one that leaves the cells that came with a law, which may be next to the limits.
       if (!result.converged && !again) {
         again = true;
         first -= std::min(first - k, most / 8);
+        continue;
+      }
+      if (!result.converged && first < ends.given + 2 && ends.given + 2 < end) {
+        again = false;
+        first = k = ends.given + 2;
         continue;
       }
       plan.unconverged += result.converged ? 0 : 1;

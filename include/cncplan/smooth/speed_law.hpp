@@ -126,8 +126,9 @@ void emit_cell(const BasicCellSpeed<S>& b, const BasicCellShape<S>& shape, Emit&
   }
 }
 
-/// From rest at constant jerk: after a length x the speed is (4.5 J x^2)^(1/3) and the acceleration
-/// sqrt(2 J v), so b grows with x^(4/3), which no polynomial does.
+/// How motion begins, or backwards in time ends: from rest at constant jerk, after a length x the speed is
+/// (4.5 J x^2)^(1/3) and the acceleration sqrt(2 J v), so b grows with x^(4/3), which no polynomial does. Or
+/// at a constant speed, without a length.
 template <std::floating_point S>
 struct BasicRestCell {
   S jerk{};
@@ -139,8 +140,14 @@ struct BasicRestCell {
       : jerk(constant_jerk),
         speed(std::cbrt(S(4.5) * jerk * length * length)),
         acceleration(std::sqrt(S(2) * jerk * speed)) {}
+  [[nodiscard]] static BasicRestCell at_speed(S speed) {
+    BasicRestCell moving;
+    moving.speed = speed;
+    return moving;
+  }
 
-  [[nodiscard]] S duration() const { return acceleration / jerk; }
+  [[nodiscard]] bool from_rest() const { return jerk > S(0); }
+  [[nodiscard]] S duration() const { return from_rest() ? acceleration / jerk : S(0); }
 };
 
 }  // namespace cncplan::smooth

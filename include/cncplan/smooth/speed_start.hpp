@@ -1,4 +1,4 @@
-// A slow law of speed that keeps all limits: plateaus with gentle ramps between them, from rest to rest.
+// A slow law of speed that keeps all limits: plateaus with gentle ramps between them.
 #pragma once
 
 #include <algorithm>
@@ -138,8 +138,8 @@ class Plateaus {
 
 }  // namespace detail
 
-/// Motion from rest has come to this b and b' at the law's first knot: it lets go of its acceleration and
-/// stays on a plateau.
+/// Motion has come to this b and b' at the law's first knot: it lets go of its acceleration and stays on a
+/// plateau.
 template <std::floating_point S>
 struct BasicDeparture {
   S speed_sq{};
@@ -163,8 +163,7 @@ struct BasicDeparture {
 };
 
 /// Coefficients of a law over `problem`'s cells, from `levels`, for each cell a b that it may keep
-/// throughout; between the states in which motion leaves rest at its start and, backwards in time, at its
-/// end.
+/// throughout; between the states in which motion begins and, backwards in time, ends.
 template <std::floating_point S, int N>
 void gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> levels,
                 const BasicRestCell<S>& start, const BasicRestCell<S>& end, const BasicLimits<S>& limits,

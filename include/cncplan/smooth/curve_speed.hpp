@@ -1,0 +1,267 @@
+// The speed along the curve of a run of blocks, found anew as the curve changes (set-up).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cncplan/smooth/band.hpp"
+#include "cncplan/smooth/plan_speed.hpp"
+
+namespace cncplan::smooth {
+
+/// The last cells before a place where a curve is cut, and a law of speed over them: b at their start and a
+/// coefficient for each.
+template <std::floating_point S, int N>
+struct BasicApproach {
+  std::vector<BasicCubic<S, N>> curves;
+  std::vector<S> feeds, skews, law;
+
+  [[nodiscard]] std::size_t size() const { return curves.size(); }
+  [[nodiscard]] S length() const {
+    S sum = S(0);
+    for (const auto& curve : curves) sum += curve.length();
+    return sum;
+  }
+};
+
+/// Finds speeds along a `Band`, again and again while it changes, and owns what that needs.
+template <std::floating_point S, int N>
+class CurveSpeed {
+ public:
+  CurveSpeed(const BasicMotionLimits<S, N>& limits, std::size_t window) : limits_(limits) {
+    options_.window_cells = window;
+    const std::size_t room = window + 8;
+    numbers_.resize(BasicWindowMemory<S>::rooms * room);
+    speeds_.resize(3 * room);
+    forces_.resize(3 * limit_count(limits) * room);
+  }
+
+  /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it. The law of speed has
+  /// the skews of the last one. A curve that begins at a cut may have an approach.
+  template <Path P>
+  void take(const Band<P>& band, const BasicSpeedEnds<S>& ends = {},
+            const BasicApproach<S, N>& approach = {}) {
+    ends_ = ends;
+    ends_.given = approach.size();
+    first_law_ = approach.law;
+    cells_.clear();
+    curves_.clear();
+    starts_.clear();
+    origins_.clear();
+    const std::size_t count = band.cell_count();
+    const bool from_rest = !(ends_.start > S(0)), to_rest = !(ends_.end > S(0));
+    const S start = from_rest ? rest_length(band, false) : S(0),
+            end = to_rest ? rest_length(band, true) : S(0);
+    S at = start;  // the next cut
+    if (!from_rest) take_approach(band, approach);
+    for (std::size_t cell = 0; cell < count; ++cell) {
+      const BasicCubic<S, N> curve = band.cubic(cell);
+      const S from = band.cell_start(cell), h = curve.length();
+      const S feed = band.feed(cell);
+      S x = S(0);
+      const auto cut = [&](S to) {
+        add(curve.part(x, to), feed, from + x, {cell, x});
+        x = to;
+      };
+      if (from < band.length() / S(2)) {
+        for (; from_rest && at < from + h * S(0.85) && growth * at < h; at *= S(1) + growth)
+          if (at - from > S(0.15) * growth * at + x) cut(at - from);
+      } else if (to_rest) {
+        // Seen from the end: the cuts stand at end (1 + growth)^i before it.
+        const S left = band.length() - from;
+        S back = end;
+        while (back * (S(1) + growth) < left) back *= S(1) + growth;
+        for (; back >= end * S(0.999) && band.length() - back < from + h * S(1.0000001);
+             back /= S(1) + growth) {
+          const S to = band.length() - back - from;
+          if (!(growth * back < h) || to < x + S(0.15) * growth * back) continue;
+          if (h - to < S(0.15) * growth * back && back > end * S(1.001)) continue;
+          cut(to);
+        }
+      }
+      cut(h);
+    }
+    if (!to_rest) {
+      const BasicCubic<S, N> last = band.cubic(count - 1);
+      add_cell({last.point_at(last.length()), S(0)}, band.feed(count - 1), band.length(), {count - 1, S(0)});
+    }
+    std::size_t knot = 0;
+    for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size() && !knots_.empty(); ++i) {
+      const S before = last_speed(starts_[i], knot), after = last_speed(starts_[i] + cells_[i].length, knot);
+      cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
+    }
+    const std::size_t n = cells_.size();
+    paces_.resize(n);
+    levels_.resize(n);
+    law_.resize(n + 2);
+    plateaus_.resize(n + 4);
+  }
+
+  BasicSpeedPlan<S> plan(S gap, bool proven, bool fastest = true) {
+    options_.window.gap = gap;
+    options_.window.proven = proven;
+    options_.fastest = fastest;
+    std::copy(first_law_.begin(), first_law_.end(), law_.begin());
+    const auto plan = plan_speed<S, N>(
+        cells_, limits_, options_, {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}}, ends_);
+    const std::span<const BasicSpeedCell<S, N>> inner(cells_.data() + 1, cells_.size() - 2);
+    S at = starts_[1];
+    knots_.assign(1, {at, ends_.given > 0 ? std::sqrt(law_[0]) : plan.start.speed});
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+      at += inner[i].length;
+      const BasicSpeedProblem<S, N> problem{inner, {}, nullptr};
+      knots_.push_back({at, std::sqrt(problem.speed(law(), i).end)});
+    }
+    return plan;
+  }
+
+  /// b of the last plan in each cell of the curve.
+  [[nodiscard]] std::vector<S> speeds_sq(std::size_t curve_cells) const {
+    std::vector<S> sums(curve_cells, S(0)), lengths(curve_cells, S(0));
+    for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i) {
+      sums[origins_[i].first] += law_[i] * cells_[i].length;
+      lengths[origins_[i].first] += cells_[i].length;
+    }
+    for (std::size_t i = 0; i < curve_cells; ++i) sums[i] = lengths[i] > S(0) ? sums[i] / lengths[i] : S(0);
+    return sums;
+  }
+
+  /// The middle coefficients of b in the cells of the curve; 0 in those that are cut.
+  [[nodiscard]] std::vector<S> uncut_speeds_sq(std::size_t curve_cells) const {
+    std::vector<S> result(curve_cells, S(0));
+    for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i) {
+      const std::size_t at = origins_[i].first;
+      if (origins_[i - 1].first != at && origins_[i + 1].first != at) result[at] = law_[i];
+    }
+    return result;
+  }
+
+  /// The skews of those cells, 0 in those that are cut.
+  [[nodiscard]] std::vector<S> uncut_skews(std::size_t curve_cells) const {
+    std::vector<S> result(curve_cells, S(0));
+    for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i)
+      if (origins_[i].second == S(0)) result[origins_[i].first] = cells_[i].skew;
+    return result;
+  }
+
+  [[nodiscard]] std::span<const BasicSpeedCell<S, N>> cells() const { return cells_; }
+  [[nodiscard]] std::span<const S> law() const { return std::span<const S>(law_).first(cells_.size()); }
+  [[nodiscard]] const BasicCubic<S, N>& curve(std::size_t i) const { return curves_[i]; }
+  /// Where a cell begins, by the band's length; an approach lies before that.
+  [[nodiscard]] S start(std::size_t i) const { return starts_[i]; }
+  /// The band's cell in which a cell lies, and how far into it; not of an approach.
+  [[nodiscard]] std::pair<std::size_t, S> origin(std::size_t i) const { return origins_[i]; }
+
+  /// The first cell of the approach to the end: from there on the speed of the last plan depends on that at
+  /// the end.
+  [[nodiscard]] std::size_t approach_begin() const {
+    constexpr std::size_t least = 8;
+    constexpr S share = S(0.7);  // of a gentle ramp: a little more than braking needs
+    const BasicLimits<S> along = tangential_limits(cells(), limits_);
+    S length = S(0), most = S(0);
+    std::size_t begin = cells_.size() - 1;
+    while (begin > 1) {
+      --begin;
+      length += cells_[begin].length;
+      most = std::max(most, law_[begin]);
+      if (cells_.size() - begin > least && length > share * BasicGentleRamp<S>(S(0), most, along).length())
+        break;
+    }
+    return begin;
+  }
+  /// The cells from one on as the approach to the end, with the law of the last plan.
+  [[nodiscard]] BasicApproach<S, N> approach(std::size_t begin) const {
+    BasicApproach<S, N> result;
+    const std::span<const BasicSpeedCell<S, N>> inner(cells_.data() + 1, cells_.size() - 2);
+    result.law.push_back(BasicSpeedProblem<S, N>{inner, {}, nullptr}.speed(law(), begin - 1).start);
+    for (std::size_t i = begin; i + 1 < cells_.size(); ++i) {
+      result.curves.push_back(curves_[i]);
+      result.feeds.push_back(cells_[i].feed);
+      result.skews.push_back(cells_[i].skew);
+      result.law.push_back(law_[i]);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr S growth = S(0.3);
+
+  [[nodiscard]] static BasicSpeedCell<S, N> speed_cell(const BasicCubic<S, N>& curve, S feed) {
+    const auto& start = curve.start();
+    return {curve.length(), feed, start.first, start.second, start.third, S(0), S(0)};
+  }
+  void add(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin) {
+    if (curve.length() > S(0)) add_cell(curve, feed, start, origin);
+  }
+  void add_cell(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin) {
+    cells_.push_back(speed_cell(curve, feed));
+    curves_.push_back(curve);
+    starts_.push_back(start);
+    origins_.push_back(origin);
+  }
+
+  // Behind a cell without a length, as where motion begins at a speed.
+  template <Path P>
+  void take_approach(const Band<P>& band, const BasicApproach<S, N>& approach) {
+    S start = -approach.length();
+    const bool at_once = approach.size() == 0;
+    add_cell({(at_once ? band.cubic(0) : approach.curves[0]).start(), S(0)},
+             at_once ? band.feed(0) : approach.feeds[0], start, {0, S(0)});
+    for (std::size_t i = 0; i < approach.size(); ++i) {
+      add_cell(approach.curves[i], approach.feeds[i], start, {0, S(0)});
+      cells_.back().skew = approach.skews[i];
+      start += approach.curves[i].length();
+    }
+  }
+
+  // The speed of the last plan at a place; `knot` goes on from call to call.
+  [[nodiscard]] S last_speed(S at, std::size_t& knot) const {
+    while (knot + 2 < knots_.size() && knots_[knot + 1].first < at) ++knot;
+    const auto [from, slow] = knots_[knot];
+    const auto [to, fast] = knots_[std::min(knot + 1, knots_.size() - 1)];
+    return to > from ? slow + std::clamp((at - from) / (to - from), S(0), S(1)) * (fast - slow) : slow;
+  }
+
+  // So short that what motion from rest has come to at its end is well below what the cells near by allow.
+  template <Path P>
+  [[nodiscard]] S rest_length(const Band<P>& band, bool at_end) const {
+    const std::size_t count = band.cell_count();
+    const S feed = band.feed(at_end ? count - 1 : 0);
+    const BasicSpeedCell<S, N> first = speed_cell(band.cubic(at_end ? count - 1 : 0), feed);
+    const S jerk = tangential_limits(std::span(&first, 1), limits_).jerk;
+    S speed = S(0.02) * feed, length = S(0);
+    for (int round = 0; round < 60; ++round, speed /= S(2)) {
+      length = std::sqrt(speed * speed * speed / (S(4.5) * jerk));
+      S least = std::numeric_limits<S>::infinity(), s = S(0);
+      for (std::size_t k = 0; k < count && s < S(60) * length; ++k) {
+        const auto cell = speed_cell(band.cubic(at_end ? count - 1 - k : k), feed);
+        least = std::min(least, leisurely_speed(cell, limits_, {}));
+        s += cell.length;
+      }
+      if (S(2.8) * speed < S(0.6) * least && length < S(0.5) * first.length) break;
+    }
+    return length;
+  }
+
+  BasicMotionLimits<S, N> limits_;
+  BasicSpeedEnds<S> ends_;
+  BasicPlanSpeedOptions<S> options_;
+  std::vector<BasicSpeedCell<S, N>> cells_;
+  std::vector<BasicCubic<S, N>> curves_;  // of the cells
+  std::vector<S> starts_;
+  std::vector<std::pair<std::size_t, S>> origins_;
+  std::vector<BasicPace<S>> paces_;
+  std::vector<std::pair<S, S>> knots_;  // of the last plan: places and speeds
+  std::vector<S> first_law_, levels_, law_, numbers_;
+  std::vector<BasicSpeedShare<S>> speeds_;
+  std::vector<BasicForceShare<S>> forces_;
+  std::vector<BasicPlateau<S>> plateaus_;
+};
+
+}  // namespace cncplan::smooth
