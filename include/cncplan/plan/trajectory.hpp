@@ -89,7 +89,7 @@ class Trajectory {
   void smoothing() const&& = delete;
   void phases() const&& = delete;
 
-  /// s, from rest to rest.
+  /// s, from rest to rest as a rule.
   [[nodiscard]] Scalar duration() const {
     return phases_.empty() ? Scalar(0) : phases_.back().phase.time + phases_.back().phase.duration;
   }
@@ -220,6 +220,11 @@ class Trajectory {
     constexpr Scalar rounding = Scalar(1e6) * std::numeric_limits<Scalar>::epsilon();
     return position >= length - rounding * (Scalar(1) + length);
   }
+  // Whether the end of the last phase is not rest, but for rounding: a part of a longer trajectory.
+  static bool goes_on(const BasicPhase<Scalar>& phase, const BasicState<Scalar>& end) {
+    const Scalar change = std::abs(phase.acceleration) * phase.duration + std::abs(phase.velocity);
+    return end.velocity > Scalar(1e-3) * change;
+  }
   static bool rests(const BasicPhase<Scalar>& phase) {
     return phase.velocity == Scalar(0) && phase.acceleration == Scalar(0) && phase.jerk == Scalar(0);
   }
@@ -232,9 +237,9 @@ class Trajectory {
   [[nodiscard]] BasicState<Scalar> along(std::size_t index, Scalar time) const {
     const auto& [phase, number] = phases_[index];
     const Scalar length = blocks_[number].path.length();
-    const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
     BasicState<Scalar> state = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
-    if (ended)  // at rest; a program may be stopped before a block's end
+    const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
+    if (ended && !goes_on(phase, state))  // at rest; a program may be stopped before a block's end
       state = {is_whole(state.position, length) ? length : state.position, Scalar(0), Scalar(0), Scalar(0)};
     state.position = std::min(state.position, length);
     return state;

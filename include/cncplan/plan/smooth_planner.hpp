@@ -1,0 +1,344 @@
+// Plans the blocks of a program run by run at the levels `good` and `best`, as they come in (set-up).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/plan/block_checks.hpp"
+#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/plan/smooth_level.hpp"
+#include "cncplan/smooth/smooth_run.hpp"
+
+namespace cncplan::plan {
+
+/// Makes the blocks and phases of a program, one run after the other. Blocks that follow each other within
+/// travel are pushed; what needs no later ones is planned and let go.
+template <MachineModel M, BlockModel B>
+class SmoothPlanner {
+ public:
+  using S = typename M::Scalar;
+  static constexpr int n = M::axis_count;
+  using Out = SmoothBlockOf<B>;
+  using Part = Trajectory<M, Out>;
+
+  /// `most`: blocks that are held at once. The machine is to stay.
+  SmoothPlanner(const M& machine, const PlanOptions& options, SmoothLevel level, std::size_t most)
+      : machine_(machine),
+        options_(options),
+        rules_(smoothing_rules<S>(options)),
+        work_(level == SmoothLevel::good ? smooth::good_smoothing<S> : smooth::BasicSmoothOptions<S>{}),
+        possible_(options.tolerance > 0 && has_curve_level(machine)),
+        most_(most) {}
+
+  [[nodiscard]] Expected<void, ProgramError> push(const B& block) {
+    blocks_.push_back(block);
+    return blocks_.size() < most_ ? Expected<void, ProgramError>{} : plan(false);
+  }
+  /// Plans all that was pushed, to rest.
+  [[nodiscard]] Expected<void, ProgramError> finish() { return plan(true); }
+
+  /// Whether there are blocks that `take` has not given.
+  [[nodiscard]] bool ready() const { return !out_.empty(); }
+  /// What was planned since the last call; its time begins at 0.
+  [[nodiscard]] Part take() {
+    if (smoothing_.corrections.empty()) smoothing_.blocks.clear();
+    time_ = S(0);
+    return Part(machine_, std::exchange(out_, {}), std::exchange(phases_, {}), std::exchange(smoothing_, {}));
+  }
+
+ private:
+  using Path = typename B::Path;
+  using RunPlan = smooth::BasicSmoothRun<S, n>;
+
+  // Corners reach no farther beyond a cut, as a rule.
+  static constexpr std::size_t most_context = 20;
+
+  // Blocks that move, as smoothing sees them.
+  struct RunBlocks {
+    std::vector<smooth::BandBlock<Path>> blocks;
+    std::vector<std::size_t> sources;
+    smooth::BasicMotionLimits<S, n> limits;
+  };
+
+  // Plans what later blocks cannot change; if there is no room for more blocks, at least a part of them.
+  [[nodiscard]] Expected<void, ProgramError> plan(bool all) {
+    std::size_t left = context_;  // the first block that has no plan
+    for (std::size_t i = left; i < blocks_.size();) {
+      const std::size_t end = run_end(i);
+      const bool goes_on = !all && end > i && end == blocks_.size() && !rests(end - 1);
+      if (!goes_on && !cut_ && (end == i || !worth_it(i, end))) {
+        i = std::max(i + 1, end);
+        continue;
+      }
+      if (const auto ok = add_fast(left, i); !ok) return ok;
+      left = i;
+      if (goes_on && end - i < most_ / 2) break;
+      if (goes_on && add_part(i, end)) return {};
+      if (const auto ok = add_run(i, end); !ok) return ok;
+      left = i = end;
+    }
+    if (all || blocks_.size() - left >= most_) {
+      const std::size_t end = all ? blocks_.size() : last_rest(left);
+      if (const auto ok = add_fast(left, end); !ok) return ok;
+      left = end;
+    }
+    if (!cut_) let_go(left);
+    return {};
+  }
+
+  [[nodiscard]] std::span<const B> given(std::size_t first, std::size_t end) const {
+    return std::span<const B>(blocks_).subspan(first, end - first);
+  }
+  void let_go(std::size_t count) {
+    blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(count));
+    first_source_ += count;
+    context_ = 0;
+  }
+
+  [[nodiscard]] bool rests(std::size_t i) const { return blocks_[i].exact_stop || blocks_[i].pause > S(0); }
+  // Behind the last block from one on where the program rests; behind the last of all if it nowhere does.
+  [[nodiscard]] std::size_t last_rest(std::size_t first) const {
+    for (std::size_t end = blocks_.size(); end > first; --end)
+      if (rests(end - 1)) return end;
+    return blocks_.size();
+  }
+
+  [[nodiscard]] bool moves(std::size_t i) const { return blocks_[i].path.length() > S(0); }
+
+  [[nodiscard]] S speed(std::size_t i) const { return wanted_speed(blocks_[i], machine_, LengthOf::tool); }
+
+  [[nodiscard]] bool smooth(std::size_t i) const {
+    return possible_ && tolerance_of(blocks_[i], rules_) > S(0) && speed(i) > S(0) &&
+           length_of(blocks_[i].path, machine_) == LengthOf::tool;
+  }
+
+  // Behind the last block of the run that begins with a block; that block if none does.
+  [[nodiscard]] std::size_t run_end(std::size_t first) const {
+    if (!moves(first) || !smooth(first)) return first;
+    std::size_t last = first;
+    for (std::size_t i = first;; ++i) {
+      if (moves(i)) {
+        if (i > first &&
+            (!smooth(i) || passing_between(blocks_[last], blocks_[i], machine_, rules_) != Passing::smooth))
+          break;
+        last = i;
+      }
+      if (blocks_[i].exact_stop || blocks_[i].pause > S(0) || i + 1 == blocks_.size()) break;
+    }
+    return last + 1;
+  }
+
+  // Straight on through lines, the level `fast` is the exact plan, and no other is faster.
+  [[nodiscard]] bool worth_it(std::size_t first, std::size_t end) const {
+    constexpr S straight = S(1e-6);  // what rounding leaves of short lines
+    std::optional<VectorN<S, n>> direction;
+    for (std::size_t i = first; i < end; ++i) {
+      if (!moves(i)) continue;
+      const auto* line = blocks_[i].path.line();
+      if (line == nullptr) return true;
+      const VectorN<S, n> way = (line->end() - line->start()).normalized();
+      if (direction && !(way - *direction).isZero(straight)) return true;
+      direction = way;
+    }
+    return false;
+  }
+
+  // Blocks as they are, up to `end`, planned at the level `fast`.
+  [[nodiscard]] Expected<void, ProgramError> add_fast(std::size_t first, std::size_t end) {
+    if (first == end) return {};
+    auto planned = plan_blocks(given(first, end), machine_, options_);
+    if (!planned) {
+      if (planned.error().block) *planned.error().block += first_source_ + first;
+      return tl::unexpected(planned.error());
+    }
+    const std::size_t corrections = smoothing_.corrections.size(), before = out_.size();
+    const auto& own = planned->smoothing();
+    smoothing_.corrections.insert(smoothing_.corrections.end(), own.corrections.begin(),
+                                  own.corrections.end());
+    for (std::size_t i = first; i < end; ++i) {
+      add_block(i);
+      if (own.blocks.empty()) continue;
+      smoothing_.blocks.back() = own.blocks[i - first];
+      smoothing_.blocks.back().first += corrections;
+    }
+    for (BasicBlockPhase<S> phase : planned->phases()) {
+      phase.phase.time += time_;
+      phase.block += before;
+      phases_.push_back(phase);
+    }
+    time_ += planned->duration();
+    return {};
+  }
+
+  // A run on a curve of its own; at the level `fast` where it has no plan or a slower one.
+  [[nodiscard]] Expected<void, ProgramError> add_run(std::size_t first, std::size_t end) {
+    if constexpr (!MappedModel<M>) {
+      const RunBlocks given = run_blocks(cut_ ? 0 : first, end);
+      const RunPlan planned = smooth::SmoothRun<Path>(given.blocks, given.limits, work_, cut_).plan();
+      if (works(planned) && (cut_ || !fast_is_faster(planned.duration, first, end))) {
+        add_pieces(planned, given.sources, first, true);
+        return {};
+      }
+      if (cut_) {
+        add_proven(first);
+        return known_ < end ? add_run(known_, end) : Expected<void, ProgramError>{};
+      }
+    }
+    return add_fast(first, end);
+  }
+
+  // The first part of a run, up to where it is cut; false where it cannot be.
+  bool add_part([[maybe_unused]] std::size_t first, [[maybe_unused]] std::size_t end) {
+    if constexpr (!MappedModel<M>) {
+      const RunBlocks given = run_blocks(cut_ ? 0 : first, end);
+      smooth::SmoothRun<Path> run(given.blocks, given.limits, work_, cut_);
+      const std::size_t count = given.blocks.size();
+      for (const auto& [cell, cut] : run.cuts(count * 3 / 4, count * 19 / 20)) {
+        // From there the machine can come to rest along what is known.
+        const std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
+        const std::size_t from = given.sources[moving];
+        smooth::RunCut<Path> there = cut;
+        there.place.block -= moving;
+        const RunBlocks rest = run_blocks(from, end);
+        if (!works(smooth::SmoothRun<Path>(rest.blocks, rest.limits, work_, there).slow_plan())) continue;
+        run.end_before(cell, cut.speed);
+        RunPlan planned = run.plan();
+        if (!works(planned)) planned = run.slow_plan();
+        if (!works(planned)) return false;
+        const std::size_t at = given.sources[planned.end_block];
+        if (at <= first) return false;  // no block would be let go
+        add_pieces(planned, given.sources, first, false);
+        const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
+        cut_ = cut;
+        cut_->place.block -= kept;
+        cut_->approach = std::move(planned.approach);
+        known_ = end - gone;
+        let_go(gone);
+        context_ = at - gone;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // From a cut to rest along the blocks of which it was known that they allow it.
+  void add_proven(std::size_t first) {
+    const RunBlocks given = run_blocks(0, known_);
+    smooth::SmoothRun<Path> run(given.blocks, given.limits, work_, cut_);
+    RunPlan planned = run.plan();
+    if (!works(planned)) planned = run.slow_plan();
+    add_pieces(planned, given.sources, first, true);
+  }
+
+  [[nodiscard]] RunBlocks run_blocks(std::size_t first, std::size_t end) const {
+    RunBlocks result;
+    result.limits.tool = {S(0), machine_.limits.acceleration, machine_.limits.jerk};
+    result.limits.tool_axes = tool_axes(machine_);
+    for (std::size_t i = 0; i < result.limits.axes.size(); ++i)
+      result.limits.axes[i] = {least_velocity(machine_.axes[i]), least_acceleration(machine_.axes[i]),
+                               machine_.axes[i].jerk};
+    for (std::size_t i = first; i < end; ++i) {
+      if (!moves(i)) continue;
+      result.limits.tool.velocity = std::max(result.limits.tool.velocity, top_speed(blocks_[i], machine_));
+      result.blocks.push_back({&blocks_[i].path, speed(i), tolerances(blocks_[i])});
+      result.sources.push_back(i);
+    }
+    return result;
+  }
+
+  [[nodiscard]] bool works(const RunPlan& plan) const {
+    return plan.deviation <= S(1) && std::isfinite(plan.duration) && !plan.pieces.empty() && has_room(plan);
+  }
+
+  // Whether the level `fast` takes less time.
+  [[nodiscard]] bool fast_is_faster(S duration, std::size_t first, std::size_t end) const {
+    const auto planned = plan_blocks(given(first, end), machine_, options_);
+    return planned && planned->duration() < duration;
+  }
+
+  [[nodiscard]] VectorN<S, n> tolerances(const B& block) const {
+    VectorN<S, n> result;
+    for (int i = 0; i < n; ++i)
+      result[i] = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary
+                      ? (S(1) - block.merged) * rules_.rotary_tolerance
+                      : tolerance_of(block, rules_);
+    return result;
+  }
+
+  // A path along an end of travel may be smoothed beyond it.
+  [[nodiscard]] bool has_room(const smooth::BasicSmoothRun<S, n>& run) const {
+    return !has_ends(machine_) || std::all_of(run.pieces.begin(), run.pieces.end(), [&](const auto& piece) {
+      return within_travel(piece.path, machine_).has_value();
+    });
+  }
+
+  // Pieces of a run from its first block, or from where it was cut in that, on. `ends`: up to the end of its
+  // last block.
+  void add_pieces(const RunPlan& run, const std::vector<std::size_t>& sources, std::size_t first, bool ends) {
+    std::vector<std::size_t> places;  // of each piece
+    std::size_t next = first;         // the first block that is not there yet
+    bool begun = cut_.has_value();
+    for (std::size_t i = 0; i < run.pieces.size(); ++i) {
+      const std::size_t source = sources[run.pieces[i].block];
+      for (; next < source; ++next)
+        if (!moves(next)) add_block(next);
+      const bool last = i + 1 == run.pieces.size();
+      const bool goes_on = last ? !ends : sources[run.pieces[i + 1].block] == source;
+      Out& block = add_block(source);
+      block.path = run.pieces[i].path;
+      block.straight_on = false;
+      if ((begun && source == first) || next != source) block.word = {};
+      begun = false;
+      next = source + 1;
+      block.goes_on = goes_on;
+      if (goes_on) {
+        block.exact_stop = false;
+        block.pause = S(0);
+      }
+      places.push_back(out_.size() - 1);
+    }
+    for (auto [phase, piece] : run.phases) {
+      phase.time += time_;
+      phases_.push_back({phase, places[piece]});
+    }
+    time_ += run.duration;
+    cut_.reset();
+    const Out& last = out_.back();
+    if (!(last.pause > S(0))) return;
+    phases_.push_back({{time_, last.pause, last.path.length(), S(0), S(0), S(0)}, out_.size() - 1});
+    time_ += last.pause;
+  }
+
+  // A block as it is, without phases.
+  Out& add_block(std::size_t i) {
+    Out block{blocks_[i], first_source_ + i};
+    smoothing_.blocks.emplace_back();
+    return out_.emplace_back(block);
+  }
+
+  const M& machine_;
+  PlanOptions options_;
+  SmoothingRules<S> rules_;
+  smooth::BasicSmoothOptions<S> work_;
+  bool possible_;
+  std::size_t most_;
+  std::vector<B> blocks_;         // that have no plan, behind those of the context
+  std::size_t first_source_ = 0;  // the program's number of the first of them
+  // A run goes on in a block, `context_` blocks from the first one; from there motion to rest along all
+  // blocks before `known_` is known.
+  std::optional<smooth::RunCut<Path>> cut_;
+  std::size_t context_ = 0, known_ = 0;
+  // What is planned.
+  std::vector<Out> out_;
+  std::vector<BasicBlockPhase<S>> phases_;
+  BasicSmoothing<S, n> smoothing_;
+  S time_{};  // s
+};
+
+}  // namespace cncplan::plan

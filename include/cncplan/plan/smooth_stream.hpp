@@ -1,0 +1,107 @@
+// Plans a program of any length at the levels `good` and `best` of smoothing, as its blocks come (set-up).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cncplan/plan/smooth_planner.hpp"
+
+namespace cncplan {
+
+/// Plans a program of any length within bounded memory: blocks go in, parts of its trajectory come out. A
+/// part goes on where the one before ended, at the same position, velocity and acceleration; the last one
+/// ends at rest.
+///
+/// At most `most_blocks` are held. A run of blocks without a stop that is longer is cut where the motion is
+/// at the feed, or near it, on little curved path. A slow motion from there to rest, along blocks that are
+/// known, is proven before a part goes out, so no later block can break a limit. Curve and speed next to a
+/// cut are not searched for, which costs a few hundredths of a second; the work is an eighth more than that
+/// of `plan_smooth`, which holds the program as a whole.
+///
+/// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
+/// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
+template <MachineModel M, BlockModel B>
+class SmoothStream {
+ public:
+  using Scalar = typename M::Scalar;
+  using Block = plan::SmoothBlockOf<B>;
+  using Part = Trajectory<M, Block>;
+
+  static constexpr std::size_t least_blocks = 30;
+
+  explicit SmoothStream(const M& machine, const PlanOptions& options = {},
+                        SmoothLevel level = SmoothLevel::best, std::size_t most_blocks = 4000)
+      : machine_(machine),
+        merger_(machine_, plan::smoothing_rules<Scalar>(options)),
+        planner_(machine_, options, level, std::max(most_blocks, least_blocks)) {}
+  SmoothStream(const SmoothStream&) = delete;
+  SmoothStream& operator=(const SmoothStream&) = delete;
+
+  /// Takes the next block. Errors as for `plan_smooth`; a block that leaves travel or begins elsewhere than
+  /// the one before ended is not taken, and those before it can still be finished.
+  [[nodiscard]] Expected<void, ProgramError> push(const B& block) {
+    if (const auto ok = check(block); !ok) return ok;
+    end_ = block.path.position_at(block.path.length());
+    ++pushed_;
+    merging_.push_back(block);
+    result_ = {};
+    merger_.push([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
+    drop_merged();
+    return result_;
+  }
+  /// No more blocks come: plans all that is left.
+  [[nodiscard]] Expected<void, ProgramError> finish() {
+    if (const auto ok = check_machine(); !ok) return ok;
+    result_ = {};
+    merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
+    drop_merged();
+    return result_ ? planner_.finish() : result_;
+  }
+
+  /// Whether a part is there to be taken.
+  [[nodiscard]] bool ready() const { return planner_.ready(); }
+  /// What was planned since the last call, in a time that begins at 0; no blocks where that is nothing.
+  /// `Block::source` counts all blocks that were pushed.
+  [[nodiscard]] Part take() { return planner_.take(); }
+
+ private:
+  [[nodiscard]] Expected<void, ProgramError> check_machine() const {
+    if (const auto ok = validate(machine_); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+    return {};
+  }
+  // What single blocks and runs cannot see.
+  [[nodiscard]] Expected<void, ProgramError> check(const B& block) const {
+    if (pushed_ == 0)
+      if (const auto ok = check_machine(); !ok) return ok;
+    auto ok = plan::joined(end_, VectorN<Scalar, M::axis_count>(block.path.position_at(Scalar(0))), machine_);
+    if (ok) ok = plan::within_travel(block.path, machine_);
+    if (!ok) return tl::unexpected(ProgramError{{ok.error(), block.line, block.column, {}}, {}, pushed_});
+    return {};
+  }
+
+  [[nodiscard]] B& merging(std::int64_t i) {
+    return merging_[static_cast<std::size_t>(i) - (pushed_ - merging_.size())];
+  }
+  void hand_on(std::int64_t i) {
+    if (result_) result_ = planner_.push(merging(i));
+    ++merged_;
+  }
+  void drop_merged() {
+    merging_.erase(merging_.begin(), merging_.begin() + static_cast<std::ptrdiff_t>(merged_));
+    merged_ = 0;
+  }
+
+  M machine_;
+  plan::LineMerger<M, B> merger_;
+  plan::SmoothPlanner<M, B> planner_;
+  std::vector<B> merging_;  // the last blocks, which may become parts of one line
+  std::size_t merged_ = 0;  // of them that have been handed on
+  std::size_t pushed_ = 0;
+  std::optional<VectorN<Scalar, M::axis_count>> end_;
+  Expected<void, ProgramError> result_;
+};
+
+}  // namespace cncplan

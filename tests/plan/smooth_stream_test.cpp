@@ -1,0 +1,283 @@
+// Programs that are planned in parts: limits by differences, the path by brute force, the time of the whole.
+#include "cncplan/plan/smooth_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cncplan/gcode/lines.hpp"
+#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan/smooth_blocks.hpp"
+#include "plan/joined_parts.hpp"
+#include "plan/smoothed_motion.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::test;
+
+namespace {
+
+using MillBlock = ProgramBlock<Machine<3>>;
+using Blocks = std::vector<MillBlock>;
+using Stream = SmoothStream<Machine<3>, MillBlock>;
+
+const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+const PlanOptions options{.tolerance = 0.01};
+
+Blocks blocks_of(const std::string& text, const Machine<3>& machine = mill) {
+  auto program = read_blocks(gcode::TextLines(text), machine, options);
+  REQUIRE(program);
+  return std::move(program->blocks);
+}
+
+// Rows to and fro over a wavy surface, joined by half circles: short lines that are seldom straight.
+std::string rows(int count, int lines, double feed = 1800) {
+  std::ostringstream text;
+  text << "F" << feed << "\n";
+  for (int row = 0; row < count; ++row) {
+    const double y = row, way = row % 2 == 0 ? 1 : -1, begin = row % 2 == 0 ? 0 : 12;
+    for (int i = 1; i <= lines; ++i) {
+      const double x = begin + way * 12 * i / lines;
+      text << "G1 X" << x << " Y" << y << " Z" << 0.3 * std::sin(1.3 * x) * std::cos(0.2 * y) << "\n";
+    }
+    if (row + 1 < count) text << (way > 0 ? "G3" : "G2") << " Y" << y + 1 << " J0.5 Z0\n";
+  }
+  return text.str();
+}
+
+// Where parts meet at a speed, of a program whose parts end at these times.
+template <class T>
+std::size_t cuts(const T& trajectory, const std::vector<double>& ends) {
+  return static_cast<std::size_t>(std::count_if(ends.begin(), ends.end(), [&](double end) {
+    return end < trajectory.duration() && trajectory.at(end).velocity.norm() > 0;
+  }));
+}
+
+template <class T>
+void check_motion(const T& trajectory, const Blocks& blocks, const Machine<3>& machine = mill) {
+  const Used most = used(trajectory, machine);
+  CHECK(most.velocity <= 1 + 1e-6);
+  CHECK(most.acceleration <= 1 + 1e-5);
+  CHECK(most.jerk <= 1 + 1e-4);
+  const Polyline path = programmed(blocks), curve = driven(trajectory, 4);
+  CHECK(farthest(curve, path) <= options.tolerance * (1 + 1e-6));
+  CHECK(farthest(path, curve) <= options.tolerance * (1 + 1e-6));
+  CHECK((trajectory.at(0).position - path.front()).norm() < 1e-9);
+  CHECK((trajectory.at(trajectory.duration()).position - path.back()).norm() < 1e-9);
+  CHECK(trajectory.completed());
+  // Each block of the program as a whole, in order.
+  std::vector<double> lengths(blocks.size(), 0);
+  std::size_t source = 0;
+  for (const auto& block : trajectory.program()) {
+    REQUIRE(block.source >= source);
+    source = block.source;
+    CHECK(block.line == blocks[source].line);
+    lengths[source] += block.path.length();
+  }
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    CHECK(lengths[i] == Approx(blocks[i].path.length()).epsilon(1e-9).margin(1e-12));
+}
+
+}  // namespace
+
+TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the time of the whole",
+          "[smooth-stream]") {
+  for (const double feed : {1800.0, 6000.0}) {
+    Machine<3> machine = mill;
+    machine.limits.velocity = feed / 60;
+    const Blocks blocks = blocks_of(rows(8, 50, feed), machine);
+    const auto whole = plan_smooth(blocks, machine, options, SmoothLevel::good);
+    REQUIRE(whole);
+    for (const std::size_t held : {60u, 150u}) {
+      CAPTURE(feed, held);
+      std::vector<double> ends;
+      const auto parts = plan_in_parts(blocks, machine, options, SmoothLevel::good, held, &ends);
+      REQUIRE(parts);
+      check_motion(*parts, blocks, machine);
+      CHECK(cuts(*parts, ends) >= blocks.size() / held);
+      // A cut costs hundredths of a second; a stop in place of it costs 0.11 s at the lower feed.
+      const double lost = parts->duration() - whole->duration();
+      CHECK(lost < 0.06 * static_cast<double>(cuts(*parts, ends)));
+    }
+  }
+}
+
+TEST_CASE("stream: the level best", "[smooth-stream]") {
+  const Blocks blocks = blocks_of(rows(4, 50));
+  std::vector<double> ends;
+  const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::best, 80, &ends);
+  REQUIRE(parts);
+  check_motion(*parts, blocks);
+  CHECK(cuts(*parts, ends) >= 2);
+}
+
+TEST_CASE("stream: a part goes on as the one before ended", "[smooth-stream]") {
+  const Blocks blocks = blocks_of(rows(6, 60));
+  Stream stream(mill, options, SmoothLevel::good, 80);
+  Vector3 position = Vector3::Zero(), velocity = Vector3::Zero(), acceleration = Vector3::Zero();
+  int parts = 0;
+  const auto take = [&] {
+    if (!stream.ready()) return;
+    const auto part = stream.take();
+    const auto start = part.at(0), end = part.at(part.duration());
+    CHECK((start.position - position).norm() < 1e-9);
+    CHECK((start.velocity - velocity).norm() < 1e-6);
+    CHECK((start.acceleration - acceleration).norm() < 1e-3);
+    position = end.position;
+    velocity = end.velocity;
+    acceleration = end.acceleration;
+    ++parts;
+  };
+  for (const MillBlock& block : blocks) {
+    REQUIRE(stream.push(block));
+    take();
+    CHECK((parts == 0 || velocity.norm() > 1));
+  }
+  REQUIRE(stream.finish());
+  take();
+  CHECK(parts > 5);
+  CHECK(velocity.norm() == 0);
+  CHECK(!stream.ready());
+  const auto nothing = stream.take();
+  CHECK(nothing.program().empty());
+}
+
+TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]") {
+  const std::size_t held = 50;
+  // Runs, a long stretch on the exact path, and one without any motion.
+  std::string text = rows(3, 60) + "G61\n" + rows(3, 60) + "G64\n";
+  for (int i = 0; i < 200; ++i) text += "M8\n";
+  const Blocks blocks = blocks_of(text + rows(3, 60));
+  Stream stream(mill, options, SmoothLevel::good, held);
+  std::size_t pushed = 0, out = 0;
+  for (const MillBlock& block : blocks) {
+    REQUIRE(stream.push(block));
+    ++pushed;
+    if (!stream.ready()) continue;
+    const auto part = stream.take();
+    out = part.program().back().source;
+    CHECK(pushed - out <= held + 1);
+  }
+  CHECK(pushed - out <= held + 1);
+  REQUIRE(stream.finish());
+  const auto last = stream.take();
+  CHECK(last.program().back().source + 1 == blocks.size());
+}
+
+TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole", "[smooth-stream]") {
+  std::string text = rows(2, 60) + "M8\nG4 P0.25\n" + rows(2, 60) + "M0\nG61.1\n" + rows(1, 10) + "G61\n" +
+                     rows(1, 10) + "G64\nM9\n" + rows(1, 80) + "G1 X3\nX9 Y4\nM5\nX0\nM30\n";
+  const Blocks blocks = blocks_of(text);
+  const auto whole = plan_smooth(blocks, mill, options, SmoothLevel::good);
+  const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, 50);
+  REQUIRE(whole);
+  REQUIRE(parts);
+  const auto words = [](const auto& trajectory) {
+    std::vector<std::pair<std::size_t, int>> result;
+    for (const auto& block : trajectory.program())
+      if (block.word.letter != '\0') result.emplace_back(block.source, static_cast<int>(block.word.number));
+    return result;
+  };
+  CHECK(words(*parts) == words(*whole));
+  const auto rest = [](const auto& trajectory) {
+    double seconds = 0;
+    for (const auto& [phase, block] : trajectory.phases())
+      if (phase.velocity == 0 && phase.jerk == 0 && phase.acceleration == 0) seconds += phase.duration;
+    return seconds;
+  };
+  CHECK(rest(*parts) == Approx(rest(*whole)));
+  const auto stops = [](const auto& trajectory) {
+    std::vector<std::size_t> result;
+    for (const auto& block : trajectory.program())
+      if (block.exact_stop || block.pause > 0) result.push_back(block.source);
+    return result;
+  };
+  CHECK(stops(*parts) == stops(*whole));
+}
+
+TEST_CASE("stream: merged lines", "[smooth-stream]") {
+  const Blocks blocks = blocks_of("G64 P0.01 Q0.004\n" + rows(4, 200));
+  const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, 60);
+  const auto whole = plan_smooth(blocks, mill, options, SmoothLevel::good);
+  REQUIRE(parts);
+  REQUIRE(whole);
+  check_motion(*parts, blocks);
+  const auto merged = [](const auto& trajectory) {
+    std::vector<std::size_t> sources;
+    for (const auto& block : trajectory.program())
+      if (block.merged > 0 && (sources.empty() || sources.back() != block.source))
+        sources.push_back(block.source);
+    return sources;
+  };
+  CHECK(merged(*parts).size() > blocks.size() / 2);
+  CHECK(merged(*parts) == merged(*whole));
+}
+
+TEST_CASE("stream: where no later block can be smoothed it comes to rest as was proven", "[smooth-stream]") {
+  // A wall at Y -0.5: a curve beyond it has no plan. It is touched in a corner far behind the first cuts.
+  Machine<3> machine = mill;
+  machine.axes[1].low = -0.5;
+  std::ostringstream text;
+  text << rows(3, 60) << "G1 X0 Y2 Z0\nX-3 Y-0.5\nX-6\nX-9 Y0\n";
+  for (int i = 0; i < 100; ++i) text << "G1 X" << -9 - 0.2 * i << " Y" << 0.1 * std::sin(i) << "\n";
+  const Blocks blocks = blocks_of(text.str(), machine);
+  for (const std::size_t held : {40u, 70u, 100u, 130u}) {
+    CAPTURE(held);
+    std::vector<double> ends;
+    const auto parts = plan_in_parts(blocks, machine, options, SmoothLevel::good, held, &ends);
+    REQUIRE(parts);
+    check_motion(*parts, blocks, machine);
+    CHECK(cuts(*parts, ends) > 0);
+    for (const auto& point : parts->samples(1e-3)) CHECK(point.position[1] > -0.5 - 1e-9);
+  }
+}
+
+TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-stream]") {
+  Machine<3> machine = mill;
+  machine.axes[0].high = 20;
+  Blocks blocks = blocks_of(rows(1, 60), machine);
+  Stream stream(machine, options, SmoothLevel::good, 40);
+  for (const MillBlock& block : blocks) REQUIRE(stream.push(block));
+  MillBlock apart = blocks.back();
+  apart.path = path::Line<3>(Vector3(5, 5, 5), Vector3(6, 5, 5));
+  apart.line = 77;
+  const auto refused = stream.push(apart);
+  REQUIRE(!refused);
+  CHECK(refused.error().error().code == ErrorCode::discontinuous);
+  CHECK(refused.error().block == blocks.size());
+  CHECK(refused.error().about.line == 77);
+  apart.path =
+      path::Line<3>(Vector3(blocks.back().path.position_at(blocks.back().path.length())), Vector3(25, 0, 0));
+  CHECK(stream.push(apart).error().error().code == ErrorCode::above_limit);
+  REQUIRE(stream.finish());
+  const auto last = stream.take();
+  CHECK(last.program().back().source + 1 == blocks.size());
+  CHECK(last.at(last.duration()).velocity.norm() == 0);
+}
+
+TEST_CASE("stream: random programs, random memory", "[smooth-stream]") {
+  test::Random random;
+  for (int round = 0; round < 6; ++round) {
+    std::ostringstream text;
+    text << "F1800\n";
+    Vector3 at = Vector3::Zero(), way = Vector3::UnitX();
+    const double longest = random.log_uniform(0.05, 3);
+    for (int i = 0; i < 200; ++i) {
+      const Vector3 any(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.3, 0.3));
+      way = (way + random.uniform(0, 0.8) * any).normalized();
+      at += random.log_uniform(longest / 20, longest) * way;
+      text << (random.integer(0, 20) == 0 ? "G0" : "G1") << " X" << at[0] << " Y" << at[1] << " Z" << at[2]
+           << " F" << random.integer(300, 1800) << "\n";
+    }
+    const auto held = static_cast<std::size_t>(random.integer(30, 120));
+    INFO("seed " << test::seed() << " round " << round << " held " << held << "\n" << text.str());
+    const Blocks blocks = blocks_of(text.str());
+    const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, held);
+    REQUIRE(parts);
+    check_motion(*parts, blocks);
+  }
+}
