@@ -1,8 +1,10 @@
 // Prints what smoothing takes on the cases of docs/smoothing.md: the exact path with jumps at its corners,
 // the levels fast, good and best, and the processor time of each level for a block, reading excluded.
-//   cncplan_smooth_table FOLDER [WORD]    programs are read from FOLDER; only cases whose names hold WORD
+//   cncplan_smooth_table FOLDER [WORD [HELD]]    programs are read from FOLDER; only cases whose names hold
+//       WORD; good and best in parts by a `SmoothStream` that holds so many blocks
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <initializer_list>
@@ -144,7 +146,29 @@ Time time_of(std::size_t blocks, const Plan& plan) {
   return {planned->duration(), work / static_cast<double>(blocks)};
 }
 
-bool print(const Case& c, const std::string& folder) {
+// Takes the parts of a program as they come.
+class Parts {
+ public:
+  Parts(const std::vector<Block>& blocks, const Mill& machine, const PlanOptions& options, SmoothLevel level,
+        std::size_t held) {
+    SmoothStream<Mill, Block> stream(machine, options, level, held);
+    for (const Block& block : blocks) {
+      works_ = works_ && stream.push(block);
+      if (stream.ready()) duration_ += stream.take().duration();
+    }
+    works_ = works_ && stream.finish();
+    duration_ += stream.take().duration();
+  }
+  explicit operator bool() const { return works_; }
+  const Parts* operator->() const { return this; }
+  [[nodiscard]] double duration() const { return duration_; }
+
+ private:
+  bool works_ = true;
+  double duration_ = 0;
+};
+
+bool print(const Case& c, const std::string& folder, std::size_t held) {
   const Mill machine{.limits = c.limits};
   const auto blocks = blocks_of(c, machine, folder);
   if (!blocks) {
@@ -154,9 +178,12 @@ bool print(const Case& c, const std::string& folder) {
   const PlanOptions exact{.junction_deviation = c.tolerance}, smooth{.tolerance = c.tolerance};
   const Time jumping = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, exact); });
   const Time fast = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, smooth); });
-  const Time good =
-      time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, SmoothLevel::good); });
-  const Time best = time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth); });
+  const auto smoothed = [&](SmoothLevel level) {
+    if (held == 0)
+      return time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, level); });
+    return time_of(blocks->size(), [&] { return Parts(*blocks, machine, smooth, level, held); });
+  };
+  const Time good = smoothed(SmoothLevel::good), best = smoothed(SmoothLevel::best);
   double straight = 0;
   if (c.loss) {
     for (const Block& block : *blocks) straight += block.path.length() / c.limits.velocity;
@@ -186,16 +213,17 @@ bool print(const Case& c, const std::string& folder) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: cncplan_smooth_table FOLDER [WORD]\n");
+    std::fprintf(stderr, "usage: cncplan_smooth_table FOLDER [WORD [HELD]]\n");
     return 2;
   }
   const std::string_view word = argc > 2 ? argv[2] : "";
+  const std::size_t held = argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 0;
   std::printf(
       "| case | exact, jumping | fast | wanted | good | best | wanted | fast, us a block | good, us | best, "
       "us |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
   bool ok = true;
   for (const Case& c : cases())
-    if (c.name.find(word) != std::string::npos) ok = print(c, argv[1]) && ok;
+    if (c.name.find(word) != std::string::npos) ok = print(c, argv[1], held) && ok;
   return ok ? 0 : 1;
 }

@@ -29,8 +29,9 @@ inline Machine<3> draw_machine(Random& random) {
   return machine;
 }
 
-// Lines, arcs, helices and zigzags of 0.01 to 50 mm, ways back, feeds from 1 to 100 mm/s, rapids between.
-inline std::string draw_program(Random& random) {
+// Lines, arcs, helices and zigzags of 0.01 to 50 mm, ways back unless it is to run through, feeds from 1 to
+// 100 mm/s, rapids between.
+inline std::string draw_program(Random& random, bool through = false) {
   std::string text;
   Vector3 at = Vector3::Zero(), way = Vector3::UnitX();
   const int count = static_cast<int>(random.log_uniform(1, 301));
@@ -59,7 +60,7 @@ inline std::string draw_program(Random& random) {
       way = (way + random.uniform(0, 1.5) * any).normalized();
       to(kind == 0 ? "G0 " : "G1 ", at + length * way);
     } else if (kind == 5) {  // the way back, or nearly
-      way = -(way + random.uniform(0, 0.1) * any).normalized();
+      way = (through ? 1 : -1) * (way + random.uniform(0, 0.1) * any).normalized();
       to("G1 ", at + length * way);
     } else if (kind == 6) {
       const Vector3 side(-way[1], way[0], random.uniform(-0.2, 0.2));
@@ -90,9 +91,9 @@ struct SmoothCase {
   Machine<3> machine;
 };
 
-inline SmoothCase draw_smooth_case(std::uint64_t seed) {
+inline SmoothCase draw_smooth_case(std::uint64_t seed, bool through = false) {
   Random random(seed);
-  return {seed, random.log_uniform(0.003, 0.05), draw_program(random), draw_machine(random)};
+  return {seed, random.log_uniform(0.003, 0.05), draw_program(random, through), draw_machine(random)};
 }
 
 inline void print(const SmoothCase& c) {
