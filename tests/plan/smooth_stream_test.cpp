@@ -199,6 +199,39 @@ TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole"
   CHECK(stops(*parts) == stops(*whole));
 }
 
+TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]") {
+  std::ostringstream text;
+  text << "F1800\n";
+  for (int i = 1; i <= 300; ++i) text << "G1 X" << 0.4 * i << " Y" << 0.2 * std::sin(i) << "\n";
+  // A place where a word is told, behind each second block: what is held ends with one as often as not.
+  Blocks blocks;
+  for (const MillBlock& block : blocks_of(text.str())) {
+    blocks.push_back(block);
+    if (blocks.size() % 3 != 2) continue;
+    MillBlock word = block;
+    const Vector3 here = block.path.position_at(block.path.length());
+    word.path = path::Line<3>(here, here);
+    word.word = {'M', 8};
+    blocks.push_back(word);
+  }
+  const auto slowest = [](const auto& trajectory) {
+    double least = 30;
+    for (const auto& point : trajectory.samples(1e-3))
+      if (point.time > 0.2 && point.time < trajectory.duration() - 0.2)
+        least = std::min(least, point.velocity.norm());
+    return least;
+  };
+  const auto whole = plan_smooth(blocks, mill, options, SmoothLevel::good);
+  REQUIRE(whole);
+  for (const std::size_t held : {60u, 61u, 62u, 63u}) {
+    const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, held);
+    REQUIRE(parts);
+    CAPTURE(held, slowest(*whole));
+    CHECK(slowest(*parts) > 2);  // it is 0 at a stop
+    CHECK(parts->duration() < 1.1 * whole->duration());
+  }
+}
+
 TEST_CASE("stream: merged lines", "[smooth-stream]") {
   const Blocks blocks = blocks_of("G64 P0.01 Q0.004\n" + rows(4, 200));
   const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, 60);

@@ -71,14 +71,14 @@ class SmoothPlanner {
     std::size_t left = context_;  // the first block that has no plan
     for (std::size_t i = left; i < blocks_.size();) {
       const std::size_t end = run_end(i);
-      const bool goes_on = !all && end > i && end == blocks_.size() && !rests(end - 1);
+      const bool goes_on = !all && end > i && is_open(end);
       if (!goes_on && !cut_ && (end == i || !worth_it(i, end))) {
         i = std::max(i + 1, end);
         continue;
       }
       if (const auto ok = add_fast(left, i); !ok) return ok;
       left = i;
-      if (goes_on && end - i < most_ / 2) break;
+      if (goes_on && blocks_.size() - i < most_ / 2) break;
       if (goes_on && add_part(i, end)) return {};
       if (const auto ok = add_run(i, end); !ok) return ok;
       left = i = end;
@@ -102,6 +102,13 @@ class SmoothPlanner {
   }
 
   [[nodiscard]] bool rests(std::size_t i) const { return blocks_[i].exact_stop || blocks_[i].pause > S(0); }
+  // Whether a run that ends before a block may go on in one that has not come yet.
+  [[nodiscard]] bool is_open(std::size_t end) const {
+    if (rests(end - 1)) return false;
+    for (std::size_t i = end; i < blocks_.size(); ++i)
+      if (moves(i) || rests(i)) return false;
+    return true;
+  }
   // Behind the last block from one on where the program rests; behind the last of all if it nowhere does.
   [[nodiscard]] std::size_t last_rest(std::size_t first) const {
     for (std::size_t end = blocks_.size(); end > first; --end)

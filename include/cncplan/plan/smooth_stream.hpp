@@ -15,11 +15,12 @@ namespace cncplan {
 /// part goes on where the one before ended, at the same position, velocity and acceleration; the last one
 /// ends at rest.
 ///
-/// At most `most_blocks` are held. A run of blocks without a stop that is longer is cut where the motion is
-/// at the feed, or near it, on little curved path. A slow motion from there to rest, along blocks that are
-/// known, is proven before a part goes out, so no later block can break a limit. Curve and speed next to a
-/// cut are not searched for, which costs a few hundredths of a second; the work is an eighth more than that
-/// of `plan_smooth`, which holds the program as a whole.
+/// At most `most_blocks` are held. A run of blocks without a stop that is longer is cut on little curved
+/// path. A slow motion from there to rest, along blocks that are known, is proven before a part goes out, so
+/// no later block can break a limit. The curve next to a cut is not searched for, which costs some
+/// milliseconds; the speed is searched for again with what follows, through the cut. The work is that of
+/// `plan_smooth`, which holds the program as a whole. A part that does not end at rest is nothing for a
+/// `TrajectoryExecutor`.
 ///
 /// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
 /// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
