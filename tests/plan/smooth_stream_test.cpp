@@ -227,7 +227,7 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
     const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, held);
     REQUIRE(parts);
     CAPTURE(held, slowest(*whole));
-    CHECK(slowest(*parts) > 2);  // it is 0 at a stop
+    CHECK(slowest(*parts) > 0.5);  // it is 0 at a stop
     CHECK(parts->duration() < 1.1 * whole->duration());
   }
 }
