@@ -146,27 +146,24 @@ Time time_of(std::size_t blocks, const Plan& plan) {
   return {planned->duration(), work / static_cast<double>(blocks)};
 }
 
-// Takes the parts of a program as they come.
-class Parts {
- public:
-  Parts(const std::vector<Block>& blocks, const Mill& machine, const PlanOptions& options, SmoothLevel level,
-        std::size_t held) {
-    SmoothStream<Mill, Block> stream(machine, options, level, held);
-    for (const Block& block : blocks) {
-      works_ = works_ && stream.push(block);
-      if (stream.ready()) duration_ += stream.take().duration();
-    }
-    works_ = works_ && stream.finish();
-    duration_ += stream.take().duration();
-  }
-  explicit operator bool() const { return works_; }
-  const Parts* operator->() const { return this; }
-  [[nodiscard]] double duration() const { return duration_; }
-
- private:
-  bool works_ = true;
-  double duration_ = 0;
+// What is asked of a program that is planned in parts.
+struct Parts {
+  double seconds{};
+  [[nodiscard]] double duration() const { return seconds; }
 };
+
+std::optional<Parts> plan_in_parts(const std::vector<Block>& blocks, const Mill& machine,
+                                   const PlanOptions& options, SmoothLevel level, std::size_t held) {
+  SmoothStream<Mill, Block> stream(machine, options, level, held);
+  Parts parts;
+  for (const Block& block : blocks) {
+    if (!stream.push(block)) return std::nullopt;
+    if (stream.ready()) parts.seconds += stream.take().duration();
+  }
+  if (!stream.finish()) return std::nullopt;
+  parts.seconds += stream.take().duration();
+  return parts;
+}
 
 bool print(const Case& c, const std::string& folder, std::size_t held) {
   const Mill machine{.limits = c.limits};
@@ -181,7 +178,7 @@ bool print(const Case& c, const std::string& folder, std::size_t held) {
   const auto smoothed = [&](SmoothLevel level) {
     if (held == 0)
       return time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, level); });
-    return time_of(blocks->size(), [&] { return Parts(*blocks, machine, smooth, level, held); });
+    return time_of(blocks->size(), [&] { return plan_in_parts(*blocks, machine, smooth, level, held); });
   };
   const Time good = smoothed(SmoothLevel::good), best = smoothed(SmoothLevel::best);
   double straight = 0;

@@ -250,7 +250,7 @@ TEST_CASE("stream: merged lines", "[smooth-stream]") {
   CHECK(merged(*parts) == merged(*whole));
 }
 
-TEST_CASE("stream: where no later block can be smoothed it comes to rest as was proven", "[smooth-stream]") {
+TEST_CASE("stream: a wall that is touched behind a cut is not passed", "[smooth-stream]") {
   // A wall at Y -0.5: a curve beyond it has no plan. It is touched in a corner far behind the first cuts.
   Machine<3> machine = mill;
   machine.axes[1].low = -0.5;
@@ -290,6 +290,26 @@ TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-str
   const auto last = stream.take();
   CHECK(last.program().back().source + 1 == blocks.size());
   CHECK(last.at(last.duration()).velocity.norm() == 0);
+}
+
+TEST_CASE("stream: nothing, and more behind a finish", "[smooth-stream]") {
+  Stream stream(mill, options, SmoothLevel::good, 60);
+  REQUIRE(stream.finish());
+  CHECK(!stream.ready());
+  const Blocks blocks = blocks_of(rows(4, 60));
+  double time = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    REQUIRE(stream.push(blocks[i]));
+    if (i + 1 != blocks.size() / 2 && i + 1 != blocks.size()) continue;
+    REQUIRE(stream.finish());
+    const auto part = stream.take();
+    CHECK(part.program().back().source == i);
+    CHECK((part.at(part.duration()).position - blocks[i].path.position_at(blocks[i].path.length())).norm() <
+          1e-9);
+    CHECK(part.at(part.duration()).velocity.norm() == 0);
+    time += part.duration();
+  }
+  CHECK(time > 0);
 }
 
 TEST_CASE("stream: random programs, random memory", "[smooth-stream]") {

@@ -18,9 +18,9 @@ namespace cncplan {
 /// At most `most_blocks` are held. A run of blocks without a stop that is longer is cut on little curved
 /// path. A slow motion from there to rest, along blocks that are known, is proven before a part goes out, so
 /// no later block can break a limit. The curve next to a cut is not searched for, which costs some
-/// milliseconds; the speed is searched for again with what follows, through the cut. The work is that of
-/// `plan_smooth`, which holds the program as a whole. A part that does not end at rest is nothing for a
-/// `TrajectoryExecutor`.
+/// milliseconds, more at the level best; the speed is searched for again with what follows, through the cut.
+/// The work is that of `plan_smooth`, which holds the program as a whole. A part that does not end at rest is
+/// nothing for a `TrajectoryExecutor`.
 ///
 /// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
 /// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
@@ -53,7 +53,7 @@ class SmoothStream {
     drop_merged();
     return result_;
   }
-  /// No more blocks come: plans all that is left.
+  /// Plans all that is left, to rest. Blocks that are pushed later go on from there.
   [[nodiscard]] Expected<void, ProgramError> finish() {
     if (const auto ok = check_machine(); !ok) return ok;
     result_ = {};

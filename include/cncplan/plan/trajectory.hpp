@@ -221,7 +221,7 @@ class Trajectory {
     return position >= length - rounding * (Scalar(1) + length);
   }
   // Whether the end of the last phase is not rest, but for rounding: a part of a longer trajectory.
-  static bool goes_on(const BasicPhase<Scalar>& phase, const BasicState<Scalar>& end) {
+  static bool ends_at_speed(const BasicPhase<Scalar>& phase, const BasicState<Scalar>& end) {
     const Scalar change = std::abs(phase.acceleration) * phase.duration + std::abs(phase.velocity);
     return end.velocity > Scalar(1e-3) * change;
   }
@@ -239,7 +239,7 @@ class Trajectory {
     const Scalar length = blocks_[number].path.length();
     BasicState<Scalar> state = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
     const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
-    if (ended && !goes_on(phase, state))  // at rest; a program may be stopped before a block's end
+    if (ended && !ends_at_speed(phase, state))  // at rest; a program may be stopped before a block's end
       state = {is_whole(state.position, length) ? length : state.position, Scalar(0), Scalar(0), Scalar(0)};
     state.position = std::min(state.position, length);
     return state;
