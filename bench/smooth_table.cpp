@@ -1,14 +1,18 @@
 // Prints what smoothing takes on the cases of docs/smoothing.md: the exact path with jumps at its corners,
-// the levels fast, good and best, and the processor time of each level for a block, reading excluded.
+// the levels fast, good and best, the processor time of each level for a block, reading excluded, and the
+// memory that good and best take of a buffer.
 //   cncplan_smooth_table FOLDER [WORD [HELD]]    programs are read from FOLDER; only cases whose names hold
 //       WORD; good and best in parts by a `SmoothStream` that holds so many blocks
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <initializer_list>
 #include <limits>
+#include <memory>
+#include <memory_resource>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -16,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cncplan/core/fixed_memory.hpp"
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
@@ -135,7 +140,11 @@ std::optional<std::vector<Block>> blocks_of(const Case& c, const Mill& machine, 
 struct Time {
   double motion = none;  // s
   double work = none;    // microseconds a block
+  double memory = none;  // MB
 };
+
+// Of these only what is used is really taken from the system.
+constexpr std::size_t buffer_size = std::size_t{2} << 30;
 
 template <class Plan>
 Time time_of(std::size_t blocks, const Plan& plan) {
@@ -143,7 +152,7 @@ Time time_of(std::size_t blocks, const Plan& plan) {
   const auto planned = plan();
   const double work = 1e6 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   if (!planned) return {};
-  return {planned->duration(), work / static_cast<double>(blocks)};
+  return {planned->duration(), work / static_cast<double>(blocks), none};
 }
 
 // What is asked of a program that is planned in parts.
@@ -153,8 +162,9 @@ struct Parts {
 };
 
 std::optional<Parts> plan_in_parts(const std::vector<Block>& blocks, const Mill& machine,
-                                   const PlanOptions& options, SmoothLevel level, std::size_t held) {
-  SmoothStream<Mill, Block> stream(machine, options, level, held);
+                                   const PlanOptions& options, SmoothLevel level, std::size_t held,
+                                   std::pmr::memory_resource* memory) {
+  SmoothStream<Mill, Block> stream(machine, options, level, held, memory);
   Parts parts;
   for (const Block& block : blocks) {
     if (!stream.push(block)) return std::nullopt;
@@ -176,9 +186,15 @@ bool print(const Case& c, const std::string& folder, std::size_t held) {
   const Time jumping = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, exact); });
   const Time fast = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, smooth); });
   const auto smoothed = [&](SmoothLevel level) {
-    if (held == 0)
-      return time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, level); });
-    return time_of(blocks->size(), [&] { return plan_in_parts(*blocks, machine, smooth, level, held); });
+    const auto buffer = std::make_unique_for_overwrite<std::byte[]>(buffer_size);
+    FixedMemory memory({buffer.get(), buffer_size});
+    Time time =
+        held == 0
+            ? time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, level, &memory); })
+            : time_of(blocks->size(),
+                      [&] { return plan_in_parts(*blocks, machine, smooth, level, held, &memory); });
+    time.memory = 1e-6 * static_cast<double>(memory.most_used());
+    return time;
   };
   const Time good = smoothed(SmoothLevel::good), best = smoothed(SmoothLevel::best);
   double straight = 0;
@@ -201,6 +217,8 @@ bool print(const Case& c, const std::string& folder, std::size_t held) {
   cell(fast.work, " %.0f");
   cell(good.work, " %.0f");
   cell(best.work, " %.0f");
+  cell(good.memory, " %.1f");
+  cell(best.memory, " %.1f");
   std::printf("\n");
   std::fflush(stdout);
   return std::isfinite(jumping.motion + fast.motion + good.motion + best.motion);
@@ -217,8 +235,8 @@ int main(int argc, char** argv) {
   const std::size_t held = argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 0;
   std::printf(
       "| case | exact, jumping | fast | wanted | good | best | wanted | fast, us a block | good, us | best, "
-      "us |\n");
-  std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
+      "us | good, MB | best, MB |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   bool ok = true;
   for (const Case& c : cases())
     if (c.name.find(word) != std::string::npos) ok = print(c, argv[1], held) && ok;

@@ -1,10 +1,12 @@
-// A program of any length within bounded memory: blocks go in as they are read, parts of the trajectory come
-// out, each at the speed at which the one before ended. Plans a long zigzag over a wavy surface at the level
-// good, holding 400 blocks at most, and prints where parts meet.
+// A program of any length in a buffer: blocks go in as they are read, parts of the trajectory come out, each
+// at the speed at which the one before ended. Plans a long zigzag over a wavy surface at the level good,
+// holding 400 blocks at most, and prints where parts meet and how much of the buffer was needed.
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <string>
 
+#include "cncplan/core/fixed_memory.hpp"
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
@@ -24,8 +26,10 @@ int main() {
   const auto program = cncplan::read_blocks(cncplan::gcode::TextLines(text), mill, options);
   if (!program) return std::fprintf(stderr, "%s\n", to_text(program.error()).c_str()), 2;
 
+  static std::byte buffer[8 << 20];
+  cncplan::FixedMemory memory(buffer);
   cncplan::SmoothStream<Mill, cncplan::ProgramBlock<Mill>> stream(mill, options, cncplan::SmoothLevel::good,
-                                                                  400);
+                                                                  400, &memory);
   double time = 0;
   std::printf("%10s %8s %12s %14s\n", "time s", "line", "speed mm/s", "accel. mm/s^2");
   const auto take = [&] {
@@ -43,4 +47,5 @@ int main() {
   if (const auto ok = stream.finish(); !ok)
     return std::fprintf(stderr, "%s\n", to_text(ok.error()).c_str()), 2;
   take();
+  std::printf("%.1f MB\n", 1e-6 * static_cast<double>(memory.most_used()));
 }

@@ -31,8 +31,8 @@ inline MillTrajectory published_plan(const std::vector<MillBlock>& blocks, Lengt
                          std::back_inserter(spans))
       .value();
   auto phases = plan::block_phases(std::span<const plan::Span>(spans), cells);
-  if (planar) published::to_space(all, phases);
-  return {mill, blocks, std::move(phases)};
+  if (planar) published::to_space(all, std::span(phases));
+  return {mill, {blocks.begin(), blocks.end()}, std::move(phases)};
 }
 
 }  // namespace kk22

@@ -125,7 +125,7 @@ class Run {
     const double to_rad = cncplan::gcode::radians_per_degree;
     const plan::JointRules<double, JunctionChoice> rules{options_.junction, options_.corner_tolerance,
                                                          options_.rotary_tolerance * to_rad};
-    std::vector<Block> driven = program_.blocks;
+    std::pmr::vector<Block> driven(program_.blocks.begin(), program_.blocks.end());
     typename Trajectory::Smoothing smoothing;
     if constexpr (smoothed)
       if (options_.tolerance > 0.0) {
@@ -134,7 +134,7 @@ class Run {
         smoothing = plan::smoothing(std::span<const Block>(driven), machine, within);
       }
     std::vector<Event> events;
-    std::vector<Block> blocks = driven;
+    std::pmr::vector<Block> blocks = driven;
     if (options_.events) {  // limits are made for the highest feed
       events = read_events(*options_.events);
       for (Block& block : blocks) block.feed *= highest_feed(events);
@@ -146,7 +146,7 @@ class Run {
                            ? plan::make_cells<cncplan::published::WholeBlocks>(all, machine, rules, smoothing)
                            : plan::make_cells(all, machine, rules, smoothing);
     if (!cells) {
-      auto error = plan::error_in(blocks, cells.error());
+      auto error = plan::error_in(all, cells.error());
       error.file = program_.file;
       throw support::Failure(support::Exit::bad_input, cncplan::to_text(error));
     }
@@ -158,7 +158,7 @@ class Run {
                       plan::block_phases(std::span<const plan::Span>(spans), *cells), std::move(smoothing));
   }
 
-  std::vector<cncplan::plan::Span> spans_of(const std::vector<cncplan::plan::BlockCaps>& caps) const {
+  std::vector<cncplan::plan::Span> spans_of(std::span<const cncplan::plan::BlockCaps> caps) const {
     namespace plan = cncplan::plan;
     namespace published = cncplan::published;
     std::vector<plan::Span> spans;

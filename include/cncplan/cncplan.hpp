@@ -15,6 +15,7 @@
 #include "cncplan/core/error_text.hpp"
 #include "cncplan/core/extremals.hpp"
 #include "cncplan/core/fixed_list.hpp"
+#include "cncplan/core/fixed_memory.hpp"
 #include "cncplan/core/frame.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/interval.hpp"

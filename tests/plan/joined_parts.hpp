@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory_resource>
 #include <utility>
 #include <vector>
 
@@ -9,44 +10,60 @@
 
 namespace cncplan::test {
 
-/// What a stream that holds so many blocks gives, one part behind the other; into `parts` when each one ends.
+/// Takes the parts of a stream, one behind the other.
+template <class B, MachineModel M>
+class JoinedParts {
+ public:
+  using Part = typename SmoothStream<M, B>::Part;
+
+  void take(SmoothStream<M, B>& stream) {
+    if (!stream.ready()) return;
+    const Part part = stream.take();
+    for (auto phase : part.phases()) {
+      phase.phase.time += time_;
+      phase.block += blocks_.size();
+      phases_.push_back(phase);
+    }
+    for (std::size_t b = 0; b < part.program().size(); ++b) {
+      smoothing_.blocks.emplace_back();
+      if (part.smoothing().blocks.empty()) continue;
+      smoothing_.blocks.back() = part.smoothing().blocks[b];
+      smoothing_.blocks.back().first += smoothing_.corrections.size();
+    }
+    const auto& corrections = part.smoothing().corrections;
+    smoothing_.corrections.insert(smoothing_.corrections.end(), corrections.begin(), corrections.end());
+    blocks_.insert(blocks_.end(), part.program().begin(), part.program().end());
+    time_ += part.duration();
+    ends_.push_back(time_);
+  }
+
+  /// When each part ends.
+  [[nodiscard]] const std::vector<double>& ends() const { return ends_; }
+  [[nodiscard]] Part trajectory(const M& machine) const { return {machine, blocks_, phases_, smoothing_}; }
+
+ private:
+  std::pmr::vector<typename Part::Block> blocks_;
+  std::pmr::vector<typename Part::Phase> phases_;
+  typename Part::Smoothing smoothing_;
+  double time_ = 0;
+  std::vector<double> ends_;
+};
+
+/// What a stream that holds so many blocks gives; into `ends` when each part ends.
 template <class B, MachineModel M>
 Expected<Trajectory<M, plan::SmoothBlockOf<B>>, ProgramError> plan_in_parts(
     const std::vector<B>& given, const M& machine, const PlanOptions& options, SmoothLevel level,
-    std::size_t held, std::vector<double>* parts = nullptr) {
-  using Stream = SmoothStream<M, B>;
-  Stream stream(machine, options, level, held);
-  std::vector<typename Stream::Block> blocks;
-  std::vector<typename Stream::Part::Phase> phases;
-  typename Stream::Part::Smoothing smoothing;
-  double time = 0;
-  const auto take = [&] {
-    if (!stream.ready()) return;
-    const auto part = stream.take();
-    for (auto phase : part.phases()) {
-      phase.phase.time += time;
-      phase.block += blocks.size();
-      phases.push_back(phase);
-    }
-    for (std::size_t b = 0; b < part.program().size(); ++b) {
-      smoothing.blocks.emplace_back();
-      if (part.smoothing().blocks.empty()) continue;
-      smoothing.blocks.back() = part.smoothing().blocks[b];
-      smoothing.blocks.back().first += smoothing.corrections.size();
-    }
-    const auto& corrections = part.smoothing().corrections;
-    smoothing.corrections.insert(smoothing.corrections.end(), corrections.begin(), corrections.end());
-    blocks.insert(blocks.end(), part.program().begin(), part.program().end());
-    time += part.duration();
-    if (parts != nullptr) parts->push_back(time);
-  };
+    std::size_t held, std::vector<double>* ends = nullptr) {
+  SmoothStream<M, B> stream(machine, options, level, held);
+  JoinedParts<B, M> parts;
   for (const B& block : given) {
     if (const auto ok = stream.push(block); !ok) return tl::unexpected(ok.error());
-    take();
+    parts.take(stream);
   }
   if (const auto ok = stream.finish(); !ok) return tl::unexpected(ok.error());
-  take();
-  return typename Stream::Part(machine, std::move(blocks), std::move(phases), std::move(smoothing));
+  parts.take(stream);
+  if (ends != nullptr) *ends = parts.ends();
+  return parts.trajectory(machine);
 }
 
 }  // namespace cncplan::test

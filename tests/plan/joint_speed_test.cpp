@@ -28,7 +28,7 @@ std::vector<plan::BlockCaps> caps(const std::vector<Block<3>>& blocks, const Pol
   const auto cells =
       plan::make_cells(std::span(blocks), mill, plan::JointRules<double, Policy>{policy, -1, -1});
   REQUIRE(cells);
-  return cells->caps;
+  return {cells->caps.begin(), cells->caps.end()};
 }
 
 // Gives the joint's limits back, to see what policies are shown.

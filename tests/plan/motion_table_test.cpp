@@ -16,7 +16,7 @@ namespace {
 // Blocks of one cell each.
 plan::BasicCells<double> cells_of(const std::vector<plan::BlockCaps>& caps) {
   plan::BasicCells<double> cells;
-  cells.caps = caps;
+  cells.caps.assign(caps.begin(), caps.end());
   for (std::size_t i = 0; i < caps.size(); ++i) {
     cells.blocks.push_back(i);
     if (caps[i].pause > 0.0) cells.pauses.push_back({i + 1, i, caps[i].pause});
@@ -24,7 +24,7 @@ plan::BasicCells<double> cells_of(const std::vector<plan::BlockCaps>& caps) {
   return cells;
 }
 
-std::vector<plan::BasicBlockPhase<double>> phases_of(const std::vector<plan::BlockCaps>& caps) {
+std::pmr::vector<plan::BasicBlockPhase<double>> phases_of(const std::vector<plan::BlockCaps>& caps) {
   const auto spans = test::spans_of(caps);
   return plan::block_phases(std::span<const plan::Span>(spans), cells_of(caps));
 }
@@ -44,7 +44,7 @@ State walk(const std::vector<plan::Span>& spans, double t) {
 // The caps' blocks on a straight line.
 Trajectory<Machine<1>, Block<1>> straight(const std::vector<plan::BlockCaps>& caps) {
   using V = VectorN<double, 1>;
-  std::vector<Block<1>> blocks;
+  std::pmr::vector<Block<1>> blocks;
   double from = 0.0;
   for (const plan::BlockCaps& block : caps) {
     blocks.push_back({.path = path::Line<1>(V(from), V(from + block.length)), .pause = block.pause});

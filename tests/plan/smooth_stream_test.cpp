@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/gcode/lines.hpp"
-#include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
 #include "plan/joined_parts.hpp"
-#include "plan/smoothed_motion.hpp"
+#include "plan/rows_program.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -21,33 +19,7 @@ using namespace cncplan::test;
 
 namespace {
 
-using MillBlock = ProgramBlock<Machine<3>>;
-using Blocks = std::vector<MillBlock>;
 using Stream = SmoothStream<Machine<3>, MillBlock>;
-
-const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-const PlanOptions options{.tolerance = 0.01};
-
-Blocks blocks_of(const std::string& text, const Machine<3>& machine = mill) {
-  auto program = read_blocks(gcode::TextLines(text), machine, options);
-  REQUIRE(program);
-  return std::move(program->blocks);
-}
-
-// Rows to and fro over a wavy surface, joined by half circles: short lines that are seldom straight.
-std::string rows(int count, int lines, double feed = 1800) {
-  std::ostringstream text;
-  text << "F" << feed << "\n";
-  for (int row = 0; row < count; ++row) {
-    const double y = row, way = row % 2 == 0 ? 1 : -1, begin = row % 2 == 0 ? 0 : 12;
-    for (int i = 1; i <= lines; ++i) {
-      const double x = begin + way * 12 * i / lines;
-      text << "G1 X" << x << " Y" << y << " Z" << 0.3 * std::sin(1.3 * x) * std::cos(0.2 * y) << "\n";
-    }
-    if (row + 1 < count) text << (way > 0 ? "G3" : "G2") << " Y" << y + 1 << " J0.5 Z0\n";
-  }
-  return text.str();
-}
 
 // Where parts meet at a speed, of a program whose parts end at these times.
 template <class T>
@@ -57,31 +29,6 @@ std::size_t cuts(const T& trajectory, const std::vector<double>& ends) {
   }));
 }
 
-template <class T>
-void check_motion(const T& trajectory, const Blocks& blocks, const Machine<3>& machine = mill) {
-  const Used most = used(trajectory, machine);
-  CHECK(most.velocity <= 1 + 1e-6);
-  CHECK(most.acceleration <= 1 + 1e-5);
-  CHECK(most.jerk <= 1 + 1e-4);
-  const Polyline path = programmed(blocks), curve = driven(trajectory, 4);
-  CHECK(farthest(curve, path) <= options.tolerance * (1 + 1e-6));
-  CHECK(farthest(path, curve) <= options.tolerance * (1 + 1e-6));
-  CHECK((trajectory.at(0).position - path.front()).norm() < 1e-9);
-  CHECK((trajectory.at(trajectory.duration()).position - path.back()).norm() < 1e-9);
-  CHECK(trajectory.completed());
-  // Each block of the program as a whole, in order.
-  std::vector<double> lengths(blocks.size(), 0);
-  std::size_t source = 0;
-  for (const auto& block : trajectory.program()) {
-    REQUIRE(block.source >= source);
-    source = block.source;
-    CHECK(block.line == blocks[source].line);
-    lengths[source] += block.path.length();
-  }
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    CHECK(lengths[i] == Approx(blocks[i].path.length()).epsilon(1e-9).margin(1e-12));
-}
-
 }  // namespace
 
 TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the time of the whole",
@@ -89,13 +36,13 @@ TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the t
   for (const double feed : {1800.0, 6000.0}) {
     Machine<3> machine = mill;
     machine.limits.velocity = feed / 60;
-    const Blocks blocks = blocks_of(rows(8, 50, feed), machine);
-    const auto whole = plan_smooth(blocks, machine, options, SmoothLevel::good);
+    const MillBlocks blocks = blocks_of(rows(8, 50, feed), machine);
+    const auto whole = plan_smooth(blocks, machine, within, SmoothLevel::good);
     REQUIRE(whole);
     for (const std::size_t held : {60u, 150u}) {
       CAPTURE(feed, held);
       std::vector<double> ends;
-      const auto parts = plan_in_parts(blocks, machine, options, SmoothLevel::good, held, &ends);
+      const auto parts = plan_in_parts(blocks, machine, within, SmoothLevel::good, held, &ends);
       REQUIRE(parts);
       check_motion(*parts, blocks, machine);
       CHECK(cuts(*parts, ends) >= blocks.size() / held);
@@ -107,17 +54,17 @@ TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the t
 }
 
 TEST_CASE("stream: the level best", "[smooth-stream]") {
-  const Blocks blocks = blocks_of(rows(4, 50));
+  const MillBlocks blocks = blocks_of(rows(4, 50));
   std::vector<double> ends;
-  const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::best, 80, &ends);
+  const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::best, 80, &ends);
   REQUIRE(parts);
   check_motion(*parts, blocks);
   CHECK(cuts(*parts, ends) >= 2);
 }
 
 TEST_CASE("stream: a part goes on as the one before ended", "[smooth-stream]") {
-  const Blocks blocks = blocks_of(rows(6, 60));
-  Stream stream(mill, options, SmoothLevel::good, 80);
+  const MillBlocks blocks = blocks_of(rows(6, 60));
+  Stream stream(mill, within, SmoothLevel::good, 80);
   Vector3 position = Vector3::Zero(), velocity = Vector3::Zero(), acceleration = Vector3::Zero();
   int parts = 0;
   const auto take = [&] {
@@ -151,8 +98,8 @@ TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]")
   // Runs, a long stretch on the exact path, and one without any motion.
   std::string text = rows(3, 60) + "G61\n" + rows(3, 60) + "G64\n";
   for (int i = 0; i < 200; ++i) text += "M8\n";
-  const Blocks blocks = blocks_of(text + rows(3, 60));
-  Stream stream(mill, options, SmoothLevel::good, held);
+  const MillBlocks blocks = blocks_of(text + rows(3, 60));
+  Stream stream(mill, within, SmoothLevel::good, held);
   std::size_t pushed = 0, out = 0;
   for (const MillBlock& block : blocks) {
     REQUIRE(stream.push(block));
@@ -171,9 +118,9 @@ TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]")
 TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole", "[smooth-stream]") {
   std::string text = rows(2, 60) + "M8\nG4 P0.25\n" + rows(2, 60) + "M0\nG61.1\n" + rows(1, 10) + "G61\n" +
                      rows(1, 10) + "G64\nM9\n" + rows(1, 80) + "G1 X3\nX9 Y4\nM5\nX0\nM30\n";
-  const Blocks blocks = blocks_of(text);
-  const auto whole = plan_smooth(blocks, mill, options, SmoothLevel::good);
-  const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, 50);
+  const MillBlocks blocks = blocks_of(text);
+  const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
+  const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, 50);
   REQUIRE(whole);
   REQUIRE(parts);
   const auto words = [](const auto& trajectory) {
@@ -204,7 +151,7 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
   text << "F1800\n";
   for (int i = 1; i <= 300; ++i) text << "G1 X" << 0.4 * i << " Y" << 0.2 * std::sin(i) << "\n";
   // A place where a word is told, behind each second block: what is held ends with one as often as not.
-  Blocks blocks;
+  MillBlocks blocks;
   for (const MillBlock& block : blocks_of(text.str())) {
     blocks.push_back(block);
     if (blocks.size() % 3 != 2) continue;
@@ -221,10 +168,10 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
         least = std::min(least, point.velocity.norm());
     return least;
   };
-  const auto whole = plan_smooth(blocks, mill, options, SmoothLevel::good);
+  const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
   REQUIRE(whole);
   for (const std::size_t held : {60u, 61u, 62u, 63u}) {
-    const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, held);
+    const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
     REQUIRE(parts);
     CAPTURE(held, slowest(*whole));
     CHECK(slowest(*parts) > 0.5);  // it is 0 at a stop
@@ -233,9 +180,9 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
 }
 
 TEST_CASE("stream: merged lines", "[smooth-stream]") {
-  const Blocks blocks = blocks_of("G64 P0.01 Q0.004\n" + rows(4, 200));
-  const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, 60);
-  const auto whole = plan_smooth(blocks, mill, options, SmoothLevel::good);
+  const MillBlocks blocks = blocks_of("G64 P0.01 Q0.004\n" + rows(4, 200));
+  const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, 60);
+  const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
   REQUIRE(parts);
   REQUIRE(whole);
   check_motion(*parts, blocks);
@@ -257,11 +204,11 @@ TEST_CASE("stream: a wall that is touched behind a cut is not passed", "[smooth-
   std::ostringstream text;
   text << rows(3, 60) << "G1 X0 Y2 Z0\nX-3 Y-0.5\nX-6\nX-9 Y0\n";
   for (int i = 0; i < 100; ++i) text << "G1 X" << -9 - 0.2 * i << " Y" << 0.1 * std::sin(i) << "\n";
-  const Blocks blocks = blocks_of(text.str(), machine);
+  const MillBlocks blocks = blocks_of(text.str(), machine);
   for (const std::size_t held : {40u, 70u, 100u, 130u}) {
     CAPTURE(held);
     std::vector<double> ends;
-    const auto parts = plan_in_parts(blocks, machine, options, SmoothLevel::good, held, &ends);
+    const auto parts = plan_in_parts(blocks, machine, within, SmoothLevel::good, held, &ends);
     REQUIRE(parts);
     check_motion(*parts, blocks, machine);
     CHECK(cuts(*parts, ends) > 0);
@@ -272,8 +219,8 @@ TEST_CASE("stream: a wall that is touched behind a cut is not passed", "[smooth-
 TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-stream]") {
   Machine<3> machine = mill;
   machine.axes[0].high = 20;
-  Blocks blocks = blocks_of(rows(1, 60), machine);
-  Stream stream(machine, options, SmoothLevel::good, 40);
+  MillBlocks blocks = blocks_of(rows(1, 60), machine);
+  Stream stream(machine, within, SmoothLevel::good, 40);
   for (const MillBlock& block : blocks) REQUIRE(stream.push(block));
   MillBlock apart = blocks.back();
   apart.path = path::Line<3>(Vector3(5, 5, 5), Vector3(6, 5, 5));
@@ -293,10 +240,10 @@ TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-str
 }
 
 TEST_CASE("stream: nothing, and more behind a finish", "[smooth-stream]") {
-  Stream stream(mill, options, SmoothLevel::good, 60);
+  Stream stream(mill, within, SmoothLevel::good, 60);
   REQUIRE(stream.finish());
   CHECK(!stream.ready());
-  const Blocks blocks = blocks_of(rows(4, 60));
+  const MillBlocks blocks = blocks_of(rows(4, 60));
   double time = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     REQUIRE(stream.push(blocks[i]));
@@ -328,8 +275,8 @@ TEST_CASE("stream: random programs, random memory", "[smooth-stream]") {
     }
     const auto held = static_cast<std::size_t>(random.integer(30, 120));
     INFO("seed " << test::seed() << " round " << round << " held " << held << "\n" << text.str());
-    const Blocks blocks = blocks_of(text.str());
-    const auto parts = plan_in_parts(blocks, mill, options, SmoothLevel::good, held);
+    const MillBlocks blocks = blocks_of(text.str());
+    const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
     REQUIRE(parts);
     check_motion(*parts, blocks);
   }

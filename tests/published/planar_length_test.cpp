@@ -35,8 +35,9 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   REQUIRE(published::plan_blocks(std::span<const plan::BlockCaps>(cells.caps), plan::FivePhase{},
                                  std::span(speeds), std::back_inserter(spans)));
   auto phases = plan::block_phases(std::span<const plan::Span>(spans), cells);
-  published::to_space(all, phases);
-  const Trajectory<Machine<3>, ProgramBlock<Machine<3>>> planned(mill, blocks, phases);
+  published::to_space(all, std::span(phases));
+  const Trajectory<Machine<3>, ProgramBlock<Machine<3>>> planned(mill, {blocks.begin(), blocks.end()},
+                                                                 phases);
   // the helices from rest to rest at constant speed, then the stop before the line (Table 3)
   const double ramp = 2 * std::sqrt(30.0 / 10000.0);
   const auto motions = planned.blocks();

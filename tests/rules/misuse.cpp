@@ -104,7 +104,8 @@ Trajectory<Machine<3>, NoPath>* no_path;
 struct ProfileAtOnce {
   Expected<profile::Profile> operator()(const Limits&) const;
 };
-auto law = plan::trajectory(blocks, mill, plan::JointRules<double, junction::ExactStop>{}, ProfileAtOnce{});
+auto law = plan::trajectory(std::pmr::vector<Block<3>>(), mill,
+                            plan::JointRules<double, junction::ExactStop>{}, ProfileAtOnce{});
 
 // expect Immovable, QueueItem: movable
 struct Immovable {

@@ -59,6 +59,7 @@ enum class ErrorCode : std::uint8_t {
   missing_letter,
   needs_operator,
   not_an_axis,
+  no_memory,
   count_,  // number of codes
 };
 
@@ -110,6 +111,7 @@ enum class ErrorCode : std::uint8_t {
       "belongs to no letter, or a blank is in a number",
       "needs the operator's hand or the spindle at an angle: it is not planned",
       "names no axis of the machine",
+      "gives out; fewer blocks held need less",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -24,9 +25,12 @@ struct BasicBlockPause {
 /// The blocks of a program cut into cells, over each of which one set of limits holds.
 template <std::floating_point S>
 struct BasicCells {
-  std::vector<BasicBlockCaps<S>> caps;     ///< of each cell, in order
-  std::vector<std::size_t> blocks;         ///< to which each belongs
-  std::vector<BasicBlockPause<S>> pauses;  ///< in order; the caps have those behind a cell as a sum
+  std::pmr::vector<BasicBlockCaps<S>> caps;     ///< of each cell, in order
+  std::pmr::vector<std::size_t> blocks;         ///< to which each belongs
+  std::pmr::vector<BasicBlockPause<S>> pauses;  ///< in order; the caps have those behind a cell as a sum
+
+  BasicCells() = default;
+  explicit BasicCells(std::pmr::memory_resource* memory) : caps(memory), blocks(memory), pauses(memory) {}
 };
 
 /// What went wrong with a block.
@@ -39,9 +43,10 @@ struct BlockFault {
 template <template <class, class> class Cut = CutByLimits, MachineModel M, BlockModel B, class Policy>
 [[nodiscard]] Expected<BasicCells<typename M::Scalar>, BlockFault> make_cells(
     std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
-    const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing = {}) {
+    const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing = {},
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
   using S = typename M::Scalar;
-  BasicCells<S> cells;
+  BasicCells<S> cells(memory);
   cells.caps.reserve(blocks.size());
   cells.blocks.reserve(blocks.size());
   const auto rest = [&](std::size_t block, S seconds) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -22,11 +23,12 @@ struct BasicBlockPhase {
   friend bool operator==(const BasicBlockPhase&, const BasicBlockPhase&) = default;
 };
 
-/// Cuts planned spans of cells into phases that each lie within one block. Every block that moves has one.
+/// Cuts planned spans of cells into phases that each lie within one block, in the memory that the cells have.
+/// Every block that moves has one.
 template <std::floating_point S>
-[[nodiscard]] std::vector<BasicBlockPhase<S>> block_phases(std::span<const BasicSpan<S>> spans,
-                                                           const BasicCells<S>& cells) {
-  std::vector<BasicBlockPhase<S>> table;
+[[nodiscard]] std::pmr::vector<BasicBlockPhase<S>> block_phases(std::span<const BasicSpan<S>> spans,
+                                                                const BasicCells<S>& cells) {
+  std::pmr::vector<BasicBlockPhase<S>> table(cells.caps.get_allocator());
   table.reserve(cells.caps.size() + 7 * spans.size());
   S start = S(0);
   S travelled = S(0);  // of the block that goes on, in the spans before

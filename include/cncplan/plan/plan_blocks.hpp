@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <iterator>
+#include <memory_resource>
 #include <ranges>
 #include <span>
 #include <type_traits>
@@ -28,19 +29,19 @@ using BlockOf = std::remove_cvref_t<std::ranges::range_value_t<R>>;
 
 namespace plan {
 
-/// The blocks of a range in a vector of their own: moved there where the range is a vector that is given
-/// away.
+/// The blocks of a range in a vector of their own: moved there where the range is such a vector, of the same
+/// memory, that is given away.
 template <class R>
-[[nodiscard]] std::vector<BlockOf<R>> own_blocks(R&& blocks) {
-  if constexpr (std::same_as<R, std::vector<BlockOf<R>>>)
-    return std::move(blocks);
+[[nodiscard]] std::pmr::vector<BlockOf<R>> own_blocks(R&& blocks, std::pmr::memory_resource* memory) {
+  if constexpr (std::same_as<R, std::pmr::vector<BlockOf<R>>>)
+    return {std::move(blocks), memory};
   else
-    return {std::ranges::begin(blocks), std::ranges::end(blocks)};
+    return {std::ranges::begin(blocks), std::ranges::end(blocks), memory};
 }
 
 /// A place in a program of blocks, for an error in one of them.
 template <BlockModel B>
-[[nodiscard]] ProgramError error_in(const std::vector<B>& blocks, const BlockFault& fault) {
+[[nodiscard]] ProgramError error_in(std::span<const B> blocks, const BlockFault& fault) {
   const B& block = blocks[fault.block];
   return {{fault.error, block.line, block.column, {}}, {}, fault.block};
 }
@@ -52,16 +53,18 @@ template <std::floating_point S>
           options.exact_between_rapids_and_feeds};
 }
 
-/// The trajectory of blocks under rules for their joints and a law for changes of speed.
+/// The trajectory of blocks under rules for their joints and a law for changes of speed. All memory is that
+/// of the blocks.
 template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar> Law>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
-    std::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
+    std::pmr::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
     const Law& law, BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
   using S = typename M::Scalar;
-  const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing);
-  if (!cells) return tl::unexpected(error_in(blocks, cells.error()));
-  std::vector<BasicSpan<S>> spans;
-  std::vector<BasicWaypoint<S>> waypoints(cells->caps.size() + 1);
+  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
+  const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing, memory);
+  if (!cells) return tl::unexpected(error_in(std::span<const B>(blocks), cells.error()));
+  std::pmr::vector<BasicSpan<S>> spans(memory);
+  std::pmr::vector<BasicWaypoint<S>> waypoints(cells->caps.size() + 1, memory);
   const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(waypoints),
                                   std::back_inserter(spans));
   if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
@@ -74,24 +77,25 @@ template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar
 /// The fastest motion along blocks, end to end, from rest to rest, such that the tool and each axis keep
 /// their limits. Within the tolerance of the options lines are merged and the path is smoothed. Joints that
 /// are left exact are passed as fast as ones rounded within the junction deviation would be, where the
-/// velocity jumps; under a map all joints are. Errors: those of `validate` for the machine; a block that
-/// leaves the travel of an axis or that no limit bounds.
+/// velocity jumps; under a map all joints are. Plan and trajectory lie in `memory`. Errors: those of
+/// `validate` for the machine; a block that leaves the travel of an axis or that no limit bounds.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
-[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
-                                                                            const PlanOptions& options = {}) {
+[[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(
+    R&& blocks, const M& machine, const PlanOptions& options = {},
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const auto deviation = static_cast<S>(options.junction_deviation);
   const plan::JointRules<S, junction::BasicDeviation<S>> rules{
       {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
-  std::vector<BlockOf<R>> own = plan::own_blocks(std::forward<R>(blocks));
-  plan::BasicSmoothing<S, M::axis_count> smoothing;
+  std::pmr::vector<BlockOf<R>> own = plan::own_blocks(std::forward<R>(blocks), memory);
+  plan::BasicSmoothing<S, M::axis_count> smoothing(memory);
   if constexpr (EnclosedPath<typename BlockOf<R>::Path> && !MappedModel<M>)
     if (options.tolerance > 0) {
       const auto smoothing_rules = plan::smoothing_rules<S>(options);
       merge_lines(std::span(own), machine, smoothing_rules);
-      smoothing = plan::smoothing(std::span<const BlockOf<R>>(own), machine, smoothing_rules);
+      smoothing = plan::smoothing(std::span<const BlockOf<R>>(own), machine, smoothing_rules, memory);
     }
   return plan::trajectory(std::move(own), machine, rules, plan::SevenPhase{}, std::move(smoothing));
 }
@@ -105,7 +109,8 @@ template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typena
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const plan::JointRules<S, Policy> rules{policy, S(-1), S(-1)};
-  return plan::trajectory(plan::own_blocks(std::forward<R>(blocks)), machine, rules, plan::SevenPhase{});
+  return plan::trajectory(plan::own_blocks(std::forward<R>(blocks), std::pmr::get_default_resource()),
+                          machine, rules, plan::SevenPhase{});
 }
 
 }  // namespace cncplan

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory_resource>
 #include <ranges>
 
 #include "cncplan/plan/smooth_stream.hpp"
@@ -20,13 +21,14 @@ namespace cncplan {
 ///
 /// Blocks of the trajectory are pieces of those that were given, merged as by `plan_blocks`; `source` says of
 /// which. In a run that has rapids and feed moves the tool's velocity may be that of rapids. Errors as for
-/// `plan_blocks`.
+/// `plan_blocks`; too little of the memory, in which plan and trajectory lie.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, plan::SmoothBlockOf<BlockOf<R>>>, ProgramError> plan_smooth(
-    const R& blocks, const M& machine, const PlanOptions& options = {},
-    SmoothLevel level = SmoothLevel::best) {
-  SmoothStream<M, BlockOf<R>> stream(machine, options, level, std::numeric_limits<std::size_t>::max());
+    const R& blocks, const M& machine, const PlanOptions& options = {}, SmoothLevel level = SmoothLevel::best,
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+  constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+  SmoothStream<M, BlockOf<R>> stream(machine, options, level, all, memory);
   for (const auto& block : blocks)
     if (const auto ok = stream.push(block); !ok) return tl::unexpected(ok.error());
   if (const auto ok = stream.finish(); !ok) return tl::unexpected(ok.error());

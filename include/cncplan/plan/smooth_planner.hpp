@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory_resource>
+#include <new>
 #include <optional>
 #include <span>
 #include <utility>
@@ -17,6 +19,13 @@
 
 namespace cncplan::plan {
 
+/// Makes room for more items. It grows as a vector does that is pushed to.
+template <class T>
+void make_room(std::pmr::vector<T>& items, std::size_t more) {
+  const std::size_t needed = items.size() + more;
+  if (items.capacity() < needed) items.reserve(std::max(needed, 2 * items.capacity()));
+}
+
 /// Makes the blocks and phases of a program, one run after the other. Blocks that follow each other within
 /// travel are pushed; what needs no later ones is planned and let go.
 template <MachineModel M, BlockModel B>
@@ -27,19 +36,26 @@ class SmoothPlanner {
   using Out = SmoothBlockOf<B>;
   using Part = Trajectory<M, Out>;
 
-  /// `most`: blocks that are held at once. The machine is to stay.
-  SmoothPlanner(const M& machine, const PlanOptions& options, SmoothLevel level, std::size_t most)
+  /// `most`: blocks that are held at once. The machine is to stay. Everything lies in `memory`. Where there
+  /// is too little of that, what throws std::bad_alloc has done nothing; it can be called again.
+  SmoothPlanner(const M& machine, const PlanOptions& options, SmoothLevel level, std::size_t most,
+                std::pmr::memory_resource* memory)
       : machine_(machine),
         options_(options),
         rules_(smoothing_rules<S>(options)),
         work_(level == SmoothLevel::good ? smooth::good_smoothing<S> : smooth::BasicSmoothOptions<S>{}),
         possible_(options.tolerance > 0 && has_curve_level(machine)),
-        most_(most) {}
+        most_(most),
+        memory_(memory) {}
 
-  [[nodiscard]] Expected<void, ProgramError> push(const B& block) {
-    blocks_.push_back(block);
-    return blocks_.size() < most_ ? Expected<void, ProgramError>{} : plan(false);
+  /// Plans what has to be planned before more blocks are pushed.
+  [[nodiscard]] Expected<void, ProgramError> prepare(std::size_t more) {
+    if (blocks_.size() >= most_)
+      if (const auto ok = plan(false); !ok) return ok;
+    plan::make_room(blocks_, more);
+    return {};
   }
+  void push(const B& block) { blocks_.push_back(block); }
   /// Plans all that was pushed, to rest.
   [[nodiscard]] Expected<void, ProgramError> finish() { return plan(true); }
 
@@ -47,6 +63,8 @@ class SmoothPlanner {
   [[nodiscard]] bool ready() const { return !out_.empty(); }
   /// What was planned since the last call; its time begins at 0.
   [[nodiscard]] Part take() {
+    // A trajectory asks for as much: if it is not there, nothing is lost yet.
+    static_cast<void>(std::pmr::vector<S>(out_.size() + 1, memory_));
     if (smoothing_.corrections.empty()) smoothing_.blocks.clear();
     time_ = S(0);
     return Part(machine_, std::exchange(out_, {}), std::exchange(phases_, {}), std::exchange(smoothing_, {}));
@@ -54,51 +72,53 @@ class SmoothPlanner {
 
  private:
   using Path = typename B::Path;
-  using RunPlan = smooth::BasicSmoothRun<S, n>;
+  using Run = smooth::SmoothRun<Path>;
+  using RunPlan = typename Run::Plan;
 
   // Corners reach no farther beyond a cut, as a rule.
   static constexpr std::size_t most_context = 20;
 
   // Blocks that move, as smoothing sees them.
   struct RunBlocks {
-    std::vector<smooth::BandBlock<Path>> blocks;
-    std::vector<std::size_t> sources;
+    std::pmr::vector<smooth::BandBlock<Path>> blocks;
+    std::pmr::vector<std::size_t> sources;
     smooth::BasicMotionLimits<S, n> limits;
+
+    explicit RunBlocks(std::pmr::memory_resource* memory) : blocks(memory), sources(memory) {}
   };
 
   // Plans what later blocks cannot change; if there is no room for more blocks, at least a part of them.
   [[nodiscard]] Expected<void, ProgramError> plan(bool all) {
-    std::size_t left = context_;  // the first block that has no plan
-    for (std::size_t i = left; i < blocks_.size();) {
+    const auto ok = plan_runs(all);
+    if (!cut_) let_go(planned_);
+    return ok;
+  }
+  [[nodiscard]] Expected<void, ProgramError> plan_runs(bool all) {
+    for (std::size_t i = planned_; i < blocks_.size();) {
       const std::size_t end = run_end(i);
       const bool goes_on = !all && end > i && is_open(end);
       if (!goes_on && !cut_ && (end == i || !worth_it(i, end))) {
         i = std::max(i + 1, end);
         continue;
       }
-      if (const auto ok = add_fast(left, i); !ok) return ok;
-      left = i;
+      if (const auto ok = add_fast(i); !ok) return ok;
       if (goes_on && blocks_.size() - i < most_ / 2) break;
-      if (goes_on && add_part(i, end)) return {};
-      if (const auto ok = add_run(i, end); !ok) return ok;
-      left = i = end;
+      if (goes_on && add_part(end)) return {};
+      if (const auto ok = add_run(end); !ok) return ok;
+      i = end;
     }
-    if (all || blocks_.size() - left >= most_) {
-      const std::size_t end = all ? blocks_.size() : last_rest(left);
-      if (const auto ok = add_fast(left, end); !ok) return ok;
-      left = end;
-    }
-    if (!cut_) let_go(left);
-    return {};
+    if (all) return add_fast(blocks_.size());
+    return blocks_.size() - planned_ < most_ ? Expected<void, ProgramError>{} : add_fast(last_rest());
   }
 
-  [[nodiscard]] std::span<const B> given(std::size_t first, std::size_t end) const {
-    return std::span<const B>(blocks_).subspan(first, end - first);
+  // Blocks that have no plan, up to `end`.
+  [[nodiscard]] std::span<const B> given(std::size_t end) const {
+    return std::span<const B>(blocks_).subspan(planned_, end - planned_);
   }
   void let_go(std::size_t count) {
     blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(count));
     first_source_ += count;
-    context_ = 0;
+    planned_ -= count;
   }
 
   [[nodiscard]] bool rests(std::size_t i) const { return blocks_[i].exact_stop || blocks_[i].pause > S(0); }
@@ -109,9 +129,9 @@ class SmoothPlanner {
       if (moves(i) || rests(i)) return false;
     return true;
   }
-  // Behind the last block from one on where the program rests; behind the last of all if it nowhere does.
-  [[nodiscard]] std::size_t last_rest(std::size_t first) const {
-    for (std::size_t end = blocks_.size(); end > first; --end)
+  // Behind the last block without a plan where the program rests; behind the last of all if it nowhere does.
+  [[nodiscard]] std::size_t last_rest() const {
+    for (std::size_t end = blocks_.size(); end > planned_; --end)
       if (rests(end - 1)) return end;
     return blocks_.size();
   }
@@ -157,21 +177,23 @@ class SmoothPlanner {
   }
 
   // Blocks as they are, up to `end`, planned at the level `fast`.
-  [[nodiscard]] Expected<void, ProgramError> add_fast(std::size_t first, std::size_t end) {
-    if (first == end) return {};
-    auto planned = plan_blocks(given(first, end), machine_, options_);
+  [[nodiscard]] Expected<void, ProgramError> add_fast(std::size_t end) {
+    if (planned_ == end) return {};
+    auto planned = plan_blocks(given(end), machine_, options_, memory_);
     if (!planned) {
-      if (planned.error().block) *planned.error().block += first_source_ + first;
+      if (planned.error().block) *planned.error().block += first_source_ + planned_;
       return tl::unexpected(planned.error());
     }
     const std::size_t corrections = smoothing_.corrections.size(), before = out_.size();
     const auto& own = planned->smoothing();
+    plan::make_room(smoothing_.corrections, own.corrections.size());
+    make_room(end - planned_, planned->phases().size());
     smoothing_.corrections.insert(smoothing_.corrections.end(), own.corrections.begin(),
                                   own.corrections.end());
-    for (std::size_t i = first; i < end; ++i) {
+    for (std::size_t i = planned_; i < end; ++i) {
       add_block(i);
       if (own.blocks.empty()) continue;
-      smoothing_.blocks.back() = own.blocks[i - first];
+      smoothing_.blocks.back() = own.blocks[i - planned_];
       smoothing_.blocks.back().first += corrections;
     }
     for (BasicBlockPhase<S> phase : planned->phases()) {
@@ -180,76 +202,83 @@ class SmoothPlanner {
       phases_.push_back(phase);
     }
     time_ += planned->duration();
+    planned_ = end;
     return {};
   }
 
-  // A run on a curve of its own; at the level `fast` where it has no plan or a slower one.
-  [[nodiscard]] Expected<void, ProgramError> add_run(std::size_t first, std::size_t end) {
+  // A run to its end, on a curve of its own; at the level `fast` where it has no plan or a slower one.
+  [[nodiscard]] Expected<void, ProgramError> add_run(std::size_t end) {
     if constexpr (!MappedModel<M>) {
-      const RunBlocks given = run_blocks(cut_ ? 0 : first, end);
-      const RunPlan planned = smooth::SmoothRun<Path>(given.blocks, given.limits, work_, cut_).plan();
-      if (works(planned) && (cut_ || !fast_is_faster(planned.duration, first, end))) {
-        add_pieces(planned, given.sources, first, true);
-        return {};
-      }
+      if (add_curve(end)) return {};
       if (cut_) {
-        add_proven(first);
-        return known_ < end ? add_run(known_, end) : Expected<void, ProgramError>{};
+        if (!add_curve(known_)) add_slow(known_);
+        return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
       }
     }
-    return add_fast(first, end);
+    return add_fast(end);
+  }
+
+  // From where plans end to rest on the fastest curve. False where it has no plan, a slower one than the
+  // level `fast`, or too little memory.
+  bool add_curve(std::size_t end) try {
+    const RunBlocks given = run_blocks(cut_ ? 0 : planned_, end);
+    const RunPlan planned = Run(given.blocks, given.limits, work_, cut_, memory_).plan();
+    if (!works(planned) || (!cut_ && fast_is_faster(planned.duration, end))) return false;
+    add_pieces(planned, given.sources, end);
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  // From a cut to rest along blocks of which it was proven that they allow it.
+  void add_slow(std::size_t end) {
+    const RunBlocks given = run_blocks(0, end);
+    add_pieces(Run(given.blocks, given.limits, work_, cut_, memory_).slow_plan(), given.sources, end);
   }
 
   // The first part of a run, up to where it is cut; false where it cannot be.
-  bool add_part([[maybe_unused]] std::size_t first, [[maybe_unused]] std::size_t end) {
+  bool add_part([[maybe_unused]] std::size_t end) try {
     if constexpr (!MappedModel<M>) {
-      const RunBlocks given = run_blocks(cut_ ? 0 : first, end);
-      smooth::SmoothRun<Path> run(given.blocks, given.limits, work_, cut_);
+      const RunBlocks given = run_blocks(cut_ ? 0 : planned_, end);
+      Run run(given.blocks, given.limits, work_, cut_, memory_);
       const std::size_t count = given.blocks.size();
       for (const auto& [cell, cut] : run.cuts(count * 3 / 4, count * 19 / 20)) {
         // From there the machine can come to rest along what is known.
         const std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
-        const std::size_t from = given.sources[moving];
         smooth::RunCut<Path> there = cut;
         there.place.block -= moving;
-        const RunBlocks rest = run_blocks(from, end);
-        if (!works(smooth::SmoothRun<Path>(rest.blocks, rest.limits, work_, there).slow_plan())) continue;
+        const RunBlocks rest = run_blocks(given.sources[moving], end);
+        if (!works(Run(rest.blocks, rest.limits, work_, there, memory_).slow_plan())) continue;
         run.end_before(cell, cut.speed);
         RunPlan planned = run.plan();
         if (!works(planned)) planned = run.slow_plan();
         if (!works(planned)) return false;
         const std::size_t at = given.sources[planned.end_block];
-        if (at <= first) return false;  // no block would be let go
-        add_pieces(planned, given.sources, first, false);
+        if (at <= planned_) return false;  // no block would be let go
+        add_pieces(planned, given.sources, at);
         const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
+        approach_ = std::move(planned.approach);
         cut_ = cut;
         cut_->place.block -= kept;
-        cut_->approach = std::move(planned.approach);
+        cut_->approach = &approach_;
         known_ = end - gone;
         let_go(gone);
-        context_ = at - gone;
         return true;
       }
     }
     return false;
-  }
-
-  // From a cut to rest along the blocks of which it was known that they allow it.
-  void add_proven(std::size_t first) {
-    const RunBlocks given = run_blocks(0, known_);
-    smooth::SmoothRun<Path> run(given.blocks, given.limits, work_, cut_);
-    RunPlan planned = run.plan();
-    if (!works(planned)) planned = run.slow_plan();
-    add_pieces(planned, given.sources, first, true);
+  } catch (const std::bad_alloc&) {
+    return false;
   }
 
   [[nodiscard]] RunBlocks run_blocks(std::size_t first, std::size_t end) const {
-    RunBlocks result;
+    RunBlocks result(memory_);
     result.limits.tool = {S(0), machine_.limits.acceleration, machine_.limits.jerk};
     result.limits.tool_axes = tool_axes(machine_);
     for (std::size_t i = 0; i < result.limits.axes.size(); ++i)
       result.limits.axes[i] = {least_velocity(machine_.axes[i]), least_acceleration(machine_.axes[i]),
                                machine_.axes[i].jerk};
+    result.blocks.reserve(end - first);
+    result.sources.reserve(end - first);
     for (std::size_t i = first; i < end; ++i) {
       if (!moves(i)) continue;
       result.limits.tool.velocity = std::max(result.limits.tool.velocity, top_speed(blocks_[i], machine_));
@@ -264,8 +293,8 @@ class SmoothPlanner {
   }
 
   // Whether the level `fast` takes less time.
-  [[nodiscard]] bool fast_is_faster(S duration, std::size_t first, std::size_t end) const {
-    const auto planned = plan_blocks(given(first, end), machine_, options_);
+  [[nodiscard]] bool fast_is_faster(S duration, std::size_t end) const {
+    const auto planned = plan_blocks(given(end), machine_, options_, memory_);
     return planned && planned->duration() < duration;
   }
 
@@ -285,26 +314,26 @@ class SmoothPlanner {
     });
   }
 
-  // Pieces of a run from its first block, or from where it was cut in that, on. `ends`: up to the end of its
-  // last block.
-  void add_pieces(const RunPlan& run, const std::vector<std::size_t>& sources, std::size_t first, bool ends) {
-    std::vector<std::size_t> places;  // of each piece
-    std::size_t next = first;         // the first block that is not there yet
+  // Pieces of a run that end within a block, or behind the last one before it.
+  void add_pieces(const RunPlan& run, std::span<const std::size_t> sources, std::size_t end) {
+    make_room(run.pieces.size() + end - planned_, run.phases.size() + 1);
+    std::pmr::vector<std::size_t> places(memory_);  // of each piece
+    places.reserve(run.pieces.size());
+    std::size_t next = planned_;  // the first block that is not there yet
     bool begun = cut_.has_value();
     for (std::size_t i = 0; i < run.pieces.size(); ++i) {
       const std::size_t source = sources[run.pieces[i].block];
       for (; next < source; ++next)
         if (!moves(next)) add_block(next);
-      const bool last = i + 1 == run.pieces.size();
-      const bool goes_on = last ? !ends : sources[run.pieces[i + 1].block] == source;
+      const std::size_t after = i + 1 < run.pieces.size() ? sources[run.pieces[i + 1].block] : end;
       Out& block = add_block(source);
       block.path = run.pieces[i].path;
       block.straight_on = false;
-      if ((begun && source == first) || next != source) block.word = {};
+      if ((begun && source == planned_) || next != source) block.word = {};
       begun = false;
       next = source + 1;
-      block.goes_on = goes_on;
-      if (goes_on) {
+      block.goes_on = after == source;
+      if (block.goes_on) {
         block.exact_stop = false;
         block.pause = S(0);
       }
@@ -315,6 +344,7 @@ class SmoothPlanner {
       phases_.push_back({phase, places[piece]});
     }
     time_ += run.duration;
+    planned_ = end;
     cut_.reset();
     const Out& last = out_.back();
     if (!(last.pause > S(0))) return;
@@ -322,6 +352,11 @@ class SmoothPlanner {
     time_ += last.pause;
   }
 
+  void make_room(std::size_t blocks, std::size_t phases) {
+    plan::make_room(out_, blocks);
+    plan::make_room(smoothing_.blocks, blocks);
+    plan::make_room(phases_, phases);
+  }
   // A block as it is, without phases.
   Out& add_block(std::size_t i) {
     Out block{blocks_[i], first_source_ + i};
@@ -335,16 +370,19 @@ class SmoothPlanner {
   smooth::BasicSmoothOptions<S> work_;
   bool possible_;
   std::size_t most_;
-  std::vector<B> blocks_;         // that have no plan, behind those of the context
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<B> blocks_{memory_};
   std::size_t first_source_ = 0;  // the program's number of the first of them
-  // A run goes on in a block, `context_` blocks from the first one; from there motion to rest along all
-  // blocks before `known_` is known.
+  std::size_t planned_ = 0;       // of them that have plans; blocks next to a cut are kept
+  // The run goes on in a block whose first part has a plan; from there motion to rest along all blocks before
+  // `known_` is proven.
   std::optional<smooth::RunCut<Path>> cut_;
-  std::size_t context_ = 0, known_ = 0;
+  smooth::BasicApproach<S, n> approach_{memory_};
+  std::size_t known_ = 0;
   // What is planned.
-  std::vector<Out> out_;
-  std::vector<BasicBlockPhase<S>> phases_;
-  BasicSmoothing<S, n> smoothing_;
+  std::pmr::vector<Out> out_{memory_};
+  std::pmr::vector<BasicBlockPhase<S>> phases_{memory_};
+  BasicSmoothing<S, n> smoothing_{memory_};
   S time_{};  // s
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -15,12 +17,16 @@ namespace cncplan {
 /// part goes on where the one before ended, at the same position, velocity and acceleration; the last one
 /// ends at rest.
 ///
-/// At most `most_blocks` are held. A run of blocks without a stop that is longer is cut on little curved
-/// path. A slow motion from there to rest, along blocks that are known, is proven before a part goes out, so
-/// no later block can break a limit. The curve next to a cut is not searched for, which costs some
-/// milliseconds, more at the level best; the speed is searched for again with what follows, through the cut.
-/// The work is that of `plan_smooth`, which holds the program as a whole. A part that does not end at rest is
-/// nothing for a `TrajectoryExecutor`.
+/// At most `most_blocks` are held, beside those that may become one line. A run of blocks without a stop that
+/// is longer is cut on little curved path. A slow motion from there to rest, along blocks that are known, is
+/// proven before a part goes out, so no later block can break a limit. The curve next to a cut is not
+/// searched for, which costs some milliseconds, more at the level best; the speed is searched for again with
+/// what follows, through the cut. The work is that of `plan_smooth`, which holds the program as a whole. A
+/// part that does not end at rest is nothing for a `TrajectoryExecutor`.
+///
+/// All lies in `memory`, the parts that are taken too; nothing else is asked for any. Where it gives out
+/// (std::bad_alloc) the plan is slower, with stops where no curve was found; if there is too little for that
+/// also, a call does nothing but say so.
 ///
 /// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
 /// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
@@ -34,38 +40,45 @@ class SmoothStream {
   static constexpr std::size_t least_blocks = 30;
 
   explicit SmoothStream(const M& machine, const PlanOptions& options = {},
-                        SmoothLevel level = SmoothLevel::best, std::size_t most_blocks = 4000)
+                        SmoothLevel level = SmoothLevel::best, std::size_t most_blocks = 4000,
+                        std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : machine_(machine),
         merger_(machine_, plan::smoothing_rules<Scalar>(options)),
-        planner_(machine_, options, level, std::max(most_blocks, least_blocks)) {}
+        planner_(machine_, options, level, std::max(most_blocks, least_blocks), memory),
+        merging_(memory) {}
   SmoothStream(const SmoothStream&) = delete;
   SmoothStream& operator=(const SmoothStream&) = delete;
 
-  /// Takes the next block. Errors as for `plan_smooth`; a block that leaves travel or begins elsewhere than
-  /// the one before ended is not taken, and those before it can still be finished.
-  [[nodiscard]] Expected<void, ProgramError> push(const B& block) {
+  /// Takes the next block. Errors as for `plan_smooth`. After one the block is not taken: those before it can
+  /// be finished, and where memory gave out it can be pushed again when there is more.
+  [[nodiscard]] Expected<void, ProgramError> push(const B& block) try {
     if (const auto ok = check(block); !ok) return ok;
+    if (const auto ok = planner_.prepare(merging_.size() + 1); !ok) return ok;
+    merging_.push_back(block);
     end_ = block.path.position_at(block.path.length());
     ++pushed_;
-    merging_.push_back(block);
-    result_ = {};
     merger_.push([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
     drop_merged();
-    return result_;
+    return {};
+  } catch (const std::bad_alloc&) {
+    return no_memory();
   }
   /// Plans all that is left, to rest. Blocks that are pushed later go on from there.
-  [[nodiscard]] Expected<void, ProgramError> finish() {
+  [[nodiscard]] Expected<void, ProgramError> finish() try {
     if (const auto ok = check_machine(); !ok) return ok;
-    result_ = {};
+    if (const auto ok = planner_.prepare(merging_.size()); !ok) return ok;
     merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
     drop_merged();
-    return result_ ? planner_.finish() : result_;
+    return planner_.finish();
+  } catch (const std::bad_alloc&) {
+    return no_memory();
   }
 
   /// Whether a part is there to be taken.
   [[nodiscard]] bool ready() const { return planner_.ready(); }
   /// What was planned since the last call, in a time that begins at 0; no blocks where that is nothing.
-  /// `Block::source` counts all blocks that were pushed.
+  /// `Block::source` counts all blocks that were pushed. Throws std::bad_alloc where the memory gives out;
+  /// the part can be taken later then.
   [[nodiscard]] Part take() { return planner_.take(); }
 
  private:
@@ -87,7 +100,7 @@ class SmoothStream {
     return merging_[static_cast<std::size_t>(i) - (pushed_ - merging_.size())];
   }
   void hand_on(std::int64_t i) {
-    if (result_) result_ = planner_.push(merging(i));
+    planner_.push(merging(i));
     ++merged_;
   }
   void drop_merged() {
@@ -95,14 +108,17 @@ class SmoothStream {
     merged_ = 0;
   }
 
+  [[nodiscard]] static Expected<void, ProgramError> no_memory() {
+    return tl::unexpected(ProgramError{{{ErrorCode::no_memory, "memory"}, 0, 0, {}}});
+  }
+
   M machine_;
   plan::LineMerger<M, B> merger_;
   plan::SmoothPlanner<M, B> planner_;
-  std::vector<B> merging_;  // the last blocks, which may become parts of one line
-  std::size_t merged_ = 0;  // of them that have been handed on
+  std::pmr::vector<B> merging_;  // the last blocks, which may become parts of one line
+  std::size_t merged_ = 0;       // of them that have been handed on
   std::size_t pushed_ = 0;
   std::optional<VectorN<Scalar, M::axis_count>> end_;
-  Expected<void, ProgramError> result_;
 };
 
 }  // namespace cncplan

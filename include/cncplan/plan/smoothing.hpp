@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,11 @@ struct BasicSmoothing {
     Passing passing = Passing::policy;
   };
 
-  std::vector<smooth::BasicCorrection<S, N>> corrections;  ///< in order
-  std::vector<OfBlock> blocks;                             ///< empty where nothing is smoothed
+  std::pmr::vector<smooth::BasicCorrection<S, N>> corrections;  ///< in order
+  std::pmr::vector<OfBlock> blocks;                             ///< empty where nothing is smoothed
+
+  BasicSmoothing() = default;
+  explicit BasicSmoothing(std::pmr::memory_resource* memory) : corrections(memory), blocks(memory) {}
 
   [[nodiscard]] Passing passing(std::size_t block) const {
     return blocks.empty() ? Passing::policy : blocks[block].passing;
@@ -52,8 +56,16 @@ class Smoother {
   static constexpr int n = M::axis_count;
   using Result = BasicSmoothing<S, n>;
 
-  Smoother(std::span<const B> blocks, const M& machine, const SmoothingRules<S>& rules)
-      : blocks_(blocks), machine_(machine), rules_(rules), axes_(axis_tolerances(machine, rules)) {}
+  Smoother(std::span<const B> blocks, const M& machine, const SmoothingRules<S>& rules,
+           std::pmr::memory_resource* memory)
+      : blocks_(blocks),
+        machine_(machine),
+        rules_(rules),
+        axes_(axis_tolerances(machine, rules)),
+        result_(memory),
+        moving_(memory),
+        sizings_(memory),
+        junctions_(memory) {}
 
   [[nodiscard]] Result run() {
     result_.blocks.resize(blocks_.size());
@@ -177,10 +189,11 @@ class Smoother {
   SmoothingRules<S> rules_;
   smooth::BasicAxisTolerances<S, n> axes_;
   Result result_;
-  std::vector<std::size_t> moving_;  // of the part that is open: blocks that move, of a merged line the first
-  std::size_t last_ = 0;             // block of it that moves
-  std::vector<smooth::BasicSizing<S, n>> sizings_;
-  std::vector<std::size_t> junctions_;  // of each, the block behind it among those that move
+  // Of the part that is open: blocks that move, of a merged line the first.
+  std::pmr::vector<std::size_t> moving_;
+  std::size_t last_ = 0;  // block of it that moves
+  std::pmr::vector<smooth::BasicSizing<S, n>> sizings_;
+  std::pmr::vector<std::size_t> junctions_;  // of each, the block behind it among those that move
 };
 
 }  // namespace detail
@@ -190,8 +203,9 @@ class Smoother {
 template <MachineModel M, BlockModel B>
   requires EnclosedPath<typename B::Path>
 [[nodiscard]] BasicSmoothing<typename M::Scalar, M::axis_count> smoothing(
-    std::span<const B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules) {
-  return detail::Smoother<M, B>(blocks, machine, rules).run();
+    std::span<const B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules,
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+  return detail::Smoother<M, B>(blocks, machine, rules, memory).run();
 }
 
 }  // namespace cncplan::plan

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <string>
 #include <utility>
@@ -61,14 +62,16 @@ class Trajectory {
   using Smoothing = plan::BasicSmoothing<Scalar, M::axis_count>;
   using DrivenPath = smooth::Smoothed<typename B::Path>;
 
-  /// From blocks and the phases that drive them: `plan_blocks` and `plan_text` make these.
-  Trajectory(const M& machine, std::vector<B> blocks, std::vector<Phase> phases, Smoothing smoothing = {})
+  /// From blocks and the phases that drive them: `plan_blocks` and `plan_text` make these. It lies in the
+  /// memory that the vectors have.
+  Trajectory(const M& machine, std::pmr::vector<B> blocks, std::pmr::vector<Phase> phases,
+             Smoothing smoothing = {})
       : machine_(machine),
         tool_(tool_axes(machine)),
         blocks_(std::move(blocks)),
         smoothing_(std::move(smoothing)),
         phases_(std::move(phases)),
-        starts_(blocks_.size() + 1) {
+        starts_(blocks_.size() + 1, blocks_.get_allocator().resource()) {
     for (std::size_t i = 0; i < blocks_.size(); ++i)
       starts_[i + 1] = starts_[i] + (counts(blocks_[i]) ? blocks_[i].path.length() : Scalar(0));
   }
@@ -274,10 +277,10 @@ class Trajectory {
 
   M machine_;
   std::array<int, 3> tool_;
-  std::vector<B> blocks_;
+  std::pmr::vector<B> blocks_;
   Smoothing smoothing_;
-  std::vector<Phase> phases_;
-  std::vector<Scalar> starts_;  // mm at which each block begins, and the end
+  std::pmr::vector<Phase> phases_;
+  std::pmr::vector<Scalar> starts_;  // mm at which each block begins, and the end
   std::vector<TimedWord> words_;
   std::vector<std::string> warnings_;
 };

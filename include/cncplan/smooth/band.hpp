@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -62,10 +63,11 @@ class Band {
   };
 
   /// Blocks that follow each other without a stop, each of a length > 0. Lengths count from where the curve
-  /// begins.
+  /// begins. All lies in `memory`.
   Band(std::span<const BandBlock<P>> blocks, const Options& options,
-       const std::optional<BandCut<P>>& cut = std::nullopt)
-      : blocks_(blocks), options_(options), cut_(cut) {
+       const std::optional<BandCut<P>>& cut = std::nullopt,
+       std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : blocks_(blocks), options_(options), cut_(cut), memory_(memory) {
     S at = S(0);
     if (cut_) {
       at = -cut_->at;
@@ -113,7 +115,7 @@ class Band {
   /// that is the feed the curve stays as it is. Returns the Newton steps.
   int smoothen(std::span<const S> speeds_sq) {
     const std::size_t cells = cell_count();
-    std::vector<char> slow(points_.size(), 0);
+    std::pmr::vector<char> slow(points_.size(), 0, memory_);
     for (std::size_t cell = 0; cell < cells; ++cell) {
       const S feed = this->feed(cell);
       const S v = std::sqrt(speeds_sq[cell]);
@@ -155,8 +157,8 @@ class Band {
     constexpr S slow = S(0.97);
     constexpr S price = S(0.05);  // of a q''' that takes the whole limit of the jerk
     const std::size_t cells = cell_count();
-    std::vector<S> feeds(cells), speeds(points_.size(), S(0));
-    std::vector<char> moves(points_.size(), 0);
+    std::pmr::vector<S> feeds(cells, memory_), speeds(points_.size(), S(0), memory_);
+    std::pmr::vector<char> moves(points_.size(), 0, memory_);
     for (std::size_t cell = 0; cell < cells; ++cell) {
       feeds[cell] = feed(cell);
       speeds[cell + 1] = speeds_sq[cell];
@@ -172,10 +174,12 @@ class Band {
         for (std::size_t k = cell >= 2 ? cell - 2 : 0; k < std::min(cell + 6, moves.size()); ++k)
           moves[k] = 0;
     hold_ends(moves);
-    std::vector<std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>> rows(options_.window);
-    std::vector<VectorN<S, axis_count + 1>> gradient(options_.window), step(options_.window),
-        trial(options_.window + 6);
-    std::vector<detail::JointPlace<S>> places(3 * (options_.window + 3));
+    using Unknowns = VectorN<S, axis_count + 1>;
+    using Rows = std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>;
+    std::pmr::vector<Rows> rows(options_.window, memory_);
+    std::pmr::vector<Unknowns> gradient(options_.window, memory_), step(options_.window, memory_),
+        trial(options_.window + 6, memory_);
+    std::pmr::vector<detail::JointPlace<S>> places(3 * (options_.window + 3), memory_);
     const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
     const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits};
     int rounds = 0;
@@ -263,8 +267,8 @@ class Band {
   /// Goes back to the curve that the search began with.
   void reset() { points_ = start_; }
   /// The control points, to keep and to come back to.
-  [[nodiscard]] const std::vector<Vector>& points() const { return points_; }
-  void set_points(std::vector<Vector> points) { points_ = std::move(points); }
+  [[nodiscard]] std::span<const Vector> points() const { return points_; }
+  void set_points(std::span<const Vector> points) { points_.assign(points.begin(), points.end()); }
 
  private:
   static constexpr std::size_t reach_ = 6;
@@ -377,7 +381,7 @@ class Band {
         std::min(std::max(longer * S(0.1) * ramp_length(feed), S(4) * tolerance), length() / S(8));
     const S growth = longer * S(0.12);
     constexpr int halvings = 6;
-    std::vector<Fine> fine;
+    std::pmr::vector<Fine> fine(memory_);
     fine.push_back({starts_.front(), cut_ ? widest : widest / S(30), S(0)});
     const auto add = [&](S at, S size, S reach) {
       if (size < widest) fine.push_back({at, std::max(size, widest / S(1000)), reach});
@@ -506,7 +510,7 @@ class Band {
     std::size_t near = 0;
     S widest = S(0);
     for (const Corner& corner : corners_) widest = std::max(widest, corner.width);
-    std::vector<char> shrink(corners_.size(), 0);
+    std::pmr::vector<char> shrink(corners_.size(), 0, memory_);
     for (std::size_t cell = 0; cell < cell_count(); ++cell) {
       S worst = S(0);
       for (std::size_t i = cells_[cell].first_sample; i < cells_[cell + 1].first_sample; ++i) {
@@ -547,13 +551,14 @@ class Band {
   Options options_;
   std::optional<BandCut<P>> cut_;
   S length_{}, held_start_{}, held_end_{};
-  std::vector<S> starts_, knots_, lengths_;
-  std::vector<Corner> corners_;
-  std::vector<Vector> points_, start_;
-  std::vector<BasicBandCell<S, axis_count>> cells_;
-  std::vector<BasicBandSample<S, axis_count>> samples_;
-  std::vector<std::array<Eigen::Matrix<S, axis_count, axis_count>, 4>> rows_;
-  std::vector<Vector> gradient_, step_, trial_;
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<S> starts_{memory_}, knots_{memory_}, lengths_{memory_};
+  std::pmr::vector<Corner> corners_{memory_};
+  std::pmr::vector<Vector> points_{memory_}, start_{memory_};
+  std::pmr::vector<BasicBandCell<S, axis_count>> cells_{memory_};
+  std::pmr::vector<BasicBandSample<S, axis_count>> samples_{memory_};
+  std::pmr::vector<std::array<Eigen::Matrix<S, axis_count, axis_count>, 4>> rows_{memory_};
+  std::pmr::vector<Vector> gradient_{memory_}, step_{memory_}, trial_{memory_};
 };
 
 }  // namespace cncplan::smooth

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,8 +20,12 @@ namespace cncplan::smooth {
 /// coefficient for each.
 template <std::floating_point S, int N>
 struct BasicApproach {
-  std::vector<BasicCubic<S, N>> curves;
-  std::vector<S> feeds, skews, law;
+  std::pmr::vector<BasicCubic<S, N>> curves;
+  std::pmr::vector<S> feeds, skews, law;
+
+  BasicApproach() = default;
+  explicit BasicApproach(std::pmr::memory_resource* memory)
+      : curves(memory), feeds(memory), skews(memory), law(memory) {}
 
   [[nodiscard]] std::size_t size() const { return curves.size(); }
   [[nodiscard]] S length() const {
@@ -30,11 +35,13 @@ struct BasicApproach {
   }
 };
 
-/// Finds speeds along a `Band`, again and again while it changes, and owns what that needs.
+/// Finds speeds along a `Band`, again and again while it changes. What that needs lies in `memory`.
 template <std::floating_point S, int N>
 class CurveSpeed {
  public:
-  CurveSpeed(const BasicMotionLimits<S, N>& limits, std::size_t window) : limits_(limits) {
+  CurveSpeed(const BasicMotionLimits<S, N>& limits, std::size_t window,
+             std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : limits_(limits), memory_(memory) {
     options_.window_cells = window;
     const std::size_t room = window + 8;
     numbers_.resize(BasicWindowMemory<S>::rooms * room);
@@ -49,7 +56,7 @@ class CurveSpeed {
             const BasicApproach<S, N>& approach = {}) {
     ends_ = ends;
     ends_.given = approach.size();
-    first_law_ = approach.law;
+    first_law_.assign(approach.law.begin(), approach.law.end());
     cells_.clear();
     curves_.clear();
     starts_.clear();
@@ -122,8 +129,8 @@ class CurveSpeed {
   }
 
   /// b of the last plan in each cell of the curve.
-  [[nodiscard]] std::vector<S> speeds_sq(std::size_t curve_cells) const {
-    std::vector<S> sums(curve_cells, S(0)), lengths(curve_cells, S(0));
+  [[nodiscard]] std::pmr::vector<S> speeds_sq(std::size_t curve_cells) const {
+    std::pmr::vector<S> sums(curve_cells, S(0), memory_), lengths(curve_cells, S(0), memory_);
     for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i) {
       sums[origins_[i].first] += law_[i] * cells_[i].length;
       lengths[origins_[i].first] += cells_[i].length;
@@ -133,8 +140,8 @@ class CurveSpeed {
   }
 
   /// The middle coefficients of b in the cells of the curve; 0 in those that are cut.
-  [[nodiscard]] std::vector<S> uncut_speeds_sq(std::size_t curve_cells) const {
-    std::vector<S> result(curve_cells, S(0));
+  [[nodiscard]] std::pmr::vector<S> uncut_speeds_sq(std::size_t curve_cells) const {
+    std::pmr::vector<S> result(curve_cells, S(0), memory_);
     for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i) {
       const std::size_t at = origins_[i].first;
       if (origins_[i - 1].first != at && origins_[i + 1].first != at) result[at] = law_[i];
@@ -143,8 +150,8 @@ class CurveSpeed {
   }
 
   /// The skews of those cells, 0 in those that are cut.
-  [[nodiscard]] std::vector<S> uncut_skews(std::size_t curve_cells) const {
-    std::vector<S> result(curve_cells, S(0));
+  [[nodiscard]] std::pmr::vector<S> uncut_skews(std::size_t curve_cells) const {
+    std::pmr::vector<S> result(curve_cells, S(0), memory_);
     for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i)
       if (origins_[i].second == S(0)) result[origins_[i].first] = cells_[i].skew;
     return result;
@@ -177,7 +184,7 @@ class CurveSpeed {
   }
   /// The cells from one on as the approach to the end, with the law of the last plan.
   [[nodiscard]] BasicApproach<S, N> approach(std::size_t begin) const {
-    BasicApproach<S, N> result;
+    BasicApproach<S, N> result(memory_);
     const std::span<const BasicSpeedCell<S, N>> inner(cells_.data() + 1, cells_.size() - 2);
     result.law.push_back(BasicSpeedProblem<S, N>{inner, {}, nullptr}.speed(law(), begin - 1).start);
     for (std::size_t i = begin; i + 1 < cells_.size(); ++i) {
@@ -252,16 +259,17 @@ class CurveSpeed {
   BasicMotionLimits<S, N> limits_;
   BasicSpeedEnds<S> ends_;
   BasicPlanSpeedOptions<S> options_;
-  std::vector<BasicSpeedCell<S, N>> cells_;
-  std::vector<BasicCubic<S, N>> curves_;  // of the cells
-  std::vector<S> starts_;
-  std::vector<std::pair<std::size_t, S>> origins_;
-  std::vector<BasicPace<S>> paces_;
-  std::vector<std::pair<S, S>> knots_;  // of the last plan: places and speeds
-  std::vector<S> first_law_, levels_, law_, numbers_;
-  std::vector<BasicSpeedShare<S>> speeds_;
-  std::vector<BasicForceShare<S>> forces_;
-  std::vector<BasicPlateau<S>> plateaus_;
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<BasicSpeedCell<S, N>> cells_{memory_};
+  std::pmr::vector<BasicCubic<S, N>> curves_{memory_};  // of the cells
+  std::pmr::vector<S> starts_{memory_};
+  std::pmr::vector<std::pair<std::size_t, S>> origins_{memory_};
+  std::pmr::vector<BasicPace<S>> paces_{memory_};
+  std::pmr::vector<std::pair<S, S>> knots_{memory_};  // of the last plan: places and speeds
+  std::pmr::vector<S> first_law_{memory_}, levels_{memory_}, law_{memory_}, numbers_{memory_};
+  std::pmr::vector<BasicSpeedShare<S>> speeds_{memory_};
+  std::pmr::vector<BasicForceShare<S>> forces_{memory_};
+  std::pmr::vector<BasicPlateau<S>> plateaus_{memory_};
 };
 
 }  // namespace cncplan::smooth

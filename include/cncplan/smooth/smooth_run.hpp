@@ -8,15 +8,18 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/fixed_list.hpp"
 #include "cncplan/smooth/band.hpp"
 #include "cncplan/smooth/curve_speed.hpp"
 
@@ -57,8 +60,8 @@ inline constexpr BasicSmoothOptions<S> good_smoothing{
 
 template <std::floating_point S, int N>
 struct BasicSmoothRun {
-  std::vector<BasicSmoothPiece<S, N>> pieces;
-  std::vector<BasicPiecePhase<S>> phases;
+  std::pmr::vector<BasicSmoothPiece<S, N>> pieces;
+  std::pmr::vector<BasicPiecePhase<S>> phases;
   S duration{};
   S deviation{};    ///< proven, as a share of the tolerance; above 1 only where no curve was found
   BasicUse<S> use;  ///< proven, of all limits
@@ -66,6 +69,10 @@ struct BasicSmoothRun {
   BasicApproach<S, N> approach;
   std::size_t end_block{};  ///< in which the pieces end, and the approach begins
   BasicSpeedPlan<S> speed;
+
+  BasicSmoothRun() = default;
+  explicit BasicSmoothRun(std::pmr::memory_resource* memory)
+      : pieces(memory), phases(memory), approach(memory) {}
 };
 
 /// Where a run is cut: curve and speed there are given. The plan of what follows begins with the approach to
@@ -74,7 +81,7 @@ template <Path P>
 struct RunCut {
   BandCut<P> place;
   typename P::Scalar speed{};  ///< mm/s along the programmed path
-  BasicApproach<typename P::Scalar, P::Vector::RowsAtCompileTime> approach{};
+  const BasicApproach<typename P::Scalar, P::Vector::RowsAtCompileTime>* approach{};  ///< if there is one
 };
 
 /// A run of blocks on its way to a plan: where the whole is too long it is cut, and the next run goes on
@@ -83,35 +90,41 @@ template <Path P>
 class SmoothRun {
  public:
   using S = typename P::Scalar;
-  static constexpr int axis_count = P::Vector::RowsAtCompileTime;
+  using Vector = typename P::Vector;
+  static constexpr int axis_count = Vector::RowsAtCompileTime;
   using Limits = BasicMotionLimits<S, axis_count>;
   using Plan = BasicSmoothRun<S, axis_count>;
 
-  /// Blocks, each of a length > 0; feeds and tolerances are > 0 and finite. They begin where the cut is.
+  /// Blocks, each of a length > 0; feeds and tolerances are > 0 and finite. They begin where the cut is. All
+  /// lies in `memory`, the plans too.
   SmoothRun(std::span<const BandBlock<P>> blocks, const Limits& limits,
-            const BasicSmoothOptions<S>& options = {}, const std::optional<RunCut<P>>& start = std::nullopt)
+            const BasicSmoothOptions<S>& options = {}, const std::optional<RunCut<P>>& start = std::nullopt,
+            std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : blocks_(blocks),
         limits_(limits),
         options_(options),
-        band_(blocks, geometry(limits, options), start ? std::optional(start->place) : std::nullopt),
-        speed_(limits, options.speed_window) {
+        memory_(memory),
+        band_(blocks, geometry(limits, options), start ? std::optional(start->place) : std::nullopt, memory),
+        speed_(limits, options.speed_window, memory) {
     if (!start) return;
     ends_.start = start->speed;
-    approach_ = start->approach;
+    if (start->approach != nullptr) approach_ = *start->approach;
   }
+
+  static constexpr std::size_t most_cuts = 8;
 
   /// Places between the starts of two blocks at which the run may be cut, before which cell, the best first:
   /// at the feed on little curved path if there are such, else where it is near it.
-  [[nodiscard]] std::vector<std::pair<std::size_t, RunCut<P>>> cuts(std::size_t from_block,
-                                                                    std::size_t to_block) {
+  [[nodiscard]] FixedList<std::pair<std::size_t, RunCut<P>>, most_cuts> cuts(std::size_t from_block,
+                                                                             std::size_t to_block) {
     const S from = band_.block_start(from_block), to = band_.block_start(to_block);
-    constexpr std::size_t most = 8, calm = 12;
+    constexpr std::size_t calm = 12;
     struct Choice {
-      S price;
-      std::size_t cell;
-      S speed;
+      S price = std::numeric_limits<S>::infinity();
+      std::size_t cell{};
+      S speed{};
     };
-    std::vector<Choice> best(most, {std::numeric_limits<S>::infinity(), 0, S(0)});
+    std::array<Choice, most_cuts> best{};
     speed_.take(band_, ends_, approach_);
     speed_.plan(options_.coarse_gap, false, false);
     const auto cells = speed_.cells();
@@ -130,13 +143,14 @@ class SmoothRun {
       const bool fast = speed > feed * (S(1) - S(1e-4));
       const S force = std::max(sampled_use(cells[i - 1], limits_, {b, b, b}).force(),
                                sampled_use(cells[i], limits_, {b, b, b}).force());
-      const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most));
+      const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
       const S price = (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat);
       const Choice choice{price, cell, S(0.5) * speed};
-      if (choice.price < best[std::min(part, most - 1)].price) best[std::min(part, most - 1)] = choice;
+      Choice& last = best[std::min(part, most_cuts - 1)];
+      if (choice.price < last.price) last = choice;
     }
     std::sort(best.begin(), best.end(), [](const Choice& a, const Choice& b) { return a.price < b.price; });
-    std::vector<std::pair<std::size_t, RunCut<P>>> result;
+    FixedList<std::pair<std::size_t, RunCut<P>>, most_cuts> result;
     for (const Choice& choice : best)
       if (choice.price < std::numeric_limits<S>::infinity())
         result.push_back({choice.cell, {band_.cut_before(choice.cell), choice.speed}});
@@ -205,14 +219,14 @@ class SmoothRun {
       deviation_ = band_.settle();
     const S at_feeds = time_at_feeds();
     for (int round = 0; round < options_.joint_rounds; ++round) {
-      const auto before = band_.points();
+      points_.assign(band_.points().begin(), band_.points().end());
       const S last = time;
       band_.improve(speed_.uncut_speeds_sq(band_.cell_count()), speed_.uncut_skews(band_.cell_count()),
                     limits_, options_.joint);
       time = coarse_time();
       // Both times are coarse: what seems a little worse may be better.
       if (time - last < options_.joint_loss * (last - at_feeds)) continue;
-      band_.set_points(before);
+      band_.set_points(points_);
       coarse_time();
       break;
     }
@@ -230,7 +244,7 @@ class SmoothRun {
   }
 
   [[nodiscard]] Plan make_plan(bool fastest) {
-    Plan plan;
+    Plan plan(memory_);
     plan.deviation = deviation_;
     speed_.take(band_, ends_, approach_);
     plan.speed = speed_.plan(options_.gap, true, fastest);
@@ -305,10 +319,12 @@ class SmoothRun {
   std::span<const BandBlock<P>> blocks_;
   Limits limits_;
   BasicSmoothOptions<S> options_;
+  std::pmr::memory_resource* memory_;
   Band<P> band_;
   CurveSpeed<S, axis_count> speed_;
   BasicSpeedEnds<S> ends_;
-  BasicApproach<S, axis_count> approach_;
+  BasicApproach<S, axis_count> approach_{memory_};
+  std::pmr::vector<Vector> points_{memory_};  // before a round
   S deviation_{};
 };
 

@@ -30,7 +30,7 @@ namespace detail {
 // Writes down what a player does: phases, cut where cells begin.
 class PlayRecord {
  public:
-  PlayRecord(const std::vector<PlayedBlock>& cells, const std::vector<std::size_t>& blocks) : cells_(cells) {
+  PlayRecord(std::span<const PlayedBlock> cells, std::span<const std::size_t> blocks) : cells_(cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const bool same = i > 0 && blocks[i] == blocks[i - 1];
       places_.push_back({blocks[i], same ? places_.back().from + cells[i - 1].caps.length : 0.0});
@@ -52,7 +52,7 @@ class PlayRecord {
     open_ = {time, lasts, along, now.velocity, now.acceleration, now.jerk};
   }
 
-  [[nodiscard]] std::vector<BasicBlockPhase<double>> finish() {
+  [[nodiscard]] std::pmr::vector<BasicBlockPhase<double>> finish() {
     close();
     return std::move(phases_);
   }
@@ -87,9 +87,9 @@ class PlayRecord {
 
   static constexpr double rounding = 1e-10;  // mm
 
-  const std::vector<PlayedBlock>& cells_;
+  std::span<const PlayedBlock> cells_;
   std::vector<Place> places_;
-  std::vector<BasicBlockPhase<double>> phases_;
+  std::pmr::vector<BasicBlockPhase<double>> phases_;
   std::size_t cell_ = 0;
   Phase open_{};
 };
@@ -101,11 +101,11 @@ class PlayRecord {
 /// stopped, or where it rests and nothing is to come. `feed_of` gives a block's own feed (mm/s). Error:
 /// above_limit for what takes more than `most_ticks`.
 template <BlockModel B, std::invocable<const B&> Feed>
-[[nodiscard]] Expected<std::vector<BasicBlockPhase<double>>> play(std::span<const B> blocks,
-                                                                  BasicCells<double> cells,
-                                                                  std::span<const TimedRequest> requests,
-                                                                  double period, Feed&& feed_of,
-                                                                  double most_ticks = 1e10) {
+[[nodiscard]] Expected<std::pmr::vector<BasicBlockPhase<double>>> play(std::span<const B> blocks,
+                                                                       BasicCells<double> cells,
+                                                                       std::span<const TimedRequest> requests,
+                                                                       double period, Feed&& feed_of,
+                                                                       double most_ticks = 1e10) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr std::size_t most_ahead = 8192;                         // within a tolerance cells are short
   if (!cells.pauses.empty() && cells.pauses.front().cells == 0) {  // rests before anything moves
