@@ -19,10 +19,10 @@ namespace cncplan {
 ///
 /// At most `most_blocks` are held, beside those that may become one line. A run of blocks without a stop that
 /// is longer is cut on little curved path. A slow motion from there to rest, along blocks that are known, is
-/// proven before a part goes out, so no later block can break a limit. The curve next to a cut is not
-/// searched for, which costs some milliseconds, more at the level best; the speed is searched for again with
-/// what follows, through the cut. The work is that of `plan_smooth`, which holds the program as a whole. A
-/// part that does not end at rest is nothing for a `TrajectoryExecutor`.
+/// proven before a part goes out, so no later block can break a limit. At the cut the curve's position,
+/// tangent and curvature are those with which the search began, which costs some milliseconds; the speed is
+/// searched for again with what follows, through the cut. The work is that of `plan_smooth`, which holds the
+/// program as a whole. A part that does not end at rest is nothing for a `TrajectoryExecutor`.
 ///
 /// All lies in `memory`, the parts that are taken too; nothing else is asked for any. Where it gives out
 /// (std::bad_alloc) the plan is slower, with stops where no curve was found; if there is too little for that
@@ -37,7 +37,7 @@ class SmoothStream {
   using Block = plan::SmoothBlockOf<B>;
   using Part = Trajectory<M, Block>;
 
-  static constexpr std::size_t least_blocks = 30;
+  static constexpr std::size_t least_blocks = 40;
 
   explicit SmoothStream(const M& machine, const PlanOptions& options = {},
                         SmoothLevel level = SmoothLevel::best, std::size_t most_blocks = 4000,

@@ -125,7 +125,7 @@ class Band {
              ++k)
           slow[k] = 1;
     }
-    hold_ends(slow);
+    keep_pinned(slow);
     prepare_memory();
     const BasicBandMemory<S, axis_count> memory{rows_, gradient_, step_, trial_};
     const BasicBandProblem<S, axis_count> problem{cells_, samples_, jerk_scale(), options_.centring};
@@ -173,7 +173,7 @@ class Band {
       if (!(speeds_sq[cell] > S(0)))
         for (std::size_t k = cell >= 2 ? cell - 2 : 0; k < std::min(cell + 6, moves.size()); ++k)
           moves[k] = 0;
-    hold_ends(moves);
+    keep_pinned(moves);
     using Unknowns = VectorN<S, axis_count + 1>;
     using Rows = std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>;
     std::pmr::vector<Rows> rows(options_.window, memory_);
@@ -258,11 +258,8 @@ class Band {
     samples_.resize(cells_.back().first_sample);
   }
 
-  /// Keeps the curve as it is on a length from its start and from its end.
-  void hold(S start, S end) {
-    held_start_ = start;
-    held_end_ = end;
-  }
+  /// Keeps the curve as it is where a cell begins, with its tangent and its curvature there.
+  void pin(std::size_t cell) { pinned_ = cell; }
 
   /// Goes back to the curve that the search began with.
   void reset() { points_ = start_; }
@@ -530,14 +527,9 @@ class Band {
     return inside;
   }
 
-  void hold_ends(std::span<char> moves) const {
-    for (std::size_t k = 0; k < moves.size() && knots_[std::min(k, cell_count())] < held_start_; ++k)
-      moves[k] = 0;
-    for (std::size_t k = moves.size(); k-- > 0;)
-      if (knots_[std::min(k - std::min<std::size_t>(k, 3), cell_count())] > length_ - held_end_)
-        moves[k] = 0;
-      else
-        break;
+  // Three control points have a weight where a cell begins.
+  void keep_pinned(std::span<char> moves) const {
+    if (pinned_) std::fill_n(moves.begin() + static_cast<std::ptrdiff_t>(*pinned_), 3, char{0});
   }
 
   void prepare_memory() {
@@ -550,7 +542,8 @@ class Band {
   std::span<const BandBlock<P>> blocks_;
   Options options_;
   std::optional<BandCut<P>> cut_;
-  S length_{}, held_start_{}, held_end_{};
+  S length_{};
+  std::optional<std::size_t> pinned_;
   std::pmr::memory_resource* memory_;
   std::pmr::vector<S> starts_{memory_}, knots_{memory_}, lengths_{memory_};
   std::pmr::vector<Corner> corners_{memory_};

@@ -160,8 +160,9 @@ template <std::floating_point S, int N>
                    std::max(std::sqrt(use.acceleration), std::cbrt(use.jerk)) / problem.paces[i].force);
       worst = std::max(worst, slow);
       if (slow < S(1)) continue;
-      start_too_fast = start_too_fast || before <= leaves;
-      end_too_fast = end_too_fast || at >= length - comes;
+      // The ramp behind a departure goes on from what that has come to.
+      start_too_fast = start_too_fast || before <= S(2) * leaves;
+      end_too_fast = end_too_fast || at >= length - S(2) * comes;
       for (std::size_t k = std::max(i, ends.given + 2) - 2; k < std::min(i + 3, inner); ++k)
         levels[k] *= S(0.8);
     }

@@ -157,22 +157,15 @@ class SmoothRun {
     return result;
   }
 
-  /// Cuts the run before a cell of its curve, where it has a speed.
-  void end_before(std::size_t cell, S speed) {
-    band_.end_before(cell);
-    ends_.end = speed;
-  }
+  /// Cuts the run before a cell of its curve, where it has a speed. A plan searches for the curve beyond as
+  /// well, as if motion did not brake, but leaves it as it is at the cut.
+  void end_before(std::size_t cell, S speed) { end_ = {cell, speed}; }
 
   /// The fastest motion that is found.
   [[nodiscard]] Plan plan() {
-    speed_.take(band_, ends_, approach_);
-    const auto along = tangential_limits(speed_.cells(), limits_);
-    // Whatever speed the curve allows beyond, there is room for a ramp to it.
-    const auto held = [&](S speed) {
-      return S(1.3) * BasicGentleRamp<S>(S(0), speed * speed, along).length();
-    };
-    band_.hold(held(ends_.start), held(ends_.end));
+    if (end_) band_.pin(end_->cell);
     move_curve();
+    let_go_beyond_end();
     Plan fastest = make_plan(true);
     if (deviation_ <= S(1) && std::isfinite(fastest.duration)) return fastest;
     // Where a run is cut neither curve nor speed can give way: then on the curve of which it was known.
@@ -185,6 +178,7 @@ class SmoothRun {
   /// The slow motion that the search begins with, for little work. Where it has a plan, so has the search:
   /// the duration is infinite where there is none.
   [[nodiscard]] Plan slow_plan() {
+    let_go_beyond_end();
     band_.reset();
     deviation_ = band_.settle();
     return make_plan(false);
@@ -198,6 +192,13 @@ class SmoothRun {
     geometry.window = options.band_window;
     geometry.coarseness = options.coarseness;
     return geometry;
+  }
+
+  void let_go_beyond_end() {
+    if (!end_) return;
+    band_.end_before(end_->cell);
+    ends_.end = end_->speed;
+    end_.reset();
   }
 
   // The time that the curve takes, about.
@@ -319,10 +320,16 @@ class SmoothRun {
   std::span<const BandBlock<P>> blocks_;
   Limits limits_;
   BasicSmoothOptions<S> options_;
+  struct End {
+    std::size_t cell{};
+    S speed{};
+  };
+
   std::pmr::memory_resource* memory_;
   Band<P> band_;
   CurveSpeed<S, axis_count> speed_;
   BasicSpeedEnds<S> ends_;
+  std::optional<End> end_;  // where it will be cut
   BasicApproach<S, axis_count> approach_{memory_};
   std::pmr::vector<Vector> points_{memory_};  // before a round
   S deviation_{};
