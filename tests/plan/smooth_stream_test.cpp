@@ -238,6 +238,19 @@ TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-str
   apart.path =
       path::Line<3>(Vector3(blocks.back().path.position_at(blocks.back().path.length())), Vector3(25, 0, 0));
   CHECK(stream.push(apart).error().error().code == ErrorCode::above_limit);
+  apart.path = path::Line<3>(Vector3(blocks.back().path.position_at(blocks.back().path.length())),
+                             Vector3::Constant(std::nan("")));
+  CHECK(!stream.push(apart));
+  apart = blocks.back();
+  apart.path = path::Line<3>(Vector3(apart.path.position_at(apart.path.length())), Vector3(15, 0, 0));
+  for (const double number : {0.0, -1.0, std::nan("")}) {
+    MillBlock still = apart;
+    still.feed = number;
+    CHECK(stream.push(still).error().error().field == "feed");
+    still = apart;
+    still.pause = number - 1;
+    CHECK(stream.push(still).error().error().field == "pause");
+  }
   REQUIRE(stream.finish());
   const auto last = stream.take();
   CHECK(last.program().back().source + 1 == blocks.size());

@@ -1,6 +1,8 @@
 // Memory for containers in a buffer of the caller's (set-up).
 #pragma once
 
+#include "cncplan/core/compiler.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <functional>

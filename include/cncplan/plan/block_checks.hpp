@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -92,6 +93,33 @@ template <MachineModel M, BlockModel B>
   }
   if (speed && change) return {};
   return tl::unexpected(Error{ErrorCode::unlimited, first, 0.0, 0.0});
+}
+
+/// Nothing, or that a length or a pause is not finite, or a pause negative.
+template <std::floating_point S>
+[[nodiscard]] Expected<void> finite(S length, S pause) {
+  if (!std::isfinite(length)) return refusal(ErrorCode::not_finite, "length", length);
+  if (!std::isfinite(pause)) return refusal(ErrorCode::not_finite, "pause", pause);
+  if (pause < S(0)) return refusal(ErrorCode::negative, "pause", pause);
+  return {};
+}
+/// Nothing, or that the speed that is asked of a block is not above 0.
+template <std::floating_point S>
+[[nodiscard]] Expected<void> positive(S wanted) {
+  if (wanted > S(0)) return {};
+  return refusal(std::isnan(wanted) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed", wanted);
+}
+
+/// Nothing, or why a block cannot be driven whatever comes before and behind it.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] Expected<void> drivable(const B& block, const M& machine) {
+  using S = typename M::Scalar;
+  const S length = block.path.length();
+  auto ok = finite(length, block.pause);
+  if (ok) ok = within_travel(block.path, machine);
+  if (!ok || !(length > S(0))) return ok;
+  ok = positive(wanted_speed(block, machine, length_of(block.path, machine)));
+  return ok ? limited(block, machine) : ok;
 }
 
 /// Nothing, or the first axis that would have to jump from the end of a block to the start of the next one,

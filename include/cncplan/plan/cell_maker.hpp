@@ -230,9 +230,7 @@ class CellMaker {
   [[nodiscard]] Expected<void> begin_on(const P& path, const B& block, const Driven& driven,
                                         Passing passing) {
     const Scalar length = path.length();
-    if (!std::isfinite(length)) return refusal(ErrorCode::not_finite, "length", length);
-    if (!std::isfinite(block.pause)) return refusal(ErrorCode::not_finite, "pause", block.pause);
-    if (block.pause < Scalar(0)) return refusal(ErrorCode::negative, "pause", block.pause);
+    if (auto ok = finite(length, block.pause); !ok) return ok;
     const PathEnds ends(path);
     if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
     if (!travel_.contains(path.box()))
@@ -247,9 +245,7 @@ class CellMaker {
       counted_ = counted;
       const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
       wanted_ = counted == LengthOf::tool ? speed : plan::wanted_speed(block, machine_, counted);
-      if (!(wanted_ > Scalar(0)))
-        return refusal(std::isnan(wanted_) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed",
-                       wanted_);
+      if (auto ok = positive(wanted_); !ok) return ok;
       if (counted != LengthOf::tool)
         if (auto ok = limited(block, machine_); !ok) return ok;
       entry_ = Scalar(0);

@@ -26,7 +26,7 @@ namespace cncplan {
 ///
 /// All lies in `memory`, the parts that are taken too; nothing else is asked for any. Where it gives out
 /// (std::bad_alloc) the plan is slower, with stops where no curve was found; if there is too little for that
-/// also, a call does nothing but say so.
+/// also, a call says so; nothing is lost then, and the call can be made again.
 ///
 /// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
 /// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
@@ -49,8 +49,9 @@ class SmoothStream {
   SmoothStream(const SmoothStream&) = delete;
   SmoothStream& operator=(const SmoothStream&) = delete;
 
-  /// Takes the next block. Errors as for `plan_smooth`. After one the block is not taken: those before it can
-  /// be finished, and where memory gave out it can be pushed again when there is more.
+  /// Takes the next block. Errors as for `plan_smooth`. After one the block is not taken, and nothing is
+  /// lost: those before it can be finished, and where memory gave out it can be pushed again when there is
+  /// more.
   [[nodiscard]] Expected<void, ProgramError> push(const B& block) try {
     if (const auto ok = check(block); !ok) return ok;
     if (const auto ok = planner_.prepare(merging_.size() + 1); !ok) return ok;
@@ -91,7 +92,7 @@ class SmoothStream {
     if (pushed_ == 0)
       if (const auto ok = check_machine(); !ok) return ok;
     auto ok = plan::joined(end_, VectorN<Scalar, M::axis_count>(block.path.position_at(Scalar(0))), machine_);
-    if (ok) ok = plan::within_travel(block.path, machine_);
+    if (ok) ok = plan::drivable(block, machine_);
     if (!ok) return tl::unexpected(ProgramError{{ok.error(), block.line, block.column, {}}, {}, pushed_});
     return {};
   }
