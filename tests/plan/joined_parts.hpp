@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,10 @@ class JoinedParts {
 
   /// When each part ends.
   [[nodiscard]] const std::vector<double>& ends() const { return ends_; }
-  [[nodiscard]] Part trajectory(const M& machine) const { return {machine, blocks_, phases_, smoothing_}; }
+  [[nodiscard]] Part trajectory(const M& machine) const {
+    auto [blocks, phases, smoothing] = std::tuple(blocks_, phases_, smoothing_);
+    return {machine, std::move(blocks), std::move(phases), std::move(smoothing)};
+  }
 
  private:
   std::pmr::vector<typename Part::Block> blocks_;

@@ -50,7 +50,7 @@ Trajectory<Machine<1>, Block<1>> straight(const std::vector<plan::BlockCaps>& ca
     blocks.push_back({.path = path::Line<1>(V(from), V(from + block.length)), .pause = block.pause});
     from += block.length;
   }
-  return {Machine<1>{}, blocks, phases_of(caps)};
+  return {Machine<1>{}, std::move(blocks), phases_of(caps)};
 }
 
 }  // namespace

@@ -109,6 +109,22 @@ TEST_CASE("a plan as a whole lives in the memory of its caller", "[smooth-memory
   CHECK(memory.used() == 0);
 }
 
+TEST_CASE("a plan as a whole for which memory gives out is an error", "[smooth-memory]") {
+  const MillBlocks blocks = blocks_of(rows(1, 12));
+  RefusingMemory memory;
+  int granted = 0, refused = 0;
+  for (int most = 0; refused == most; ++most) {
+    granted = 0;
+    memory.refuses = [&](std::size_t) { return ++granted > most; };
+    const auto planned = plan_smooth(blocks, mill, within, SmoothLevel::good, &memory);
+    if (planned) continue;
+    ++refused;
+    CHECK(planned.error().error().code == ErrorCode::no_memory);
+  }
+  CHECK(refused > 50);
+  CHECK(memory.used() == 0);
+}
+
 TEST_CASE("where memory gives out at times nothing is lost", "[smooth-memory]") {
   test::Random random;
   const MillBlocks blocks = blocks_of(mixed());

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cncplan/plan/smooth_blocks.hpp"
@@ -218,6 +219,42 @@ TEST_CASE("stream: a wall that is touched behind a cut is not passed", "[smooth-
     check_motion(*parts, blocks, machine);
     CHECK(cuts(*parts, ends) > 0);
     for (const auto& point : parts->samples(1e-3)) CHECK(point.position[1] > -0.5 - 1e-9);
+  }
+}
+
+TEST_CASE("stream: the way to rest behind a cut keeps to the travel too", "[smooth-stream]") {
+  // Down to a wall, along it and up again: the curve beyond it is not driven, on an approach neither.
+  Machine<3> machine = mill;
+  machine.axes[1].low = -0.5;
+  for (int touch = 20; touch < 75; touch += 5) {
+    std::ostringstream text;
+    text << std::fixed << "F1800\n";
+    for (int i = 1; i <= 150; ++i) {
+      const double d = std::abs(i - touch), down = std::clamp(0.08 * (24 - d), 0.0, 0.5);
+      text << "G1 X" << 0.3 * i << " Y" << (d > 24 ? 0.05 * std::sin(i) : -down) << "\n";
+    }
+    const MillBlocks blocks = blocks_of(text.str(), machine);
+    CAPTURE(touch);
+    const auto parts = plan_in_parts(blocks, machine, within, SmoothLevel::good, 40);
+    REQUIRE(parts);
+    for (const auto& point : parts->samples(1e-3)) REQUIRE(point.position[1] > -0.5 - 1e-9);
+  }
+}
+
+TEST_CASE("stream: cuts do not become slower from part to part", "[smooth-stream]") {
+  // What is held has no room for a gentle ramp up and one down.
+  for (const auto& [lines, step, bend, held] :
+       {std::tuple(600, 0.1, 0.01, 60u), std::tuple(600, 0.25, 0.1, 60u)}) {
+    std::ostringstream text;
+    text << std::fixed << "F1800\n";
+    for (int i = 1; i <= lines; ++i) text << "G1 X" << step * i << " Y" << bend * std::sin(0.3 * i) << "\n";
+    const MillBlocks blocks = blocks_of(text.str());
+    const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
+    const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
+    REQUIRE(parts);
+    REQUIRE(whole);
+    CAPTURE(step, held);
+    CHECK(parts->duration() < 1.1 * whole->duration());
   }
 }
 

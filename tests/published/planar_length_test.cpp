@@ -37,7 +37,7 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   auto phases = plan::block_phases(std::span<const plan::Span>(spans), cells);
   published::to_space(all, std::span(phases));
   const Trajectory<Machine<3>, ProgramBlock<Machine<3>>> planned(mill, {blocks.begin(), blocks.end()},
-                                                                 phases);
+                                                                 std::move(phases));
   // the helices from rest to rest at constant speed, then the stop before the line (Table 3)
   const double ramp = 2 * std::sqrt(30.0 / 10000.0);
   const auto motions = planned.blocks();

@@ -14,9 +14,9 @@
 namespace cncplan {
 
 /// Gives out a buffer in pieces, each from the first gap that is long enough, and takes them back: so plans
-/// can be made without the heap. Where no gap is, it throws std::bad_alloc. Alignments are 64 at most. Sizes
-/// are rounded up to 64 bytes; a call takes time in proportion to the number of gaps. Not for two threads at
-/// once.
+/// can be made without the heap. Where no gap is long enough, it throws std::bad_alloc. Alignments are 64 at
+/// most. Sizes are rounded up to 64 bytes; a call takes time in proportion to the number of gaps. Not for two
+/// threads at once.
 class FixedMemory : public std::pmr::memory_resource {
  public:
   /// The buffer is to stay.

@@ -50,9 +50,10 @@ template <MachineModel M>
   return room;
 }
 
-/// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over.
+/// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over, at
+/// least `more`.
 template <MachineModel M, Path P>
-[[nodiscard]] Expected<void> within_travel(const P& path, const M& machine) {
+[[nodiscard]] Expected<void> within_travel(const P& path, const M& machine, typename M::Scalar more = 0) {
   using S = typename M::Scalar;
   const auto box = path.box();
   for (int i = 0; i < M::axis_count; ++i) {
@@ -60,7 +61,7 @@ template <MachineModel M, Path P>
     const S reach = std::max(std::abs(box.low[i]), std::abs(box.high[i]));
     if (box.low[i] >= axis.low && box.high[i] <= axis.high && reach <= std::numeric_limits<S>::max())
       continue;
-    const S rounding = S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1));
+    const S rounding = std::max(more, S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1)));
     const auto refuse = [&](ErrorCode code, S value, S bound) {
       return tl::unexpected(
           Error{code, axis_name(axis.letter), static_cast<double>(value), static_cast<double>(bound)});

@@ -237,7 +237,7 @@ class CellMaker {
       if (auto ok = within_travel(path, machine_); !ok) return ok;
     if constexpr (EnclosedPath<typename B::Path>)
       if (!driven.exact() && has_ends(machine_))
-        if (auto ok = within_travel(driven, machine_); !ok) return ok;
+        if (auto ok = within_travel(driven, machine_, Scalar(1e-9)); !ok) return ok;  // sums of its box
     end_ = length > Scalar(0) ? ends.end.position : ends.start.position;
     paused_ = std::exchange(pause_, Scalar(0));
     if (length > Scalar(0)) {

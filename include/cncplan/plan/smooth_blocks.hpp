@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory_resource>
+#include <new>
 #include <ranges>
 
 #include "cncplan/plan/smooth_stream.hpp"
@@ -32,7 +33,11 @@ template <std::ranges::contiguous_range R, MachineModel M>
   for (const auto& block : blocks)
     if (const auto ok = stream.push(block); !ok) return tl::unexpected(ok.error());
   if (const auto ok = stream.finish(); !ok) return tl::unexpected(ok.error());
-  return stream.take();
+  try {
+    return stream.take();
+  } catch (const std::bad_alloc&) {
+    return tl::unexpected(plan::no_memory());
+  }
 }
 
 }  // namespace cncplan

@@ -37,7 +37,7 @@ class SmoothPlanner {
   using Part = Trajectory<M, Out>;
 
   /// `most`: blocks that are held at once. The machine is to stay. Everything lies in `memory`. Where there
-  /// is too little of that, what throws std::bad_alloc has done nothing; it can be called again.
+  /// is too little of that, what throws std::bad_alloc can be called again; nothing is lost.
   SmoothPlanner(const M& machine, const PlanOptions& options, SmoothLevel level, std::size_t most,
                 std::pmr::memory_resource* memory)
       : machine_(machine),
@@ -47,6 +47,9 @@ class SmoothPlanner {
         possible_(options.tolerance > 0 && has_curve_level(machine)),
         most_(most),
         memory_(memory) {}
+
+  SmoothPlanner(const SmoothPlanner&) = delete;
+  SmoothPlanner& operator=(const SmoothPlanner&) = delete;
 
   /// Plans what has to be planned before more blocks are pushed.
   [[nodiscard]] Expected<void, ProgramError> prepare(std::size_t more) {
@@ -63,11 +66,12 @@ class SmoothPlanner {
   [[nodiscard]] bool ready() const { return !out_.empty(); }
   /// What was planned since the last call; its time begins at 0.
   [[nodiscard]] Part take() {
-    // A trajectory asks for as much: if it is not there, nothing is lost yet.
-    static_cast<void>(std::pmr::vector<S>(out_.size() + 1, memory_));
-    if (smoothing_.corrections.empty()) smoothing_.blocks.clear();
+    BasicSmoothing<S, n> none(memory_);
+    Part part(machine_, std::move(out_), std::move(phases_),
+              std::move(smoothing_.corrections.empty() ? none : smoothing_));
+    smoothing_.blocks.clear();
     time_ = S(0);
-    return Part(machine_, std::exchange(out_, {}), std::exchange(phases_, {}), std::exchange(smoothing_, {}));
+    return part;
   }
 
  private:
@@ -243,7 +247,8 @@ class SmoothPlanner {
       const std::size_t count = given.blocks.size();
       for (const auto& [cell, cut] : run.cuts(count * 3 / 4, count * 19 / 20)) {
         // From there the machine can come to rest along what is known.
-        const std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
+        std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
+        while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
         smooth::RunCut<Path> there = cut;
         there.place.block -= moving;
         const RunBlocks rest = run_blocks(given.sources[moving], end);
@@ -253,12 +258,18 @@ class SmoothPlanner {
         if (!works(planned)) planned = run.slow_plan();
         if (!works(planned)) return false;
         const std::size_t at = given.sources[planned.end_block];
-        if (at <= planned_) return false;  // no block would be let go
-        add_pieces(planned, given.sources, at);
         const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
+        if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return false;  // nothing is let go
+        // The very way to rest that is driven if nothing else can be: it begins with the approach.
+        smooth::RunCut<Path> next = cut;
+        next.place.block -= kept;
+        next.approach = &planned.approach;
+        const RunBlocks way = run_blocks(gone, end);
+        if (!works(Run(way.blocks, way.limits, work_, next, memory_).slow_plan())) return false;
+        add_pieces(planned, given.sources, at);
+        begun_ = out_.back().source == first_source_ + at;
         approach_ = std::move(planned.approach);
-        cut_ = cut;
-        cut_->place.block -= kept;
+        cut_ = next;
         cut_->approach = &approach_;
         known_ = end - gone;
         let_go(gone);
@@ -320,7 +331,6 @@ class SmoothPlanner {
     std::pmr::vector<std::size_t> places(memory_);  // of each piece
     places.reserve(run.pieces.size());
     std::size_t next = planned_;  // the first block that is not there yet
-    bool begun = cut_.has_value();
     for (std::size_t i = 0; i < run.pieces.size(); ++i) {
       const std::size_t source = sources[run.pieces[i].block];
       for (; next < source; ++next)
@@ -329,8 +339,7 @@ class SmoothPlanner {
       Out& block = add_block(source);
       block.path = run.pieces[i].path;
       block.straight_on = false;
-      if ((begun && source == planned_) || next != source) block.word = {};
-      begun = false;
+      if ((std::exchange(begun_, false) && source == planned_) || next != source) block.word = {};
       next = source + 1;
       block.goes_on = after == source;
       if (block.goes_on) {
@@ -339,6 +348,8 @@ class SmoothPlanner {
       }
       places.push_back(out_.size() - 1);
     }
+    for (; next < end; ++next)
+      if (!moves(next)) add_block(next);
     for (auto [phase, piece] : run.phases) {
       phase.time += time_;
       phases_.push_back({phase, places[piece]});
@@ -346,9 +357,9 @@ class SmoothPlanner {
     time_ += run.duration;
     planned_ = end;
     cut_.reset();
-    const Out& last = out_.back();
+    const Out& last = out_[places.back()];
     if (!(last.pause > S(0))) return;
-    phases_.push_back({{time_, last.pause, last.path.length(), S(0), S(0), S(0)}, out_.size() - 1});
+    phases_.push_back({{time_, last.pause, last.path.length(), S(0), S(0), S(0)}, places.back()});
     time_ += last.pause;
   }
 
@@ -379,6 +390,7 @@ class SmoothPlanner {
   std::optional<smooth::RunCut<Path>> cut_;
   smooth::BasicApproach<S, n> approach_{memory_};
   std::size_t known_ = 0;
+  bool begun_ = false;  // a piece of the block in which it goes on is planned
   // What is planned.
   std::pmr::vector<Out> out_{memory_};
   std::pmr::vector<BasicBlockPhase<S>> phases_{memory_};

@@ -13,6 +13,13 @@
 
 namespace cncplan {
 
+namespace plan {
+
+/// That memory gave out.
+[[nodiscard]] inline ProgramError no_memory() { return {{{ErrorCode::no_memory, "memory"}, 0, 0, {}}}; }
+
+}  // namespace plan
+
 /// Plans a program of any length within bounded memory: blocks go in, parts of its trajectory come out. A
 /// part goes on where the one before ended, at the same position, velocity and acceleration; the last one
 /// ends at rest.
@@ -20,13 +27,15 @@ namespace cncplan {
 /// At most `most_blocks` are held, beside those that may become one line. A run of blocks without a stop that
 /// is longer is cut on little curved path. A slow motion from there to rest, along blocks that are known, is
 /// proven before a part goes out, so no later block can break a limit. At the cut the curve's position,
-/// tangent and curvature are those with which the search began, which costs some milliseconds; the speed is
-/// searched for again with what follows, through the cut. The work is that of `plan_smooth`, which holds the
-/// program as a whole. A part that does not end at rest is nothing for a `TrajectoryExecutor`.
+/// tangent and curvature are those with which the search began, so the motion takes some milliseconds longer;
+/// the speed is searched for again with what follows, through the cut. The work is that of `plan_smooth`,
+/// which holds the program as a whole. A part that does not end at rest is nothing for a
+/// `TrajectoryExecutor`.
 ///
 /// All lies in `memory`, the parts that are taken too; nothing else is asked for any. Where it gives out
 /// (std::bad_alloc) the plan is slower, with stops where no curve was found; if there is too little for that
-/// also, a call says so; nothing is lost then, and the call can be made again.
+/// also, a call says so; nothing is lost then, and the call can be made again. Parts are to be destroyed
+/// before `memory`, and, unless that is made for several threads, not while the stream works.
 ///
 /// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
 /// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
@@ -62,7 +71,7 @@ class SmoothStream {
     drop_merged();
     return {};
   } catch (const std::bad_alloc&) {
-    return no_memory();
+    return tl::unexpected(plan::no_memory());
   }
   /// Plans all that is left, to rest. Blocks that are pushed later go on from there.
   [[nodiscard]] Expected<void, ProgramError> finish() try {
@@ -72,7 +81,7 @@ class SmoothStream {
     drop_merged();
     return planner_.finish();
   } catch (const std::bad_alloc&) {
-    return no_memory();
+    return tl::unexpected(plan::no_memory());
   }
 
   /// Whether a part is there to be taken.
@@ -107,10 +116,6 @@ class SmoothStream {
   void drop_merged() {
     merging_.erase(merging_.begin(), merging_.begin() + static_cast<std::ptrdiff_t>(merged_));
     merged_ = 0;
-  }
-
-  [[nodiscard]] static Expected<void, ProgramError> no_memory() {
-    return tl::unexpected(ProgramError{{{ErrorCode::no_memory, "memory"}, 0, 0, {}}});
   }
 
   M machine_;

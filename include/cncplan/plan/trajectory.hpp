@@ -62,16 +62,17 @@ class Trajectory {
   using Smoothing = plan::BasicSmoothing<Scalar, M::axis_count>;
   using DrivenPath = smooth::Smoothed<typename B::Path>;
 
-  /// From blocks and the phases that drive them: `plan_blocks` and `plan_text` make these. It lies in the
-  /// memory that the vectors have.
-  Trajectory(const M& machine, std::pmr::vector<B> blocks, std::pmr::vector<Phase> phases,
-             Smoothing smoothing = {})
+  /// From blocks and the phases that drive them: `plan_blocks` and `plan_text` make these. It lies in their
+  /// memory, and takes them only once it has all that it needs. A move takes the memory along; a copy lies in
+  /// the default memory resource.
+  Trajectory(const M& machine, std::pmr::vector<B>&& blocks, std::pmr::vector<Phase>&& phases,
+             Smoothing&& smoothing = {})
       : machine_(machine),
         tool_(tool_axes(machine)),
+        starts_(blocks.size() + 1, blocks.get_allocator()),
         blocks_(std::move(blocks)),
         smoothing_(std::move(smoothing)),
-        phases_(std::move(phases)),
-        starts_(blocks_.size() + 1, blocks_.get_allocator().resource()) {
+        phases_(std::move(phases)) {
     for (std::size_t i = 0; i < blocks_.size(); ++i)
       starts_[i + 1] = starts_[i] + (counts(blocks_[i]) ? blocks_[i].path.length() : Scalar(0));
   }
@@ -277,10 +278,10 @@ class Trajectory {
 
   M machine_;
   std::array<int, 3> tool_;
+  std::pmr::vector<Scalar> starts_;  // mm at which each block begins, and the end
   std::pmr::vector<B> blocks_;
   Smoothing smoothing_;
   std::pmr::vector<Phase> phases_;
-  std::pmr::vector<Scalar> starts_;  // mm at which each block begins, and the end
   std::vector<TimedWord> words_;
   std::vector<std::string> warnings_;
 };

@@ -131,8 +131,9 @@ template <std::floating_point S, int N>
   const BasicSpeedProblem<S, N> problem{cells.subspan(1, inner), paces.subspan(1, inner), &limits};
   const BasicSpeedProblem<S, N> sought{problem.cells.subspan(ends.given), problem.paces.subspan(ends.given),
                                        &limits};
-  const BasicLimits<S> along = tangential_limits(cells, limits);
-  S length = S(0);  // of the cells without a law
+  // Of the cells without a law: what comes before them changes nothing.
+  const BasicLimits<S> along = tangential_limits(cells.subspan(ends.given > 0 ? 1 + ends.given : 0), limits);
+  S length = S(0);
   plan.start =
       ends.start > S(0) ? BasicRestCell<S>::at_speed(ends.start) : detail::rest_cell(cells.front(), limits);
   plan.end = ends.end > S(0) ? BasicRestCell<S>::at_speed(ends.end)

@@ -145,7 +145,8 @@ class SmoothRun {
                                sampled_use(cells[i], limits_, {b, b, b}).force());
       const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
       const S price = (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat);
-      const Choice choice{price, cell, S(0.5) * speed};
+      // Not slower from cut to cut, where what is held has no room for ramps.
+      const Choice choice{price, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
       Choice& last = best[std::min(part, most_cuts - 1)];
       if (choice.price < last.price) last = choice;
     }
@@ -158,7 +159,7 @@ class SmoothRun {
   }
 
   /// Cuts the run before a cell of its curve, where it has a speed. A plan searches for the curve beyond as
-  /// well, as if motion did not brake, but leaves it as it is at the cut.
+  /// well, as if motion came to rest at the end of the blocks only, but leaves it as it is at the cut.
   void end_before(std::size_t cell, S speed) { end_ = {cell, speed}; }
 
   /// The fastest motion that is found.
