@@ -121,6 +121,45 @@ TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]")
   CHECK(last.program().back().source + 1 == blocks.size());
 }
 
+TEST_CASE("stream: words behind every line are told once", "[smooth-stream]") {
+  const MillBlocks lines = blocks_of(rows(3, 60));
+  for (const int words : {1, 7}) {
+    MillBlocks blocks;
+    for (const MillBlock& line : lines) {
+      blocks.push_back(line);
+      const Vector3 here = line.path.position_at(line.path.length());
+      for (int i = 0; i < words; ++i) {
+        blocks.push_back(line);
+        blocks.back().path = path::Line<3>(here, here);
+        blocks.back().word = {'M', static_cast<double>(100 + i)};
+      }
+    }
+    const std::size_t held = 120;
+    CAPTURE(words);
+    Stream stream(mill, within, SmoothLevel::good, held);
+    JoinedParts<MillBlock, Machine<3>> parts;
+    std::size_t out = 0, most = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      REQUIRE(stream.push(blocks[i]));
+      if (stream.ready()) {
+        parts.take(stream);
+        const auto all = parts.trajectory(mill);
+        out = all.program().back().source;
+      }
+      most = std::max(most, i + 1 - out);
+    }
+    CHECK(most <= held + 1);
+    REQUIRE(stream.finish());
+    parts.take(stream);
+    // Each word is told once.
+    const auto all = parts.trajectory(mill);
+    std::size_t told = 0;
+    for (const auto& block : all.program()) told += block.word.letter == 'M' ? 1 : 0;
+    CHECK(told == lines.size() * static_cast<std::size_t>(words));
+    check_motion(all, blocks);
+  }
+}
+
 TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole", "[smooth-stream]") {
   std::string text = rows(2, 60) + "M8\nG4 P0.25\n" + rows(2, 60) + "M0\nG61.1\n" + rows(1, 10) + "G61\n" +
                      rows(1, 10) + "G64\nM9\n" + rows(1, 80) + "G1 X3\nX9 Y4\nM5\nX0\nM30\n";

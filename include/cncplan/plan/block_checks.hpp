@@ -98,7 +98,7 @@ template <MachineModel M, BlockModel B>
 
 /// Nothing, or that a length or a pause is not finite, or a pause negative.
 template <std::floating_point S>
-[[nodiscard]] Expected<void> finite(S length, S pause) {
+[[nodiscard]] Expected<void> valid_numbers(S length, S pause) {
   if (!std::isfinite(length)) return refusal(ErrorCode::not_finite, "length", length);
   if (!std::isfinite(pause)) return refusal(ErrorCode::not_finite, "pause", pause);
   if (pause < S(0)) return refusal(ErrorCode::negative, "pause", pause);
@@ -106,7 +106,7 @@ template <std::floating_point S>
 }
 /// Nothing, or that the speed that is asked of a block is not above 0.
 template <std::floating_point S>
-[[nodiscard]] Expected<void> positive(S wanted) {
+[[nodiscard]] Expected<void> valid_feed(S wanted) {
   if (wanted > S(0)) return {};
   return refusal(std::isnan(wanted) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed", wanted);
 }
@@ -116,10 +116,10 @@ template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<void> drivable(const B& block, const M& machine) {
   using S = typename M::Scalar;
   const S length = block.path.length();
-  auto ok = finite(length, block.pause);
+  auto ok = valid_numbers(length, block.pause);
   if (ok) ok = within_travel(block.path, machine);
   if (!ok || !(length > S(0))) return ok;
-  ok = positive(wanted_speed(block, machine, length_of(block.path, machine)));
+  ok = valid_feed(wanted_speed(block, machine, length_of(block.path, machine)));
   return ok ? limited(block, machine) : ok;
 }
 

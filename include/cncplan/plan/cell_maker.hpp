@@ -230,7 +230,7 @@ class CellMaker {
   [[nodiscard]] Expected<void> begin_on(const P& path, const B& block, const Driven& driven,
                                         Passing passing) {
     const Scalar length = path.length();
-    if (auto ok = finite(length, block.pause); !ok) return ok;
+    if (auto ok = valid_numbers(length, block.pause); !ok) return ok;
     const PathEnds ends(path);
     if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
     if (!travel_.contains(path.box()))
@@ -245,7 +245,7 @@ class CellMaker {
       counted_ = counted;
       const Scalar speed = plan::wanted_speed(block, machine_, LengthOf::tool);
       wanted_ = counted == LengthOf::tool ? speed : plan::wanted_speed(block, machine_, counted);
-      if (auto ok = positive(wanted_); !ok) return ok;
+      if (auto ok = valid_feed(wanted_); !ok) return ok;
       if (counted != LengthOf::tool)
         if (auto ok = limited(block, machine_); !ok) return ok;
       entry_ = Scalar(0);

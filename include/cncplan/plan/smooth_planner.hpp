@@ -55,7 +55,7 @@ class SmoothPlanner {
   [[nodiscard]] Expected<void, ProgramError> prepare(std::size_t more) {
     if (blocks_.size() >= most_)
       if (const auto ok = plan(false); !ok) return ok;
-    plan::make_room(blocks_, more);
+    make_room(blocks_, more);
     return {};
   }
   void push(const B& block) { blocks_.push_back(block); }
@@ -190,8 +190,8 @@ class SmoothPlanner {
     }
     const std::size_t corrections = smoothing_.corrections.size(), before = out_.size();
     const auto& own = planned->smoothing();
-    plan::make_room(smoothing_.corrections, own.corrections.size());
-    make_room(end - planned_, planned->phases().size());
+    make_room(smoothing_.corrections, own.corrections.size());
+    make_room_for(end - planned_, planned->phases().size());
     smoothing_.corrections.insert(smoothing_.corrections.end(), own.corrections.begin(),
                                   own.corrections.end());
     for (std::size_t i = planned_; i < end; ++i) {
@@ -327,7 +327,7 @@ class SmoothPlanner {
 
   // Pieces of a run that end within a block, or behind the last one before it.
   void add_pieces(const RunPlan& run, std::span<const std::size_t> sources, std::size_t end) {
-    make_room(run.pieces.size() + end - planned_, run.phases.size() + 1);
+    make_room_for(run.pieces.size() + end - planned_, run.phases.size() + 1);
     std::pmr::vector<std::size_t> places(memory_);  // of each piece
     places.reserve(run.pieces.size());
     std::size_t next = planned_;  // the first block that is not there yet
@@ -363,10 +363,10 @@ class SmoothPlanner {
     time_ += last.pause;
   }
 
-  void make_room(std::size_t blocks, std::size_t phases) {
-    plan::make_room(out_, blocks);
-    plan::make_room(smoothing_.blocks, blocks);
-    plan::make_room(phases_, phases);
+  void make_room_for(std::size_t blocks, std::size_t phases) {
+    make_room(out_, blocks);
+    make_room(smoothing_.blocks, blocks);
+    make_room(phases_, phases);
   }
   // A block as it is, without phases.
   Out& add_block(std::size_t i) {
