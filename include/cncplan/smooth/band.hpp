@@ -57,7 +57,7 @@ class Band {
     S start_share = S(0.6);  ///< of the tolerances, by the start's corners
     S jerk_share = S(0.15);  ///< of the jerk limit, by corners that may be run through at the feed
     S centring = S(0.1);
-    std::size_t window = 300;  ///< control points that one window moves
+    std::size_t window = 300;  ///< control points that one window moves, at least 200
     S coarseness = S(1);       ///< how many times longer the cells are
     BasicBandOptions<S> solver{};
   };
@@ -129,24 +129,10 @@ class Band {
     prepare_memory();
     const BasicBandMemory<S, axis_count> memory{rows_, gradient_, step_, trial_};
     const BasicBandProblem<S, axis_count> problem{cells_, samples_, jerk_scale(), options_.centring};
-    int rounds = 0;
-    const std::size_t end = points_.size() - 3;
-    for (std::size_t k = 3; k < end;) {
-      if (slow[k] == 0) {
-        ++k;
-        continue;
-      }
-      std::size_t last = k;
-      while (last < end && slow[last] != 0) ++last;
-      for (std::size_t first = k; first < last; first += options_.window / 2) {
-        const std::size_t to = std::min(first + options_.window, last);
-        rounds +=
-            smooth::smoothen(problem, std::span<Vector>(points_), first, to, options_.solver, memory).rounds;
-        if (to == last) break;
-      }
-      k = last;
-    }
-    return rounds;
+    return in_windows(slow, 3, [&](std::size_t first, std::size_t last) {
+      return smooth::smoothen(problem, std::span<Vector>(points_), first, last, options_.solver, memory)
+          .rounds;
+    });
   }
 
   /// Moves curve and speed together where it is slow. `speeds_sq`: for each cell the middle coefficient of b,
@@ -182,26 +168,11 @@ class Band {
     std::pmr::vector<detail::JointPlace<S>> places(3 * (options_.window + 3), memory_);
     const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
     const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits};
-    int rounds = 0;
-    const std::size_t end = points_.size() - 4;
-    for (std::size_t k = 4; k < end;) {
-      if (moves[k] == 0) {
-        ++k;
-        continue;
-      }
-      std::size_t last = k;
-      while (last < end && moves[last] != 0) ++last;
-      for (std::size_t first = k; first < last; first += options_.window / 2) {
-        const std::size_t to = std::min(first + options_.window, last);
-        rounds +=
-            smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, to, solver,
-                            BasicJointMemory<S, axis_count>{rows, gradient, step, trial, places})
-                .rounds;
-        if (to == last) break;
-      }
-      k = last;
-    }
-    return rounds;
+    return in_windows(moves, 4, [&](std::size_t first, std::size_t last) {
+      return smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, last, solver,
+                             BasicJointMemory<S, axis_count>{rows, gradient, step, trial, places})
+          .rounds;
+    });
   }
 
   /// A bound of how far the curve is off the programmed path, as a share of the tolerance, within one cell.
@@ -530,6 +501,24 @@ class Band {
   // Three control points have a weight where a cell begins.
   void keep_pinned(std::span<char> moves) const {
     if (pinned_) std::fill_n(moves.begin() + static_cast<std::ptrdiff_t>(*pinned_), 3, char{0});
+  }
+
+  // The sum of `move(first, last)` over windows of the points that move, less so many at each end.
+  template <class Move>
+  [[nodiscard]] int in_windows(std::span<const char> moves, std::size_t margin, const Move& move) const {
+    // What is left at the end of a window is moved with the next one.
+    const std::size_t overlap = std::min<std::size_t>(100, options_.window / 2);
+    int sum = 0;
+    const std::size_t end = moves.size() - margin;
+    for (std::size_t k = margin; k < end; ++k) {
+      if (moves[k] == 0) continue;
+      std::size_t first = k;
+      while (k < end && moves[k] != 0) ++k;
+      for (; k - first > options_.window; first += options_.window - overlap)
+        sum += move(first, first + options_.window);
+      sum += move(first, k);
+    }
+    return sum;
   }
 
   void prepare_memory() {

@@ -244,7 +244,7 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
         move_prices(shares_of(cell), &step[cell - cell0], weight, share);
       take(trial);
       spread = far;
-      if (decrease > weight * terms * S(0.02)) continue;
+      if (decrease > weight * terms * S(0.05)) continue;
     }
     if (!options.proven || !(weight * terms < S(0.3) * cost.time)) {
       if (weight * terms < options.gap * cost.time) {
