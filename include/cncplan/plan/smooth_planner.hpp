@@ -245,7 +245,7 @@ class SmoothPlanner {
       const RunBlocks given = run_blocks(cut_ ? 0 : planned_, end);
       Run run(given.blocks, given.limits, work_, cut_, memory_);
       const std::size_t count = given.blocks.size();
-      for (const auto& [cell, cut] : run.cuts(count * 3 / 4, count * 19 / 20)) {
+      for (const auto& [cell, cut] : run.cuts(count / 2, count * 19 / 20)) {
         // From there the machine can come to rest along what is known.
         std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
         while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;

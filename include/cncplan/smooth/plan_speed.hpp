@@ -187,7 +187,6 @@ template <std::floating_point S, int N>
     const S feed = problem.cells[k - 1].feed * problem.paces[k - 1].speed;
     levels[k - 1] = law[k] > feed * feed * (S(1) - S(1e-4)) ? S(0) : S(1);
   }
-  constexpr std::size_t overlap = 100;
   const std::size_t most = std::min(options.window_cells, memory.window.capacity(limit_count(limits)) - 4);
   for (std::size_t k = 2; k < inner && options.fastest;) {
     if (!(levels[k - 1] > S(0))) {
@@ -217,7 +216,7 @@ template <std::floating_point S, int N>
       plan.unconverged += result.converged ? 0 : 1;
       again = false;
       if (last == end) break;
-      first = last - std::min(overlap, most / 2);
+      first += most / 2;
     }
     k = end;
   }

@@ -114,7 +114,8 @@ class SmoothRun {
   static constexpr std::size_t most_cuts = 8;
 
   /// Places between the starts of two blocks at which the run may be cut, before which cell, the best first:
-  /// at the feed on little curved path if there are such, else where it is near it.
+  /// at the feed on little curved path if there are such, else where it is near it; rather late, for what is
+  /// beyond a cut is planned again.
   [[nodiscard]] FixedList<std::pair<std::size_t, RunCut<P>>, most_cuts> cuts(std::size_t from_block,
                                                                              std::size_t to_block) {
     const S from = band_.block_start(from_block), to = band_.block_start(to_block);
@@ -144,7 +145,8 @@ class SmoothRun {
       const S force = std::max(sampled_use(cells[i - 1], limits_, {b, b, b}).force(),
                                sampled_use(cells[i], limits_, {b, b, b}).force());
       const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
-      const S price = (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat);
+      const S price = (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) +
+                      S(3) * (to - at) / (to - from);
       // Not slower from cut to cut, where what is held has no room for ramps.
       const Choice choice{price, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
       Choice& last = best[std::min(part, most_cuts - 1)];
