@@ -175,7 +175,8 @@ class SmoothRun {
     band_.reset();
     deviation_ = band_.settle();
     fastest = make_plan(true);
-    return std::isfinite(fastest.duration) ? fastest : make_plan(false);
+    if (!std::isfinite(fastest.duration)) fastest = make_plan(false);
+    return fastest;
   }
 
   /// The slow motion that the search begins with, for little work. Where it has a plan, so has the search:
