@@ -48,7 +48,7 @@ struct BasicSmoothOptions {
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
   S coarseness = S(1);             ///< how many times longer the cells are
-  std::size_t speed_window = 400;  ///< coefficients of speed that move at once, at least 200
+  std::size_t speed_window = 800;  ///< coefficients of speed that move at once, at least 200
   std::size_t band_window = 300;   ///< control points that move at once, at least 200
 };
 
