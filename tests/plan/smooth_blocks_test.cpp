@@ -152,7 +152,7 @@ TEST_CASE("best: narrow bends at a high feed", "[smooth-blocks]") {
     }
 }
 
-TEST_CASE("best: windows come together on dense lines with noise", "[smooth-blocks]") {
+TEST_CASE("best: dense lines with noise come up to speed", "[smooth-blocks]") {
   // A braking way has hundreds of cells here: windows of 400 gave up to 0.763 s for 0.710. The exact plan,
   // which jumps at all corners, is about as fast as can be.
   test::Random random(1);

@@ -57,7 +57,7 @@ struct BasicBandMemory {
 
 template <std::floating_point S>
 struct BasicBandOptions {
-  S gap = S(7e-2);  ///< nearer to the least sum the curve has less room in the tube, and no less time
+  S gap = S(7e-2);  ///< from the least sum, as a share of it; a smaller one gives no faster motion
   int rounds = 100;
 };
 

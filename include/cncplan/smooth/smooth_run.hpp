@@ -145,8 +145,9 @@ class SmoothRun {
       const S force = std::max(sampled_use(cells[i - 1], limits_, {b, b, b}).force(),
                                sampled_use(cells[i], limits_, {b, b, b}).force());
       const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
-      const S price = (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) +
-                      S(3) * (to - at) / (to - from);
+      const S beyond = (to - at) / (to - from);
+      const S price =
+          (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) + S(3) * beyond;
       // Not slower from cut to cut, where what is held has no room for ramps.
       const Choice choice{price, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
       Choice& last = best[std::min(part, most_cuts - 1)];
