@@ -72,6 +72,27 @@ template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar
   return Trajectory<M, B>(machine, std::move(blocks), std::move(phases), std::move(smoothing));
 }
 
+/// What `plan_blocks` gives for blocks that it may change and keep. All memory is theirs.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_own_blocks(std::pmr::vector<B>&& blocks,
+                                                                       const M& machine,
+                                                                       const PlanOptions& options) {
+  using S = typename M::Scalar;
+  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
+  if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+  const auto deviation = static_cast<S>(options.junction_deviation);
+  const JointRules<S, junction::BasicDeviation<S>> rules{
+      {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
+  BasicSmoothing<S, M::axis_count> smoothing(memory);
+  if constexpr (EnclosedPath<typename B::Path> && !MappedModel<M>)
+    if (options.tolerance > 0) {
+      const auto within = smoothing_rules<S>(options);
+      merge_lines(std::span(blocks), machine, within);
+      smoothing = plan::smoothing(std::span<const B>(blocks), machine, within, memory);
+    }
+  return trajectory(std::move(blocks), machine, rules, SevenPhase{}, std::move(smoothing));
+}
+
 }  // namespace plan
 
 /// The fastest motion along blocks, end to end, from rest to rest, such that the tool and each axis keep
@@ -84,20 +105,7 @@ template <std::ranges::contiguous_range R, MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(
     R&& blocks, const M& machine, const PlanOptions& options = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
-  using S = typename M::Scalar;
-  if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
-  const auto deviation = static_cast<S>(options.junction_deviation);
-  const plan::JointRules<S, junction::BasicDeviation<S>> rules{
-      {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
-  std::pmr::vector<BlockOf<R>> own = plan::own_blocks(std::forward<R>(blocks), memory);
-  plan::BasicSmoothing<S, M::axis_count> smoothing(memory);
-  if constexpr (EnclosedPath<typename BlockOf<R>::Path> && !MappedModel<M>)
-    if (options.tolerance > 0) {
-      const auto smoothing_rules = plan::smoothing_rules<S>(options);
-      merge_lines(std::span(own), machine, smoothing_rules);
-      smoothing = plan::smoothing(std::span<const BlockOf<R>>(own), machine, smoothing_rules, memory);
-    }
-  return plan::trajectory(std::move(own), machine, rules, plan::SevenPhase{}, std::move(smoothing));
+  return plan::plan_own_blocks(plan::own_blocks(std::forward<R>(blocks), memory), machine, options);
 }
 
 /// The same with a policy of one's own for joints (`JunctionPolicy`); the tolerances of the options do not
