@@ -1,10 +1,40 @@
-# What only the project's own builds use: the warnings, a build type when none was asked for, and the compile commands
-# for editors and clang-tidy.
+# What only the project's own builds use: warnings, a build type where none was asked for, compile commands for editors and
+# clang-tidy, ccache where it is installed, and what is left out where its packages are missing.
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 
+find_program(CCACHE ccache)
+if(CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER AND NOT DEFINED ENV{CMAKE_CXX_COMPILER_LAUNCHER})
+  # what precompiled headers ask of ccache
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+    ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
+endif()
+
+# Warnings are errors by CMAKE_COMPILE_WARNING_AS_ERROR: the presets and tools/ set it.
+add_library(cncplan_warnings INTERFACE)
+target_compile_options(cncplan_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+target_link_libraries(cncplan_compiled PRIVATE $<BUILD_INTERFACE:cncplan_warnings>)
+# g++ 12 warns of what a variant copies whole
+target_compile_options(cncplan_compiled PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+# Who takes the compiled library, as most of the tree does, and who takes the headers alone.
 add_library(cncplan_development INTERFACE)
-target_link_libraries(cncplan_development INTERFACE cncplan::cncplan)
-target_compile_options(cncplan_development INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+target_link_libraries(cncplan_development INTERFACE cncplan_warnings cncplan::compiled)
+add_library(cncplan_header_only INTERFACE)
+target_link_libraries(cncplan_header_only INTERFACE cncplan_warnings cncplan::cncplan)
+
+# Turns an option off where a package is missing, and says so: cncplan_needs(OPTION package...)
+macro(cncplan_needs option)
+  foreach(package ${ARGN})
+    if(${option})
+      find_package(${package} QUIET)
+      if(NOT ${package}_FOUND)
+        message(STATUS "${option} is off: ${package} is not installed (tools/setup installs all that is needed)")
+        set(${option} OFF)
+      endif()
+    endif()
+  endforeach()
+endmacro()
+cncplan_needs(CNCPLAN_TESTS Catch2 CLI11)
+cncplan_needs(CNCPLAN_BENCH benchmark)

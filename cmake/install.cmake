@@ -1,15 +1,26 @@
-# Installation: the headers, the CMake package (find_package(cncplan)) and the pkg-config file. Nothing depends on the
-# machine's architecture and nothing holds the prefix: the installed tree can be moved.
+# Installation: the headers, the compiled library and the programs where they were built, the CMake package
+# (find_package(cncplan)) and the pkg-config files. Nothing holds the prefix: the installed tree can be moved.
 include(CMakePackageConfigHelpers)
-set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/cncplan)
-set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cncplan)
+set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 install(DIRECTORY include/cncplan DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(TARGETS cncplan EXPORT cncplan)
 install(EXPORT cncplan FILE cncplan-targets.cmake NAMESPACE cncplan:: DESTINATION ${package_dir})
+install(TARGETS cncplan_compiled EXPORT cncplan-compiled ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} OPTIONAL)
+install(EXPORT cncplan-compiled FILE cncplan-compiled-targets.cmake NAMESPACE cncplan:: DESTINATION ${package_dir})
+foreach(program cncplan_simulate cncplan_tire_mold cncplan_generate)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs OPTIONAL)
+  endif()
+endforeach()
+
+file(RELATIVE_PATH library_from_package ${CMAKE_INSTALL_PREFIX}/${package_dir}
+  ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/${CMAKE_STATIC_LIBRARY_PREFIX}cncplan${CMAKE_STATIC_LIBRARY_SUFFIX})
 configure_package_config_file(cmake/cncplan-config.cmake.in cncplan-config.cmake
   INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
-write_basic_package_version_file(cncplan-config-version.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+write_basic_package_version_file(cncplan-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cncplan-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/cncplan-config-version.cmake
   DESTINATION ${package_dir})
 
@@ -19,5 +30,7 @@ list(REMOVE_ITEM expected_dirs ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
 list(TRANSFORM expected_dirs PREPEND -I)
 list(JOIN expected_dirs " " expected_cflags)
 file(RELATIVE_PATH prefix_from_pkgconfig ${CMAKE_INSTALL_PREFIX}/${pkgconfig_dir} ${CMAKE_INSTALL_PREFIX})
-configure_file(cmake/cncplan.pc.in cncplan.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cncplan.pc DESTINATION ${pkgconfig_dir})
+foreach(name cncplan cncplan-compiled)
+  configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${pkgconfig_dir})
+endforeach()

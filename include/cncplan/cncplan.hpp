@@ -1,11 +1,13 @@
 // The umbrella: every folder of the library. Written by tools/umbrella.
 #pragma once
 
+#include "cncplan/compiled.hpp"
 #include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/core/axis_state.hpp"
 #include "cncplan/core/box.hpp"
 #include "cncplan/core/bracketed_root.hpp"
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/core/compiler.hpp"
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/cube_root.hpp"

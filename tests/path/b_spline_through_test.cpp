@@ -12,9 +12,9 @@ using namespace cncplan;
 
 namespace {
 
-using Points = std::vector<Vector3>;
+using PointList = std::vector<Vector3>;
 
-std::vector<Vector3> through(const Points& points, const path::BasicSplineEnds<double>& ends = {}) {
+std::vector<Vector3> through(const PointList& points, const path::BasicSplineEnds<double>& ends = {}) {
   return path::b_spline_through(std::span<const Vector3>(points), ends).value();
 }
 
@@ -24,7 +24,7 @@ TEST_CASE("A B-spline through points is at each of them, and keeps its end condi
   test::Random random;
   double off = 0, bent = 0, turned = 0;
   for (int i = 0; i < 1000; ++i) {
-    Points points;
+    PointList points;
     const int count = 2 + i % 40;
     const auto vector = [&] {
       return Vector3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9));
@@ -52,7 +52,7 @@ TEST_CASE("A B-spline through points is at each of them, and keeps its end condi
 TEST_CASE("A B-spline through points of a cubic is that cubic") {
   const auto position = [](double u) { return Vector3(u, 2 - u * u, 0.1 * u * u * u - u); };
   const auto derivative = [](double u) { return Vector3(1, -2 * u, 0.3 * u * u - 1); };
-  Points points;
+  PointList points;
   for (int i = 0; i <= 6; ++i) points.push_back(position(i));
   const auto controls = through(points, {derivative(0), derivative(6)});
   const path::BSpline<3> spline(controls);
@@ -68,7 +68,7 @@ TEST_CASE("A B-spline through points of a circle leaves it by the fourth power o
   constexpr double radius = 5, pi = std::numbers::pi;
   for (const double degrees : {5.0, 15.0, 30.0}) {
     const double d = degrees * pi / 180;
-    Points points;
+    PointList points;
     for (int i = 0; i * degrees <= 180.0; ++i)
       points.emplace_back(-radius * std::cos(i * d), radius * std::sin(i * d), 0);
     const auto controls = through(points, {Vector3(0, radius * d, 0), Vector3(0, -radius * d, 0)});
@@ -81,7 +81,7 @@ TEST_CASE("A B-spline through points of a circle leaves it by the fourth power o
 }
 
 TEST_CASE("A B-spline through one point is refused, and any scalar will do") {
-  const Points one{{1, 2, 3}};
+  const PointList one{{1, 2, 3}};
   CHECK(path::b_spline_through(std::span<const Vector3>(one)).error() ==
         Error{ErrorCode::below_limit, "number of points", 1, 2});
   const std::vector<BasicVector3<float>> two{{0, 0, 0}, {3, 0, 0}};

@@ -63,8 +63,8 @@ struct Example {
 TEST_CASE("the gradient of a joint window is that of its cost by differences") {
   const Example example;
   constexpr std::size_t first = 4, count = 6;
-  std::vector<detail::JointPlace<double>> places(3 * (count + 3));
-  const detail::JointWindow<double, 3> window(example.problem, first, count, places);
+  std::vector<smooth::detail::JointPlace<double>> places(3 * (count + 3));
+  const smooth::detail::JointWindow<double, 3> window(example.problem, first, count, places);
   const std::size_t low = window.first_cell(), end = window.last_cell();
   std::vector<Both> at;
   for (std::size_t i = low; i < end + 3; ++i) {
@@ -100,10 +100,10 @@ TEST_CASE("a joint window takes less time and stays in the tube") {
   constexpr std::size_t room = 8;
   std::vector<std::array<Eigen::Matrix4d, 4>> rows(room);
   std::vector<Both> gradient(room), step(room), trial(room + 6);
-  std::vector<detail::JointPlace<double>> places(3 * (room + 3));
+  std::vector<smooth::detail::JointPlace<double>> places(3 * (room + 3));
   const auto time = [&] {
-    std::vector<detail::JointPlace<double>> own(3 * (room + 3));
-    const detail::JointWindow<double, 3> window(example.problem, 4, 6, own);
+    std::vector<smooth::detail::JointPlace<double>> own(3 * (room + 3));
+    const smooth::detail::JointWindow<double, 3> window(example.problem, 4, 6, own);
     std::vector<Both> at;
     for (std::size_t i = window.first_cell(); i < window.last_cell() + 3; ++i) {
       at.emplace_back();

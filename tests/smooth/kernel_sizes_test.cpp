@@ -17,7 +17,7 @@ using Vector = VectorN<double, 5>;
 namespace {
 
 // X Y Z, U and a rotary axis.
-const smooth::BasicAxisTolerances<double, 5> axes{
+const smooth::BasicAxisTolerances<double, 5> tolerances{
     {0, 1, 2}, Vector{0, 0, 0, 1, 0}, Vector{0, 0, 0, 0, 1 / 1e-3}};
 
 std::string pasteable(const std::vector<Sizing>& all) {
@@ -95,7 +95,7 @@ TEST_CASE("a lone kernel is as large as wanted, has room for, or may be", "[smoo
                       .tolerance = 0.01};
   const auto fitted = [](Sizing sizing) {
     std::vector<Sizing> all{sizing};
-    smooth::fit_sizes(std::span(all), axes);
+    smooth::fit_sizes(std::span(all), tolerances);
     return all[0].size;
   };
   CHECK(fitted(corner) == Approx(0.01 / (28.0 / 120 * 1.4)));
@@ -157,7 +157,7 @@ TEST_CASE("kernels that overlap stay within the tolerance together, and so do an
       if (kinds != 1) add(Jump::direction);
       if (kinds != 0) add(Jump::curvature);
     }
-    smooth::fit_sizes(std::span(all), axes);
+    smooth::fit_sizes(std::span(all), tolerances);
     INFO(pasteable(all));
     for (const Sizing& own : all) {
       REQUIRE(own.size > 0);
@@ -192,7 +192,7 @@ TEST_CASE("kernels to and fro are as large as those one way are by themselves", 
                      .wanted = 10,
                      .room = 1.6,
                      .tolerance = 0.01});
-    smooth::fit_sizes(std::span(all), axes);
+    smooth::fit_sizes(std::span(all), tolerances);
     return all[all.size() / 2].size;
   };
   CHECK(size_of(1, -1) == Approx(size_of(2, 1)).epsilon(1e-12));
@@ -204,5 +204,5 @@ TEST_CASE("sizes are found without the heap", "[smooth]") {
       100,
       Sizing{.jump = Jump::direction, .step = {0.5, 0, 0, 0, 0}, .wanted = 1, .room = 5, .tolerance = 0.01});
   for (std::size_t i = 0; i < all.size(); ++i) all[i].at = static_cast<double>(i) * 0.1;
-  CHECK(test::heap_allocations_of([&] { smooth::fit_sizes(std::span(all), axes); }) == 0);
+  CHECK(test::heap_allocations_of([&] { smooth::fit_sizes(std::span(all), tolerances); }) == 0);
 }
