@@ -51,3 +51,19 @@ TEST_CASE("polar: the axis and tilted tools are out of reach", "[polar]") {
     CHECK(refused.error().value == Approx(std::abs(angle)));
   }
 }
+
+TEST_CASE("polar: a table that turns from 0 to 360 degrees reaches every direction", "[polar]") {
+  Polar machine;
+  machine.limits.low[2] = 0;
+  machine.limits.high[2] = 2 * pi;
+  for (int degree = 0; degree < 360; ++degree) {
+    const double c = degree * pi / 180;
+    CAPTURE(degree);
+    const auto q = machine.inverse({{50 * std::cos(c), 50 * std::sin(c), 5}, Vector3::UnitZ()});
+    REQUIRE(q);
+    CHECK((*q)[2] == Approx(c).margin(1e-14));
+  }
+  machine.limits.high[2] = pi / 2;
+  CHECK(machine.inverse({{-3, 0, 5}, Vector3::UnitZ()}).error() ==
+        Error{ErrorCode::above_limit, "C and whole turns from it", pi, pi / 2});
+}

@@ -98,3 +98,38 @@ TEST_CASE("tire mold: what is out of reach", "[tire_mold]") {
   REQUIRE(!upside_down);
   CHECK(upside_down.error().field == "A");
 }
+
+// K17 Table 3.1: C goes from 0 to 360 degrees, where atan2 gives angles from -180 to 180.
+TEST_CASE("tire mold: the travel of the thesis reaches every angle of the table", "[tire_mold]") {
+  const TireMold machine{.tool_length = 20, .limits = thesis_travel<double>()};
+  CHECK(machine.limits.high[3] == 2 * pi);
+  CHECK(machine.limits.low[2] == -pi / 2);
+  double worst = 0;
+  for (int degree = 0; degree < 360; ++degree) {
+    CAPTURE(degree);
+    const double turned = degree * pi / 180;
+    const double radial = 100 + 20 * std::sin(0.25);  // the machine written out
+    const double s = std::sin(0.25), c = std::cos(0.25);
+    const Pose pose{{radial * std::cos(turned), radial * std::sin(turned), 300 - 20 * c},
+                    {-s * std::cos(turned), -s * std::sin(turned), c}};
+    const auto joints = machine.inverse(pose);
+    REQUIRE(joints);
+    const auto shown = tire_mold_degrees<double>(*joints);
+    worst = std::max(worst, (shown - TireMold::Joints(100, 300, 45 / pi, degree)).norm());
+    worst = std::max(worst, (tire_mold_joints<double>(shown) - *joints).norm());
+  }
+  CHECK(worst < 1e-11);
+}
+
+TEST_CASE("tire mold: a table whose travel no whole turn meets says so", "[tire_mold]") {
+  TireMold machine{.tool_length = 20, .limits = thesis_travel<double>()};
+  machine.limits.low[3] = 10 * 2 * pi;
+  machine.limits.high[3] = 10 * 2 * pi + pi;
+  const auto far = machine.inverse({{0, 100, 10}, Vector3::UnitZ()});
+  REQUIRE(far);
+  CHECK((*far)[3] == Approx(10 * 2 * pi + pi / 2));
+  const auto refused = machine.inverse({{0, -100, 10}, Vector3::UnitZ()});
+  REQUIRE(!refused);
+  CHECK(refused.error().field == "C and whole turns from it");
+  CHECK(std::abs(std::abs(refused.error().value - refused.error().bound) - pi / 2) < 1e-12);
+}

@@ -1,8 +1,10 @@
 // The angle about the table's axis, without a jump.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <numbers>
 
 #include "cncplan/core/jet.hpp"
@@ -14,6 +16,18 @@ template <std::floating_point S>
 [[nodiscard]] S near_turn(S angle, S reference) {
   constexpr S turn = S(2) * std::numbers::pi_v<S>;
   return angle + turn * std::round((reference - angle) / turn);
+}
+
+/// The whole turns, rad, that bring angles from `low` to `high` into a travel that may have no ends: as few
+/// as will do. Where no number of turns does, those after which they leave it least.
+template <std::floating_point S>
+[[nodiscard]] S turns_into(S low, S high, S travel_low, S travel_high) {
+  constexpr S turn = S(2) * std::numbers::pi_v<S>;
+  constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();
+  const S fewest = std::ceil((travel_low - low) / turn - rounding);
+  const S most = std::floor((travel_high - high) / turn + rounding);
+  if (fewest <= most) return turn * std::clamp(S(0), fewest, most);
+  return turn * std::round(((travel_low - low) + (travel_high - high)) / (S(2) * turn));
 }
 
 /// Angles measured from a direction of one's choice: smooth all round but for the opposite direction, and

@@ -27,8 +27,8 @@ struct BasicPolar {
     return {{r * std::cos(c), r * std::sin(c), z}, BasicVector3<S>::UnitZ()};
   }
 
-  /// C comes in (-pi, pi]. Errors: those of `upright`, `below_limit` for a radius below the smallest, and
-  /// a joint beyond its travel.
+  /// C comes in (-pi, pi], or as few whole turns from there as its travel asks for. Errors: those of
+  /// `upright`, `below_limit` for a radius below the smallest, and a joint beyond its travel.
   [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
     if (auto ok = upright(pose); !ok) return tl::unexpected(ok.error());
     const BasicVector3<S>& p = pose.position;
@@ -36,7 +36,9 @@ struct BasicPolar {
     if (!(radius >= smallest_radius))
       return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(radius),
                                   static_cast<double>(smallest_radius)});
-    return within_travel(Joints(radius, p.z(), std::atan2(p.y(), p.x())), limits, {"R", "Z", "C"});
+    const S c = std::atan2(p.y(), p.x());
+    return within_travel(Joints(radius, p.z(), c + turns_into(c, c, limits.low[2], limits.high[2])), limits,
+                         {"R", "Z", "C and whole turns from it"});
   }
 
   [[nodiscard]] Eigen::Matrix<S, 6, 3> jacobian(const Joints& joints) const {

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/kinematics/azimuth.hpp"
 
 namespace cncplan::kinematics {
 
@@ -51,9 +53,10 @@ struct BasicTireMold {
     return {{x, y, z}, {-sa * std::cos(joints[3]), -sa * std::sin(joints[3]), ca}};
   }
 
-  /// C comes in (-pi, pi], and the tip on the slide's side of the axis. Errors: `below_limit` for a tip
-  /// nearer to the axis than the smallest radius, `unreachable` for a direction outside the radial plane (the
-  /// value is how far), and a joint beyond its travel.
+  /// C comes in (-pi, pi], or as few whole turns from there as its travel asks for; the tip is on the slide's
+  /// side of the axis. Errors: `below_limit` for a tip nearer to the axis than the smallest radius,
+  /// `unreachable` for a direction outside the radial plane (the value is how far), and a joint beyond its
+  /// travel.
   [[nodiscard]] Expected<Joints> inverse(const BasicPose<S>& pose) const {
     const BasicVector3<S>& p = pose.position;
     const BasicVector3<S>& n = pose.direction;
@@ -72,8 +75,9 @@ struct BasicTireMold {
       return tl::unexpected(
           Error{ErrorCode::unreachable, "tool direction", static_cast<double>(across), 0.0});
     const S a = std::atan2(-(n.x() * cc + n.y() * sc), n.z());
-    const Joints joints(radial - tool_length * std::sin(a), p.z() + tool_length * std::cos(a), a, c);
-    return within_travel(joints, limits, {"R", "Z", "A", "C"});
+    const Joints joints(radial - tool_length * std::sin(a), p.z() + tool_length * std::cos(a), a,
+                        c + turns_into(c, c, limits.low[3], limits.high[3]));
+    return within_travel(joints, limits, {"R", "Z", "A", "C and whole turns from it"});
   }
 
   [[nodiscard]] Eigen::Matrix<S, 6, 4> jacobian(const Joints& joints) const {
@@ -95,5 +99,27 @@ struct BasicTireMold {
 };
 
 using TireMold = BasicTireMold<double>;
+
+/// Joints R and Z (mm), A and C of degrees, as programs and K17 write them, as joints of the machine (rad).
+template <std::floating_point S>
+[[nodiscard]] VectorN<S, 4> tire_mold_joints(const VectorN<S, 4>& in_degrees) {
+  constexpr S degree = std::numbers::pi_v<S> / S(180);
+  return {in_degrees[0], in_degrees[1], in_degrees[2] * degree, in_degrees[3] * degree};
+}
+/// The other way: A and C of rad in degrees.
+template <std::floating_point S>
+[[nodiscard]] VectorN<S, 4> tire_mold_degrees(const VectorN<S, 4>& joints) {
+  constexpr S degree = std::numbers::pi_v<S> / S(180);
+  return {joints[0], joints[1], joints[2] / degree, joints[3] / degree};
+}
+
+/// K17 Table 3.1: R 0 to 900 mm, Z 0 to 600 mm, A -90 to 90 degrees, C 0 to 360 degrees; no rates.
+template <std::floating_point S>
+[[nodiscard]] BasicJointLimits<S, 4> thesis_travel() {
+  BasicJointLimits<S, 4> limits;
+  limits.low = tire_mold_joints<S>({0, 0, -90, 0});
+  limits.high = tire_mold_joints<S>({900, 600, 90, 360});
+  return limits;
+}
 
 }  // namespace cncplan::kinematics
