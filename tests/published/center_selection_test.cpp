@@ -212,3 +212,27 @@ TEST_CASE("The antipode lies opposite the start (Eq. 7), and the selection works
   CHECK(published_center(Float2(0, 0), Float2(6, 0), 5.0f, Turn::clockwise) == Float2(3, -4));
   CHECK(published_center(Float2(0, 0), Float2(6, 0), -5.0f, Turn::clockwise) == Float2(3, 4));
 }
+
+TEST_CASE("The third line of Eqs. 12-13: Z goes evenly with the angle, in the library's helix too") {
+  test::Random random;
+  double worst = 0, place = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Case c = random_case(random);
+    const Vector3 p0(c.p0.x(), c.p0.y(), random.uniform(-20, 20));
+    const Vector3 p1(c.p1.x(), c.p1.y(), random.uniform(-20, 20));
+    INFO(describe(c));
+    const auto form = published_form(p0, p1, c.radius, c.turn);
+    const auto arc = arc_from_radius(p0, p1, c.radius, c.turn, Plane::xy);
+    if (!arc || arc->radius_adjustment() != 0) continue;
+    const double size = p0.norm() + p1.norm() + form.radius;
+    for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+      const double angle = form.start_angle + share * form.sweep;
+      const double digits = 1 + std::abs(form.start_angle) / form.sweep;  // of the angle travelled
+      worst = std::max(worst, std::abs(form.z(angle) - (p0.z() + share * (p1.z() - p0.z()))) / digits);
+      const Vector3 there = arc->position(share * arc->parameter_end());
+      place = std::max(place, std::abs(there.z() - form.z(angle)) / size);
+    }
+  }
+  CHECK(worst < 1e-11);
+  CHECK(place < 1e-13);
+}

@@ -168,3 +168,54 @@ TEST_CASE("the table is the same in float") {
   junction.after.chord = {-1.0f, 1.0f, 0.0f};
   CHECK(JunctionTable{}.speed_sq(junction) == 900.0f);
 }
+
+TEST_CASE("beta of Eq. 15 as a number, against its arc cosine in long double") {
+  test::Random random;
+  constexpr double pi = std::numbers::pi;
+  double worst = 0;
+  for (int i = 0; i < 10000; ++i) {
+    Vector3 a, b;
+    for (int k = 0; k < 3; ++k) a[k] = random.uniform(-9, 9), b[k] = random.uniform(-9, 9);
+    if (i % 2 == 0) a.z() = b.z() = 0;
+    long double dot = 0, aa = 0, bb = 0;
+    for (int k = 0; k < 3; ++k) {
+      dot += static_cast<long double>(a[k]) * b[k];
+      aa += static_cast<long double>(a[k]) * a[k];
+      bb += static_cast<long double>(b[k]) * b[k];
+    }
+    const auto wanted =
+        static_cast<double>(std::numbers::pi_v<long double> - std::acos(dot / std::sqrt(aa * bb)));
+    CAPTURE(test::seed(), i);
+    worst = std::max(worst, std::abs(published::junction_angle(a, b) - wanted));
+    // Table 3's columns are those of the number
+    if (std::abs(wanted - pi / 2) > 1e-9) CHECK((published::junction_angle(a, b) >= pi / 2) == (dot >= 0));
+  }
+  CHECK(worst < 1e-12);
+  CHECK(published::junction_angle(Vector3(1, 2, 0), Vector3(2, 4, 0)) == Approx(pi));
+  CHECK(published::junction_angle(Vector3(1, 2, 0), Vector3(-2, -4, 0)) < 1e-15);
+  // what an arc cosine loses: a turn of 1e-9 rad
+  CHECK(pi - published::junction_angle(Vector3(1, 0, 0), Vector3(1, 1e-9, 0)) == Approx(1e-9).epsilon(1e-6));
+  CHECK(published::junction_angle(VectorN<float, 2>(1, 0), VectorN<float, 2>(0, 1)) == Approx(pi / 2));
+}
+
+TEST_CASE("beta of Fig. 7 and of Fig. 9's chords, and their speeds from the paths themselves") {
+  const Vector3 points[] = {{0, 0, 0}, {5, 5, 0}, {10, 0, 0}, {10, -10, 0}, {5, -15, 0}, {0, -10, 0}};
+  std::vector<published::TableBlock> blocks;
+  for (std::size_t i = 0; i + 1 < std::size(points); ++i)
+    blocks.push_back(
+        published::table_block(path::arc_from_radius(points[i], points[i + 1], 5.0, g02, Plane::xy).value()));
+  blocks.push_back(published::table_block(path::Line<3>(points[5], points[0])));
+  constexpr double degrees[] = {90, 135, 135, 90, 135}, speeds[] = {15, 15, 15, 15, 0};
+  for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
+    CAPTURE(i);
+    CHECK(published::junction_angle(blocks[i].chord, blocks[i + 1].chord) * 180 / std::numbers::pi ==
+          Approx(degrees[i]));
+    CHECK(published::table_speed(blocks[i], blocks[i + 1], 30.0) == speeds[i]);
+  }
+  // two half turns of a helix: the chords go back, beta < 90
+  const auto up = path::arc_from_radius({0, 0, 0}, {20, 0, 10}, 10.0, g03, Plane::xy).value();
+  const auto on = path::arc_from_radius({20, 0, 10}, {0, 0, 20}, 10.0, g03, Plane::xy).value();
+  CHECK(published::table_speed(published::table_block(up), published::table_block(on), 30.0) == 30.0);
+  CHECK(published::junction_angle(published::table_block(up).chord, published::table_block(on).chord) <
+        std::numbers::pi / 2);
+}

@@ -2,6 +2,8 @@
 
 #include "cncplan/path/arc_length_table.hpp"
 #include "cncplan/path/bezier.hpp"
+#include "cncplan/profile/five_phase.hpp"
+#include "cncplan/published/stepped.hpp"
 #include "interpolate/motions.hpp"
 #include "support/catch.hpp"
 
@@ -9,6 +11,17 @@ using namespace cncplan;
 using published::taylor_step;
 
 namespace {
+
+// A curve that does not know its length.
+struct Circle {
+  using Scalar = double;
+  using Vector = Vector3;
+  double parameter_end() const { return 7.0; }
+  Vector3 position(double u) const { return {5 * std::cos(u), 5 * std::sin(u), 0}; }
+  Vector3 derivative(double u) const { return {-5 * std::sin(u), 5 * std::cos(u), 0}; }
+  Vector3 second_derivative(double u) const { return {-5 * std::cos(u), -5 * std::sin(u), 0}; }
+};
+static_assert(ParametricPath<Circle> && !CurveByLength<Circle>);
 
 // Speed along the curve varies by a factor of five.
 path::Bezier<3> bezier() {
@@ -49,4 +62,16 @@ TEST_CASE("No step goes beyond the end, and a curve that stands still there ends
   CHECK(taylor_step(curve, 0.999, 30.0, 0.0, 1.0) == 1.0);
   const path::Bezier<3> cusp({Vector3(0, 0, 0), Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0)});
   CHECK(taylor_step(cusp, 0.0, 10.0, 0.0, 1e-3) == 1.0);
+}
+
+TEST_CASE("Steps along a curve without a length") {
+  double u = 0.0;
+  for (int k = 0; k < 1000; ++k) u = taylor_step(Circle{}, u, 10.0, 0.0, 1e-3);
+  CHECK(u == Approx(2.0));
+  const auto profile =
+      profile::five_phase(10.0, {.start = 0.0, .end = 0.0}, Limits{30.0, 1000.0, 10000.0}).value();
+  const Circle circle;
+  double last = 0.0;
+  for (const auto& sample : published::taylor_samples(circle, profile, 1e-3)) last = sample.time;
+  CHECK(last == Approx(profile.duration()));
 }

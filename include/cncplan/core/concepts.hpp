@@ -19,16 +19,17 @@ namespace cncplan {
 template <class P>
 concept ParametricPath = requires(const P& path, typename P::Scalar u) {
   requires std::floating_point<typename P::Scalar>;
-  { path.length() } -> std::same_as<typename P::Scalar>;
   { path.parameter_end() } -> std::same_as<typename P::Scalar>;
   { path.position(u) } -> std::same_as<typename P::Vector>;
   { path.derivative(u) } -> std::same_as<typename P::Vector>;
   { path.second_derivative(u) } -> std::same_as<typename P::Vector>;
 };
 
-/// A curve that also tells the parameter at which a given length has been travelled, s in [0, length()].
+/// A curve that also tells its length and the parameter at which a given length has been travelled, s in [0,
+/// length()].
 template <class P>
 concept CurveByLength = ParametricPath<P> && requires(const P& path, typename P::Scalar s) {
+  { path.length() } -> std::same_as<typename P::Scalar>;
   { path.parameter_at(s) } -> std::same_as<typename P::Scalar>;
 };
 

@@ -14,4 +14,14 @@ struct CurvePoint {
   Vector second;    ///< second derivative by the parameter
 };
 
+/// Position and derivatives of a `ParametricPath` at u: in one evaluation where the path offers it.
+template <class P>
+[[nodiscard]] CurvePoint<typename P::Vector> curve_point(const P& path, typename P::Scalar u) {
+  if constexpr (requires { path.at(u); }) {
+    return path.at(u);
+  } else {
+    return {path.position(u), path.derivative(u), path.second_derivative(u)};
+  }
+}
+
 }  // namespace cncplan

@@ -15,16 +15,6 @@ namespace cncplan::interpolate {
 template <class P>
 concept Travelled = Path<P> || CurveByLength<P>;
 
-/// Position and derivatives at u: in one evaluation where the path offers it.
-template <ParametricPath P>
-[[nodiscard]] CurvePoint<typename P::Vector> curve_point(const P& path, typename P::Scalar u) {
-  if constexpr (requires { path.at(u); }) {
-    return path.at(u);
-  } else {
-    return {path.position(u), path.derivative(u), path.second_derivative(u)};
-  }
-}
-
 /// The points at many travelled lengths: by the path's own loop where it has one.
 template <Travelled P>
 void positions_at(const P& path, std::span<const typename P::Scalar> lengths,

@@ -87,11 +87,16 @@ struct PublishedForm {
   S mirror;       ///< -1 clockwise, +1 counter-clockwise
   S start_angle;  ///< Eqs. 8-9, rad
   S sweep;        ///< Eqs. 10-11, > 0, rad
+  S start_z{};    ///< mm, of the axis across the plane
+  S rise{};       ///< mm, z at the end less z at the start
 
-  /// Eqs. 12-13, for angles in [start_angle, start_angle + sweep].
+  /// Eqs. 12-13, X and Y, for angles in [start_angle, start_angle + sweep].
   [[nodiscard]] VectorN<S, 2> position(S angle) const {
     return {center.x() + mirror * radius * std::cos(angle), center.y() + radius * std::sin(angle)};
   }
+  /// Their third line, Z, which goes evenly with the angle. Printed with the angle in radians over a sweep in
+  /// degrees; here both are radians.
+  [[nodiscard]] S z(S angle) const { return start_z + rise * (angle - start_angle) / sweep; }
 };
 
 /// Start angle and sweep by KK22 Eqs. 8-11, with the readings of the errata: the mirrored angle of clockwise
@@ -105,7 +110,19 @@ template <std::floating_point S>
   const S start_angle = std::atan2(p0.y() - center.y(), mirror * (p0.x() - center.x()));
   const S short_way = 2 * std::atan2((p1 - p0).norm(), (p1 - antipode(p0, center)).norm());
   const S sweep = radius < S(0) ? 2 * std::numbers::pi_v<S> - short_way : short_way;
-  return {center, std::abs(radius), mirror, start_angle, sweep};
+  return {center, std::abs(radius), mirror, start_angle, sweep, S(0), S(0)};
+}
+
+/// The same of an arc or helix between points whose third coordinate is Z (of other planes: whatever stands
+/// for it in Table 2).
+template <std::floating_point S>
+[[nodiscard]] PublishedForm<S> published_form(const BasicVector3<S>& p0, const BasicVector3<S>& p1, S radius,
+                                              Turn turn) {
+  PublishedForm<S> form = published_form(VectorN<S, 2>(p0.template head<2>()),
+                                         VectorN<S, 2>(p1.template head<2>()), radius, turn);
+  form.start_z = p0.z();
+  form.rise = p1.z() - p0.z();
+  return form;
 }
 
 }  // namespace cncplan::published

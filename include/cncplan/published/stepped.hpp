@@ -35,9 +35,7 @@ class Stepped {
 
     Iterator() = default;
     explicit Iterator(const Stepped& all)
-        : all_(&all),
-          along_(all.travel_.at(Scalar(0), place_)),
-          point_(interpolate::curve_point(*all.path_, Scalar(0))) {
+        : all_(&all), along_(all.travel_.at(Scalar(0), place_)), point_(curve_point(*all.path_, Scalar(0))) {
       go_to(all.time(0));
     }
 
@@ -61,7 +59,7 @@ class Stepped {
         u_ = all_->rule_(point_, u_, along_, time - time_, end);
       time_ = time;
       along_ = all_->travel_.at(time, place_);
-      point_ = interpolate::curve_point(*all_->path_, u_);
+      point_ = curve_point(*all_->path_, u_);
     }
 
     const Stepped* all_ = nullptr;

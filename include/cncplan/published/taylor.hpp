@@ -7,7 +7,6 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/state.hpp"
-#include "cncplan/interpolate/evaluate.hpp"
 
 namespace cncplan::published {
 
@@ -43,8 +42,8 @@ struct Taylor {
 template <ParametricPath P>
 [[nodiscard]] typename P::Scalar taylor_step(const P& path, typename P::Scalar u, typename P::Scalar velocity,
                                              typename P::Scalar acceleration, typename P::Scalar period) {
-  return Taylor{}(interpolate::curve_point(path, u), u, {typename P::Scalar{}, velocity, acceleration, {}},
-                  period, path.parameter_end());
+  return Taylor{}(curve_point(path, u), u, {typename P::Scalar{}, velocity, acceleration, {}}, period,
+                  path.parameter_end());
 }
 
 }  // namespace cncplan::published

@@ -20,6 +20,7 @@ namespace cncplan::step {
 /// A path that knows where each axis turns round, where it passes a value, and the length travelled to there.
 template <class P>
 concept SteppablePath = ParametricPath<P> && requires(const P& path, int axis, typename P::Scalar x) {
+  { path.length() } -> std::same_as<typename P::Scalar>;
   { path.next_turning(axis, x) } -> std::same_as<typename P::Scalar>;
   { path.crossing(axis, x, x, x) } -> std::same_as<typename P::Scalar>;
   { path.length_at(x) } -> std::same_as<typename P::Scalar>;

@@ -16,6 +16,7 @@ namespace cncplan::step {
 template <class P>
 concept MeasuredPath = ParametricPath<P> &&
     (CurveByLength<P> || requires(const P& path, typename P::Scalar u) {
+      { path.length() } -> std::same_as<typename P::Scalar>;
       { path.length_at(u) } -> std::same_as<typename P::Scalar>;
     });
 
