@@ -1,10 +1,11 @@
-// cncplan_generate KIND [--seed N] [--plane 17|18|19] [--arcs radius|center|split]: a program like those of
-// KK22's experiments, on standard output; cncplan_generate --rewrite FILE: that program, its arcs as asked
-// for.
+// cncplan_generate KIND [--seed N] [--plane 17|18|19] [--arcs radius|center|split|lines] [--degrees D]: a
+// program like those of KK22's experiments, on standard output; cncplan_generate --rewrite FILE: that
+// program, its arcs as asked for.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -26,8 +27,10 @@ using support::Exit;
 using support::Failure;
 
 // A program read and written anew, its arcs as asked for: center, by centre; radius, by radius where that
-// says them, else by centre; split, all by radius, in parts where need be.
-std::string rewritten(std::istream& program, const std::string& name, const std::string& arcs) {
+// says them, else by centre; split, all by radius, in parts where need be; lines, straight lines of so many
+// degrees at most (U09 3.2.2).
+std::string rewritten(std::istream& program, const std::string& name, const std::string& arcs,
+                      double degrees) {
   std::string text;
   gcode::Reader reader;
   gcode::Writer writer;
@@ -39,6 +42,11 @@ std::string rewritten(std::istream& program, const std::string& name, const std:
     const auto* motion = std::get_if<gcode::Motion>(&item);
     if (motion == nullptr) return write(item);
     if (arcs == "split") return plan::split_by_radius(*motion, write);
+    if (arcs == "lines") {
+      if (const auto done = plan::split_into_lines(*motion, degrees * std::numbers::pi / 180.0, write); !done)
+        throw Failure(Exit::bad_input, gcode::to_text(name, {done.error(), motion->line, motion->column}));
+      return;
+    }
     write(arcs == "radius" ? plan::by_radius(*motion) : plan::by_center(*motion).value_or(*motion));
   };
   const auto read = gcode::read_program(gcode::StreamLines(program), reader, arcs_written);
@@ -54,6 +62,7 @@ int main(int count, char** arguments) {
     std::optional<std::string> kind, file;
     std::string arcs = "radius";
     std::uint64_t seed = 2022;
+    double degrees = 1.0;
     int plane = 17;
     CLI::App app("Writes a program like those of KK22's experiments: R-format arcs, no feeds.",
                  "cncplan_generate");
@@ -63,9 +72,14 @@ int main(int count, char** arguments) {
     app.add_option("--plane", plane, "17, 18 or 19")
         ->check(CLI::IsMember({17, 18, 19}))
         ->capture_default_str();
-    app.add_option("--arcs", arcs,
-                   "radius: R, by centre what R cannot say well; center: I J K; split: R, such arcs in parts")
-        ->check(CLI::IsMember({"radius", "center", "split"}))
+    app.add_option(
+           "--arcs", arcs,
+           "radius: R, by centre what R cannot say well; center: I J K; split: R, such arcs in parts; "
+           "lines: G1")
+        ->check(CLI::IsMember({"radius", "center", "split", "lines"}))
+        ->capture_default_str();
+    app.add_option("--degrees", degrees, "with --arcs lines: that each line turns at most")
+        ->check(support::positive())
         ->capture_default_str();
     app.add_option("--rewrite", file, "no new program: this one, with its arcs by --arcs")->excludes(named);
     if (!support::parse(app, count, arguments)) return 0;
@@ -82,7 +96,7 @@ int main(int count, char** arguments) {
       generate::write(program, made, seed, plane);
     }
     const bool as_it_is = arcs == "radius" && !file;
-    support::print(as_it_is ? program.str() : rewritten(program, file ? *file : *kind, arcs));
+    support::print(as_it_is ? program.str() : rewritten(program, file ? *file : *kind, arcs, degrees));
     return 0;
   });
 }

@@ -136,3 +136,87 @@ TEST_CASE("what a radius cannot say is split into arcs that it says") {
   CHECK(half[0].end[1] == Approx(5).epsilon(1e-12));
   CHECK(half[1].radius == Approx(5).epsilon(1e-12));
 }
+
+// U09 3.2.2: an arc is many straight moves (G01), by one degree each.
+TEST_CASE("arcs become lines of a degree") {
+  test::Random random;
+  double off = 0, turned = 0, uneven = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double radius = random.uniform(1, 50), from = random.uniform(-pi, pi);
+    const double sweep = (random.coin() ? 1 : -1) * random.uniform(0.001, 2 * pi - 0.01);
+    const double degrees = i % 3 == 0 ? 1.0 : random.log_uniform(0.1, 90);
+    CAPTURE(test::seed(), i, radius, from, sweep, degrees);
+    const Motion arc = by_center(3, -4, radius, from, sweep);
+    std::vector<Motion> lines;
+    REQUIRE(plan::split_into_lines(arc, degrees * pi / 180, [&](const Motion& m) { lines.push_back(m); }));
+    CHECK(lines.size() == static_cast<std::size_t>(std::ceil(std::abs(sweep) * 180 / pi / degrees)));
+    CHECK(lines.front().start == arc.start);
+    CHECK(lines.back().end == arc.end);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      const Motion& line = lines[k];
+      CHECK(line.kind == MotionKind::line);
+      if (k > 0) CHECK(line.start == lines[k - 1].end);
+      const double share = static_cast<double>(k + 1) / static_cast<double>(lines.size());
+      const double angle = from + share * sweep;
+      off = std::max({off, std::abs(line.end[0] - (3 + radius * std::cos(angle))),
+                      std::abs(line.end[1] - (-4 + radius * std::sin(angle))),
+                      std::abs(line.end[2] - (1 + 3 * share))});
+      const double chord = std::hypot(line.end[0] - line.start[0], line.end[1] - line.start[1]);
+      const double angle_of_chord = 2 * std::asin(std::min(1.0, chord / (2 * radius)));
+      turned = std::max(turned, angle_of_chord * 180 / pi - degrees);
+      uneven =
+          std::max(uneven, std::abs(angle_of_chord - std::abs(sweep) / static_cast<double>(lines.size())));
+    }
+  }
+  CHECK(off < 1e-12);
+  CHECK(turned < 1e-9);
+  CHECK(uneven < 1e-9);
+}
+
+TEST_CASE("arcs as lines: a full circle, inverse time, other motions and what is refused") {
+  Motion circle = by_center(0, 0, 10, 0, 2 * pi);
+  circle.end = circle.start;
+  circle.feed_mode = gcode::FeedMode::inverse_time;
+  circle.feed = 0.5;
+  std::vector<Motion> lines;
+  const auto take = [&](const Motion& motion) { lines.push_back(motion); };
+  REQUIRE(plan::split_into_lines(circle, pi / 180, take));
+  REQUIRE(lines.size() == 360);
+  CHECK(lines[17].feed == 180.0);  // each takes 1/360 of the two seconds
+  lines.clear();
+  Motion rapid;
+  rapid.kind = MotionKind::rapid;
+  REQUIRE(plan::split_into_lines(rapid, pi / 180, take));
+  CHECK(lines == std::vector{rapid});
+  CHECK(plan::split_into_lines(circle, 0.0, take).error() ==
+        Error{ErrorCode::not_positive, "angle", 0.0, 0.0});
+  CHECK(plan::split_into_lines(circle, 1e-9, take).error().code == ErrorCode::above_limit);
+  circle.center = Vector3(7, 0, 0);
+  circle.end[0] = -50;
+  CHECK(plan::split_into_lines(circle, 1.0, take).error().code == ErrorCode::radius_mismatch);
+  CHECK(lines.size() == 1);
+}
+
+TEST_CASE("an arc as lines, written and read") {
+  // G02 from A(80, 40) to (60, 20) round (80, 20): a right angle of R 20 that is an arc, as the printed one
+  // is not
+  std::string text;
+  gcode::Writer writer;
+  for (const auto& item : test::read("G0 X80 Y40\nG3 X60 Y20 I0 J-20 F600\n").items) {
+    const auto* motion = std::get_if<Motion>(&item);
+    const auto write = [&](const Motion& m) { REQUIRE(writer.write(m, std::back_inserter(text))); };
+    if (motion != nullptr) REQUIRE(plan::split_into_lines(*motion, pi / 180, write));
+  }
+  CHECK(text.find("G2 ") == std::string::npos);
+  CHECK(text.find("G3 ") == std::string::npos);
+  std::size_t lines = 0;
+  double off = 0;
+  for (const auto& item : test::read(text).items)
+    if (const auto* motion = std::get_if<Motion>(&item);
+        motion != nullptr && motion->kind == MotionKind::line) {
+      ++lines;
+      off = std::max(off, std::abs(std::hypot(motion->end[0] - 80, motion->end[1] - 20) - 20));
+    }
+  CHECK(lines == 90);
+  CHECK(off < 1e-3);
+}

@@ -1,6 +1,7 @@
-// Arcs of a program by their radius or by their centre, as is wanted of what is written (KK22 section 2).
+// Arcs of a program by their radius, by their centre, or as straight lines, as is wanted of what is written.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -27,6 +28,23 @@ namespace detail {
                                          motion.extra_turns);
   return path::arc_from_center<double>(start, end, motion.center, motion.turn, motion.plane, tolerance,
                                        motion.extra_turns);
+}
+
+/// Hands an arc to `take` in equal parts: copies of the motion that differ in start and end, the axes beyond
+/// the third in proportion.
+template <std::invocable<const gcode::Motion&> Take>
+void in_parts(const gcode::Motion& motion, const path::Arc& arc, int parts, Take&& take) {
+  gcode::Motion part = motion;
+  part.extra_turns = 0;
+  for (int i = 1; i <= parts; ++i, part.start = part.end) {
+    const double share = static_cast<double>(i) / parts;
+    for (std::size_t axis = 3; axis < part.end.size(); ++axis)
+      part.end[axis] = motion.start[axis] + share * (motion.end[axis] - motion.start[axis]);
+    const Vector3 place = arc.position(share * arc.parameter_end());
+    for (std::size_t axis = 0; axis < 3; ++axis) part.end[axis] = place[static_cast<Eigen::Index>(axis)];
+    if (i == parts) part.end = motion.end;
+    take(part);
+  }
 }
 
 }  // namespace detail
@@ -80,19 +98,41 @@ void split_by_radius(const gcode::Motion& motion, Take&& take, double off = 1e-6
     return take(*centered);
   constexpr double third = 2.0 * std::numbers::pi / 3.0;
   const int parts = static_cast<int>(std::ceil(arc->parameter_end() / third - 1e-9));
-  gcode::Motion part = *centered;
-  part.extra_turns = 0;
-  for (int i = 1; i <= parts; ++i, part.start = part.end) {
-    const double share = static_cast<double>(i) / parts;
-    for (std::size_t axis = 3; axis < part.end.size(); ++axis)
-      part.end[axis] = motion.start[axis] + share * (motion.end[axis] - motion.start[axis]);
-    const Vector3 place = arc->position(share * arc->parameter_end());
-    for (std::size_t axis = 0; axis < 3; ++axis) part.end[axis] = place[static_cast<Eigen::Index>(axis)];
-    if (i == parts) part.end = motion.end;
-    const auto [first, second, third_axis] = axes(motion.plane);
-    part.center[third_axis] = part.start[static_cast<std::size_t>(third_axis)];
+  const auto [first, second, across] = axes(motion.plane);
+  detail::in_parts(*centered, *arc, parts, [&, k = across](gcode::Motion part) {
+    part.center[k] = part.start[static_cast<std::size_t>(k)];
     take(by_radius(part, off, tolerance));
+  });
+}
+
+/// Hands an arc to `take` as straight lines (G01) that each turn by no more than `angle`, rad, > 0 (U09
+/// section 3.2.2: one degree, `published::one_degree`), and as equal as that makes them; other motions go as
+/// they are. A feed in inverse time, which is the whole arc's, is shared out; under G61.1 each line ends in a
+/// stop. Errors: not_positive, and above_limit for more than 2^24 lines (angle); those of the arc.
+template <std::invocable<const gcode::Motion&> Take>
+[[nodiscard]] Expected<void> split_into_lines(const gcode::Motion& motion, double angle, Take&& take,
+                                              const path::ArcTolerance<double>& tolerance = {}) {
+  const bool is_arc =
+      motion.kind == gcode::MotionKind::arc_radius || motion.kind == gcode::MotionKind::arc_center;
+  if (!is_arc) {
+    take(motion);
+    return {};
   }
+  if (!(angle > 0.0)) return refusal(ErrorCode::not_positive, "angle", angle);
+  const auto arc = detail::arc_of(motion, tolerance);
+  if (!arc) return tl::unexpected(arc.error());
+  constexpr double most_lines = 1 << 24, rounding = 1e-12;  // a whole number of lines is one
+  const double lines = std::ceil(arc->parameter_end() / angle * (1.0 - rounding));
+  if (!(lines <= most_lines))
+    return refusal(ErrorCode::above_limit, "angle", arc->parameter_end() / angle, most_lines);
+  const int parts = std::max(1, static_cast<int>(lines));
+  gcode::Motion line = motion;
+  line.kind = gcode::MotionKind::line;
+  line.center = Vector3::Zero();
+  line.radius = 0.0;
+  if (line.feed && motion.feed_mode == gcode::FeedMode::inverse_time) *line.feed *= parts;
+  detail::in_parts(line, *arc, parts, take);
+  return {};
 }
 
 }  // namespace cncplan::plan
