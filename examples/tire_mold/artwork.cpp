@@ -29,9 +29,9 @@ std::vector<gcode::Word> words_of(const std::string& text) {
 }
 
 void check_codes(const std::string& file, int number, const Line& line) {
-  constexpr std::array elsewhere{7.0,  10.0, 28.0, 30.0, 38.2, 38.3, 38.4, 38.5, 43.1, 53.0,
-                                 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3, 73.0, 81.0,
-                                 82.0, 83.0, 85.0, 86.0, 89.0, 93.0, 95.0, 96.0};
+  constexpr std::array elsewhere{7.0,  10.0, 28.0, 30.0, 38.2, 38.3, 38.4, 38.5, 41.0, 41.1, 42.0,
+                                 42.1, 43.1, 53.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3,
+                                 73.0, 81.0, 82.0, 83.0, 85.0, 86.0, 89.0, 93.0, 95.0, 96.0};
   for (const gcode::Word& word : line.words) {
     if (word.letter != 'G') continue;
     const bool shift = word.number >= 92 && word.number < 93;
@@ -51,12 +51,8 @@ class Taker {
     const auto block = builder_.take(gcode::Item(motion));
     if (!block) support::refuse(file_, block.error());
     const bool rapid = motion.kind == gcode::MotionKind::rapid;
-    const auto& way = (*block)->path;
-    if (way.arc() == nullptr && way.line() == nullptr)
-      support::refuse(file_, {{ErrorCode::not_supported, "spline", 0.0, 0.0}, motion.line, motion.column});
-    const path::Segment<3> segment =
-        way.arc() != nullptr ? path::Segment<3>(*way.arc()) : path::Segment<3>(*way.line());
-    line_.moves.push_back({segment, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
+    line_.moves.push_back(
+        {(*block)->path, motion.feed.value_or(0.0), rapid, motion.exact_stop, motion.column});
   }
   void operator()(const gcode::Dwell& dwell) { line_.pause += dwell.seconds; }
   void operator()(const gcode::Stop&) { line_.stops = true; }
@@ -87,6 +83,7 @@ Artwork read_artwork(const std::string& file, const gcode::Dialect& dialect) {
     const bool finished = reader.finished();
     if (const auto read = reader.read_line(text, std::back_inserter(items)); !read)
       support::refuse(file, read.error());
+    while (reader.busy()) reader.go_on(std::back_inserter(items));
     Line& line = artwork.lines.emplace_back();
     line.text = text;
     if (!finished) line.words = words_of(text);

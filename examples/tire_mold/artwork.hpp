@@ -10,7 +10,7 @@ namespace tire_mold {
 
 /// One motion of the artwork, in its own coordinates.
 struct Move {
-  cncplan::path::Segment<3> segment;
+  cncplan::plan::ArtworkPath segment;
   double feed{};  ///< mm/s; 0 for a feed move without any F so far
   bool rapid{};
   bool exact_stop{};

@@ -16,27 +16,23 @@ using namespace cncplan;
 using Joints = VectorN<double, 4>;
 using plan::WallPart;
 
-bool is_arc_code(const gcode::Word& word) {
-  return word.letter == 'G' && (word.number == 2 || word.number == 3);
+// G2, G3 and the splines G5 to G5.3 and G6.2, which become straight rows.
+bool is_curve_code(double code) { return code == 2 || code == 3 || std::floor(code) == 5 || code == 6.2; }
+
+// NURBS, of which each line says a control.
+bool is_nurbs_code(double code) { return code == 5.2 || code == 6.2; }
+
+// G0, G1 and whatever else a motion code can be: G33 to G38.x, G73 to G89.
+bool is_motion_code(double code) {
+  return code <= 1 || is_curve_code(code) || (code >= 33 && code < 39) || (code >= 73 && code < 90);
 }
 
-// Words that say where to go, and not what else to do: these become a row. K, P and R belong to arcs here; a
-// line with a code that passes through keeps its P and R.
-bool says_where(const gcode::Word& word, bool arc) {
-  switch (word.letter) {
-    case 'X':
-    case 'Y':
-    case 'Z':
-    case 'I':
-    case 'J':
-    case 'K':
-      return true;
-    case 'R':
-    case 'P':
-      return arc;
-    default:
-      return false;
-  }
+// Words that say where to go, and not what else to do: these become a row. K, L, P, Q and R belong to curves
+// here; a line with a code that passes through keeps them.
+bool says_where(const gcode::Word& word, bool curve) {
+  constexpr std::string_view points = "XYZIJ", of_curves = "KLPQR";
+  return points.find(word.letter) != std::string_view::npos || word.letter == 'K' ||
+         (curve && of_curves.find(word.letter) != std::string_view::npos);
 }
 
 constexpr double cut_rounding = 1e-9;  // lengths of rows
@@ -49,11 +45,12 @@ bool comes_last(const gcode::Word& word) {
 class Converter {
  public:
   Converter(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
-            const Options& options)
+            const Options& options, const TableTurns& table)
       : artwork_(artwork),
         sidewall_(sidewall),
         machine_(machine),
         options_(options),
+        table_(table),
         cutter_(sidewall, smallest_radius(machine)),
         limits_(machine.joint_limits<4>()) {}
 
@@ -67,31 +64,40 @@ class Converter {
     std::vector<Joints> rows;
     bool curved = false;
     for (const Move& move : line.moves) {
-      curved = curved || move.segment.arc() != nullptr;
+      curved = curved || move.segment.line() == nullptr;
       if (here_ || leads_to_mold(move)) map(move, rows);
     }
-    const bool arc = curved || std::any_of(line.words.begin(), line.words.end(), is_arc_code);
+    if (!rows.empty()) ++result_.points;
+    bool curve_code = false;
+    for (const gcode::Word& word : line.words)
+      if (word.letter == 'G' && is_motion_code(word.number) && !passes_through(word)) {
+        curve_code = is_curve_code(word.number);
+        mode_ = word.number;
+      }
+    const bool curve =
+        curved || curve_code || is_nurbs_code(mode_) || (is_curve_code(mode_) && !rows.empty());
     const bool places = std::any_of(line.words.begin(), line.words.end(),
-                                    [arc](const gcode::Word& word) { return says_where(word, arc); });
-    if (rows.empty() && places && here_) rows.push_back(*here_);  // the place where it already stands
-    rewrite(line, arc, rows);
+                                    [curve](const gcode::Word& word) { return says_where(word, curve); });
+    if (rows.empty() && places && here_ && !is_nurbs_code(mode_))
+      rows.push_back(*here_);  // the place where it already stands
+    rewrite(line, curve, rows);
     result_.rows.insert(result_.rows.end(), rows.begin(), rows.end());
   }
 
   // The rows of a move; the first move of all has one, its end.
   void map(const Move& move, std::vector<Joints>& rows) {
-    ++result_.points;
     const auto segment = here_ ? move.segment : first_way(move.segment, sidewall_, machine_, options_);
     std::vector<WallPart> parts;
     if (auto ok = cutter_.cut(segment, parts); !ok) refuse_move(artwork_, index_, move, ok.error());
     if (!here_) {
       if (parts.empty()) {  // it stands at its end
-        const auto joints = sidewall_.joints(segment.end());
+        auto joints = sidewall_.joints(segment.end());
         if (!joints) refuse_move(artwork_, index_, move, joints.error());
+        (*joints)[3] = kinematics::near_turn((*joints)[3], table_.added);
         add(move, *joints, rows);
         return;
       }
-      add(move, plan::wall_joints(parts.front(), 0.0, 0.0), rows);
+      add(move, plan::wall_joints(parts.front(), 0.0, table_.added), rows);
     }
     row_start_ = 0.0;
     row_length_ = length_of_rows(segment);
@@ -117,7 +123,7 @@ class Converter {
 
   // The length of fixed rows along a move: K17 measures on the surface, so moves up and down are not cut.
   // Arcs that stand upright count in full.
-  [[nodiscard]] double length_of_rows(const path::Segment<3>& segment) const {
+  [[nodiscard]] double length_of_rows(const plan::ArtworkPath& segment) const {
     const Vector3 way = segment.derivative(0.0);
     const bool upright = segment.arc() != nullptr && segment.arc()->plane() != Plane::xy;
     const double share = upright ? 1.0 : std::hypot(way.x(), way.y()) / way.norm();
@@ -126,7 +132,7 @@ class Converter {
 
   // K17 cuts at whole multiples of the length, and leaves the last cut out: the last row of a move is longer
   // than the others, and a move of less than two lengths is one row.
-  [[nodiscard]] double cuts_of(const path::Segment<3>& segment) const {
+  [[nodiscard]] double cuts_of(const plan::ArtworkPath& segment) const {
     return std::floor(segment.length() / row_length_ + cut_rounding) - 1.0;
   }
 
@@ -159,7 +165,7 @@ class Converter {
   }
 
   // As plan::chord_error, for a row that may cross from one piece of the profile to the next.
-  [[nodiscard]] double wall_error(const path::Segment<3>& artwork, const Joints& joints, double to) const {
+  [[nodiscard]] double wall_error(const plan::ArtworkPath& artwork, const Joints& joints, double to) const {
     const kinematics::TireMold machine{.tool_length = sidewall_.tool_length()};
     double worst = 0.0;
     for (int k = 1; k < 8; ++k) {
@@ -184,11 +190,31 @@ class Converter {
       const auto k = static_cast<Eigen::Index>(i);
       if (joints[k] >= limits_.low[k] && joints[k] <= limits_.high[k]) continue;
       const support::MachineAxis& axis = machine_.axes[i];
-      throw support::Failure(support::Exit::bad_input,
-                             fmt::format("{}:{}:{}: error: {}", artwork_.file, index_ + 1, move.column,
-                                         support::beyond_travel(axis, joints[k])));
+      throw support::Failure(
+          support::Exit::bad_input,
+          fmt::format("{}:{}:{}: error: {}{}", artwork_.file, index_ + 1, move.column,
+                      support::beyond_travel(axis, joints[k]), i == 3 ? why_no_turn(axis) : ""));
     }
     throw support::Failure(support::Exit::bad_input, "a joint is not a number");
+  }
+
+  // The table goes on without a jump, so all its angles take the same whole turns.
+  [[nodiscard]] std::string why_no_turn(const support::MachineAxis& axis) const {
+    const double low = (table_.low + table_.added) / axis.unit();
+    const double high = (table_.high + table_.added) / axis.unit();
+    const bool back = low + high > axis.low + axis.high;
+    const double turn = back ? -360.0 : 360.0;
+    return fmt::format(
+        ": the program turns it from {:.6g} to {:.6g}, a whole turn {} from {:.6g} to {:.6g}, and neither "
+        "lies within",
+        low, high, back ? "back" : "on", low + turn, high + turn);
+  }
+
+  [[nodiscard]] bool passes_through(const gcode::Word& word) const {
+    const auto& passed = machine_.dialect.pass_through;
+    return std::any_of(passed.begin(), passed.end(), [&](const gcode::PassThrough& entry) {
+      return entry.letter == word.letter && (!entry.number || *entry.number == word.number);
+    });
   }
 
   [[nodiscard]] std::string row_text(const Joints& joints) const {
@@ -204,7 +230,7 @@ class Converter {
   }
 
   // The line with its axis words replaced by the first row; the other rows follow on lines of their own.
-  void rewrite(const Line& line, bool arc, const std::vector<Joints>& rows) {
+  void rewrite(const Line& line, bool curve, const std::vector<Joints>& rows) {
     std::string& out = result_.text;
     std::string last_words;
     bool placed = rows.empty();
@@ -214,7 +240,7 @@ class Converter {
       const auto begin = static_cast<std::size_t>(word.column) - 1;
       const std::size_t end = end_of(line, i);
       std::optional<std::string> instead;
-      if (says_where(word, arc)) {
+      if (says_where(word, curve)) {
         instead = placed ? "" : row_text(rows.front());
         placed = true;
       } else if (rows.size() > 1 && comes_last(word)) {
@@ -249,7 +275,9 @@ class Converter {
   std::optional<std::string> translated(const gcode::Word& word) {
     if (word.letter == 'F' && inches_) return fmt::format("F{:.4f}", word.number * 25.4);
     if (word.letter != 'G') return std::nullopt;
-    if (word.number == 2 || word.number == 3) return "G01";
+    if (passes_through(word)) return std::nullopt;
+    if (word.number == 5.3) return "";
+    if (is_curve_code(word.number)) return "G01";
     if (word.number == 91) return "G90";
     if (word.number == 90.1 || word.number == 91.1) return "";
     if (word.number == 20 || word.number == 21) inches_ = word.number == 20;
@@ -260,11 +288,13 @@ class Converter {
   const kinematics::Sidewall& sidewall_;
   const Machine& machine_;
   const Options& options_;
+  TableTurns table_;
   plan::WallCutter cutter_;
   BasicJointLimits<double, 4> limits_;
   std::size_t index_ = 0;
   std::optional<Joints> here_;
   bool inches_ = false;
+  double mode_ = -1.0;       // the last motion code
   double row_start_ = 0.0;   // parameter of the move where the row under way began
   double row_length_ = 0.0;  // mm along the move from row to row
   double next_cut_ = 1.0;    // a count: the next cut of the move is this many lengths along it
@@ -280,12 +310,12 @@ bool leads_to_mold(const Move& move) {
   return way.x() != 0.0 || way.y() != 0.0;
 }
 
-path::Segment<3> first_way(const path::Segment<3>& segment, const kinematics::Sidewall& sidewall,
-                           const Machine& machine, const Options& options) {
+plan::ArtworkPath first_way(const plan::ArtworkPath& segment, const kinematics::Sidewall& sidewall,
+                            const Machine& machine, const Options& options) {
   const Vector3 start = segment.start(), end = segment.end();
   const double from = std::hypot(start.x(), start.y()), to = std::hypot(end.x(), end.y());
   const double entry = std::max(sidewall.start_radius(), smallest_radius(machine));
-  if (!options.approach || segment.arc() != nullptr || to <= entry) return path::Line<3>(end, end);
+  if (!options.approach || segment.line() == nullptr || to <= entry) return path::Line<3>(end, end);
   const double share = std::max(0.0, (entry - from) / (to - from));
   return path::Line<3>(start + share * (end - start), end);
 }
@@ -302,8 +332,8 @@ void refuse_move(const Artwork& artwork, std::size_t line, const Move& move, con
 }
 
 Conversion convert(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
-                   const Options& options) {
-  return Converter(artwork, sidewall, machine, options).run();
+                   const Options& options, const TableTurns& table) {
+  return Converter(artwork, sidewall, machine, options, table).run();
 }
 
 }  // namespace tire_mold

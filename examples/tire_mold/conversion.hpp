@@ -18,18 +18,26 @@ struct Conversion {
   double chord_error = 0.0;                       ///< mm
 };
 
+/// What the program asks of the table, rad: its least and greatest angle where the first is the one nearest
+/// to 0, and the whole turns that are added to all of them.
+struct TableTurns {
+  double low{};
+  double high{};
+  double added{};
+};
+
 /// Throws `Failure` for points beyond the profile and beyond the machine's travel, by line.
 [[nodiscard]] Conversion convert(const Artwork& artwork, const cncplan::kinematics::Sidewall& sidewall,
-                                 const Machine& machine, const Options& options);
+                                 const Machine& machine, const Options& options, const TableTurns& table);
 
 /// Whether a move is the first that leads somewhere over the mold: what comes before it is not mapped.
 [[nodiscard]] bool leads_to_mold(const Move& move);
 
 /// What is mapped of the first move: its end; with `--approach`, if it is straight, its way from where it
 /// comes over the profile. It begins on the origin's axis, so its radius grows evenly.
-[[nodiscard]] cncplan::path::Segment<3> first_way(const cncplan::path::Segment<3>& segment,
-                                                  const cncplan::kinematics::Sidewall& sidewall,
-                                                  const Machine& machine, const Options& options);
+[[nodiscard]] cncplan::plan::ArtworkPath first_way(const cncplan::plan::ArtworkPath& segment,
+                                                   const cncplan::kinematics::Sidewall& sidewall,
+                                                   const Machine& machine, const Options& options);
 
 /// Says where and why a segment cannot be mapped.
 [[noreturn]] void refuse_move(const Artwork& artwork, std::size_t line, const Move& move,

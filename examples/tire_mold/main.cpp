@@ -37,8 +37,9 @@ int run(const Options& options) {
   const auto chain = profile_of(options.profile, {options.chain_tolerance, options.reverse, options.side});
   const cncplan::kinematics::Sidewall sidewall(chain.pieces, options.start_radius, options.tool_length);
   const Artwork artwork = read_artwork(options.artwork, artwork_dialect(machine));
-  const Conversion conversion = convert(artwork, sidewall, machine, options);
-  const Motion motion = plan_motion(artwork, sidewall, machine, options);
+  const WallProgram program = wall_program(artwork, sidewall, machine, options);
+  const Conversion conversion = convert(artwork, sidewall, machine, options, program.table);
+  const Motion motion = plan_motion(program, artwork, machine);
   Measures measures{chain.length(), chain.pieces.size(), cncplan::peaks(motion), {}, 0};
 
   if (options.plot) support::make_folder(*options.plot);

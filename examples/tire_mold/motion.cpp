@@ -16,7 +16,7 @@ namespace {
 using namespace cncplan;
 
 // A feed of none, or one that is not told, is the rapid rate.
-cncplan::Block<3> flat_block(const Move& move, int line) {
+cncplan::Block<3, path::Spline<3>> flat_block(const Move& move, int line) {
   const double feed = move.feed == 0.0 ? std::numeric_limits<double>::infinity() : move.feed;
   return {.path = move.segment,
           .feed = feed,
@@ -27,8 +27,8 @@ cncplan::Block<3> flat_block(const Move& move, int line) {
 }
 
 plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall& sidewall,
-                             const Machine& machine, const Options& options) {
-  plan::WallProgram program(sidewall, smallest_radius(machine));
+                             const Machine& machine, const Options& options, double table) {
+  plan::WallProgram program(sidewall, smallest_radius(machine), table);
   bool over_mold = false;
   for (std::size_t i = 0; i < artwork.lines.size(); ++i) {
     const Line& line = artwork.lines[i];
@@ -45,10 +45,20 @@ plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall&
 
 }  // namespace
 
-Motion plan_motion(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
-                   const Options& options) {
-  const auto program = program_of(artwork, sidewall, machine, options);
-  auto planned = plan_blocks(program.blocks(), planned_machine(machine));
+WallProgram wall_program(const Artwork& artwork, const kinematics::Sidewall& sidewall, const Machine& machine,
+                         const Options& options) {
+  const auto program = program_of(artwork, sidewall, machine, options, 0.0);
+  const auto range = program.table_range();
+  if (!range) return {program.blocks(), {}};
+  const auto [low, high] = *range;
+  const auto limits = machine.joint_limits<4>();
+  const double added = kinematics::turns_into(low, high, limits.low[3], limits.high[3]);
+  if (added == 0.0) return {program.blocks(), {low, high, added}};
+  return {program_of(artwork, sidewall, machine, options, added).blocks(), {low, high, added}};
+}
+
+Motion plan_motion(const WallProgram& program, const Artwork& artwork, const Machine& machine) {
+  auto planned = plan_blocks(program.blocks, planned_machine(machine));
   if (planned) return std::move(*planned);
   planned.error().file = artwork.file;
   throw support::Failure(support::Exit::bad_input, to_text(planned.error()));

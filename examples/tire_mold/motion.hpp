@@ -8,6 +8,7 @@
 
 #include "artwork.hpp"
 #include "cncplan/cncplan.hpp"
+#include "conversion.hpp"
 #include "machine.hpp"
 #include "options.hpp"
 #include "support/motor_signals.hpp"
@@ -19,9 +20,17 @@ using Motion = cncplan::Trajectory<cncplan::Machine<4>, cncplan::plan::WallBlock
 using Sample = Motion::SetPoint;
 using Peaks = cncplan::BasicPeaks<double, 4>;
 
-/// Plans the artwork from its first point on. Throws `Failure`.
-[[nodiscard]] Motion plan_motion(const Artwork& artwork, const cncplan::kinematics::Sidewall& sidewall,
-                                 const Machine& machine, const Options& options);
+/// The artwork from its first point on as blocks of the machine, the table turned on by whole turns into its
+/// travel where that is possible. Throws `Failure` for what cannot be mapped.
+struct WallProgram {
+  std::vector<cncplan::plan::WallBlock> blocks;
+  TableTurns table;
+};
+[[nodiscard]] WallProgram wall_program(const Artwork& artwork, const cncplan::kinematics::Sidewall& sidewall,
+                                       const Machine& machine, const Options& options);
+
+/// Plans it. Throws `Failure`.
+[[nodiscard]] Motion plan_motion(const WallProgram& program, const Artwork& artwork, const Machine& machine);
 
 /// The point of the artwork at a set point: X, Y and Z, mm. Over a kink that of the kink.
 [[nodiscard]] std::array<double, 3> flat_point(const Motion& motion, const Sample& sample);

@@ -71,7 +71,7 @@ Summary on_the_wall() {
 
 template <class S>
 Summary round_the_table() {
-  using Path = plan::TablePath<BasicPolarMap<S>, path::BasicSegment<S>>;
+  using Path = plan::TablePath<BasicPolarMap<S>, plan::BasicArtworkPath<S>>;
   std::vector<BasicBlock<S, 3, Path>> blocks;
   S table{};
   for (const auto& segment : test::wall_artwork<S>())
@@ -147,7 +147,7 @@ TEST_CASE("float: rows of a part keep the tolerance", "[float]") {
   const BasicSidewall<float> sidewall(chain.pieces, 50, 20.8F);
   plan::BasicWallCutter<float> cutter(sidewall, 1);
   std::vector<plan::BasicWallPart<float>> parts;
-  REQUIRE(cutter.cut(path::BasicSegment<float>(path::BasicLine<float>({60, 0, 0}, {0, 110, 0})), parts));
+  REQUIRE(cutter.cut(plan::BasicArtworkPath<float>(path::BasicLine<float>({60, 0, 0}, {0, 110, 0})), parts));
   for (const auto& part : parts) {
     const auto division = plan::divide(part, 0.01F);
     CHECK(division.error <= 0.01F);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-path::Segment<3> line(const Vector3& a, const Vector3& b) { return path::Line<3>(a, b); }
+plan::ArtworkPath line(const Vector3& a, const Vector3& b) { return path::Line<3>(a, b); }
 
 template <int N>
 struct Worst {
@@ -65,7 +65,7 @@ void check_within(const Worst<N>& worst, const M& machine, double rounding) {
 }
 
 // Flat blocks at 60 mm/s on the wall, each a motion of its own.
-plan::WallProgram on_wall(const Sidewall& sidewall, const std::vector<path::Segment<3>>& art, bool stops) {
+plan::WallProgram on_wall(const Sidewall& sidewall, const std::vector<plan::ArtworkPath>& art, bool stops) {
   plan::WallProgram program(sidewall, 1.0);
   int number = 0;
   for (const auto& segment : art)
@@ -187,11 +187,24 @@ TEST_CASE("paths on the wall measure themselves", "[motion]") {
   plan::WallProgram program(sidewall, 1.0);
   test::Random random;
   Vector3 at(60, 20, 0);
+  int splines = 0;
   for (int i = 0; i < 50; ++i) {
     const double r = random.uniform(55, 130), c = random.uniform(-pi, pi);
     const Vector3 to(r * std::cos(c), r * std::sin(c), random.uniform(-1, 10));
-    if (program.append({.path = line(at, to), .feed = 60, .line = i})) at = to;
+    plan::ArtworkPath way = line(at, to);
+    if (i % 3 == 0) {  // a piece of a spline instead, bent to the side
+      const Vector3 chord = to - at, aside(-chord.y(), chord.x(), 0.0);
+      const double bend = random.uniform(-0.6, 0.6), other = random.uniform(-0.6, 0.6);
+      way = path::spline(path::RationalCubic<3>({at, Vector3(at + 0.3 * chord + bend * aside),
+                                                 Vector3(at + 0.7 * chord + other * aside), to},
+                                                random.uniform(0.5, 2), random.uniform(0.5, 2)))
+                .value();
+    }
+    if (!program.append({.path = way, .feed = 60, .line = i})) continue;
+    splines += i % 3 == 0;
+    at = to;
   }
+  CHECK(splines > 3);
   double length = 0, inverse = 0, first = 0, second = 0, joined = 0, below = 0;
   for (std::size_t i = 0; i < program.blocks().size(); ++i) {
     const auto& path = *program.blocks()[i].path.as<plan::WallPath>();
@@ -244,11 +257,11 @@ TEST_CASE("paths on the wall measure themselves", "[motion]") {
 }
 
 TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[motion]") {
-  using Path = plan::TablePath<PolarMap, path::Segment<3>>;
+  using Path = plan::TablePath<PolarMap, plan::ArtworkPath>;
   const MappedMachine<PolarMap> machine = test::table_machine<double>();
   std::vector<Block<3, Path>> blocks;
   double table = 0;
-  const auto follow = [&](const path::Segment<3>& segment, int number) {
+  const auto follow = [&](const plan::ArtworkPath& segment, int number) {
     return plan::follow_table(segment, PolarMap{}, 1.0, table, [&](const Path& path) {
       blocks.push_back({.path = path, .feed = 30, .line = number});
     });

@@ -59,6 +59,8 @@ TEST_CASE("bad input is refused with file, line or entity", "[tire_mold]") {
        "art.nc:1:4: error: axis Z would move to 610, beyond its travel of 0 to 600"},
       {"an unknown code", good_wall, "G0 X160 Y0\nG34\n", "", "art.nc:2:1: error: G34 is not supported"},
       {"other coordinates", good_wall, "G0 X160 Y0\nG92 X0\n", "", "art.nc:2:1: error: G92 is not supported"},
+      {"cutter compensation", good_wall, "G0 X160 Y0\nG41.1 D6\nG1 X170 F600\n", "",
+       "art.nc:2:1: error: G41.1 is not supported"},
       {"home", good_wall, "G0 X160 Y0\nG28\n", "", "art.nc:2:1: error: G28 is not supported"},
       {"a bad arc", good_wall, "G0 X160 Y0\nG2 X170 R1 F600\n", "", "art.nc:2:"},
       {"an option that is none", good_wall, good_art, "--nonsense", "error: "},

@@ -36,7 +36,7 @@ class BasicWallCutter {
 
   /// Appends the parts of a segment. Errors, with nothing appended: below_limit and above_limit with the
   /// radius that leaves the profile or comes too near to the origin.
-  Expected<void> cut(const path::BasicSegment<S>& segment, std::vector<BasicWallPart<S>>& out) {
+  Expected<void> cut(const BasicArtworkPath<S>& segment, std::vector<BasicWallPart<S>>& out) {
     if (auto ok = check(segment); !ok) return ok;
     if (!piece_) piece_ = sidewall_.piece_at(radius_at(segment, S(0)));
     const S end = segment.parameter_end();
@@ -61,7 +61,7 @@ class BasicWallCutter {
   }
 
  private:
-  Expected<void> check(const path::BasicSegment<S>& segment) const {
+  Expected<void> check(const BasicArtworkPath<S>& segment) const {
     const auto one = [&](S radius) -> Expected<void> {
       const S inside = std::clamp(radius, sidewall_.start_radius(), sidewall_.end_radius());
       const bool rounding = std::abs(radius - inside) <= margin;
@@ -99,7 +99,7 @@ class BasicWallCutter {
       return BasicVector3<S>(point.x() / radius * r, point.y() / radius * r, point.z());
     };
     const S inner = begins, outer = begins + angle;
-    const path::BasicSegment<S> way =
+    const BasicArtworkPath<S> way =
         side > 0 ? path::BasicLine<S>(at(inner), at(outer)) : path::BasicLine<S>(at(outer), at(inner));
     out.push_back({way, sidewall_.kink_map(before, {}), S(0), way.parameter_end(), true});
   }

@@ -12,8 +12,8 @@
 #include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/tire_mold/sidewall.hpp"
 #include "cncplan/path/measured.hpp"
-#include "cncplan/path/segment.hpp"
 #include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/tire_mold/radius.hpp"
 
 namespace cncplan::plan {
 
@@ -25,7 +25,7 @@ struct BasicWallPart {
   using Scalar = S;
   using Vector = VectorN<S, 4>;
 
-  path::BasicSegment<S> artwork;          ///< flat, mm
+  BasicArtworkPath<S> artwork;            ///< flat, mm
   kinematics::BasicSidewallMap<S> map{};  ///< of the piece
   S from{};                               ///< parameters of the artwork
   S to{};
@@ -36,7 +36,7 @@ struct BasicWallPart {
   /// The flat point.
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> flat(const T& u) const {
-    return artwork.visit([&](const auto& path) { return path.point(T(from) + u); });
+    return artwork_point<S>(artwork, T(from) + u);
   }
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 4> point(const T& u) const {
@@ -62,18 +62,33 @@ template <std::floating_point S>
 using BasicWallBlock = cncplan::BasicBlock<S, 4, BasicWallPath<S>>;
 using WallBlock = BasicWallBlock<double>;
 
-/// Cuts a part where the table, the wall or an arc of the artwork has turned by about a radian, and calls
-/// `add` with each path. `table` is the angle at which the table stands, rad with whole turns; it is moved
-/// on.
+/// The greatest flat speed by the parameter between two parameters of artwork; of a spline at nine places.
+template <std::floating_point S>
+[[nodiscard]] S artwork_speed(const BasicArtworkPath<S>& artwork, S from, S to) {
+  if (artwork.arc() != nullptr) return artwork.derivative(from).norm();
+  const int places = artwork.line() != nullptr ? 0 : 8;
+  S greatest(0);
+  for (int i = 0; i <= places; ++i) {
+    const S u = i == 0 ? from : from + (to - from) * static_cast<S>(i) / static_cast<S>(places);
+    const BasicVector3<S> way = artwork.derivative(u);
+    greatest = std::max(greatest, std::hypot(way.x(), way.y()));
+  }
+  return greatest;
+}
+
+/// Cuts a part where the table, the wall or an arc of the artwork has turned by about a radian, a piece of a
+/// spline in eight at least, and calls `add` with each path. `table` is the angle at which the table stands,
+/// rad with whole turns; it is moved on.
 template <std::floating_point S, std::invocable<const BasicWallPath<S>&> Add>
 void follow_wall(BasicWallPart<S> part, S& table, Add&& add) {
-  const bool curved = part.artwork.arc() != nullptr;
+  const S longest = part.artwork.arc() != nullptr    ? S(1)
+                    : part.artwork.line() != nullptr ? std::numeric_limits<S>::infinity()
+                                                     : part.artwork.parameter_end() / S(8);
   const S end = part.to;
   for (S from = part.from; from < end;) {
     part.from = from;
-    const BasicVector3<S> way = part.artwork.derivative(from);
-    const S speed = curved ? way.norm() : std::hypot(way.x(), way.y());
-    S stride = curved ? S(1) : std::numeric_limits<S>::infinity();
+    const S speed = artwork_speed<S>(part.artwork, from, std::min(end, from + longest));
+    S stride = longest;
     if (speed > S(0)) stride = std::min(stride, part.map.reach(part.flat(S(0))) / (S(2) * speed));
     const S left = end - from;
     part.to = left <= stride ? end : from + (left < S(2) * stride ? left / S(2) : stride);

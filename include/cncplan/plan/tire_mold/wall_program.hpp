@@ -1,7 +1,9 @@
 // A flat program as blocks of the four-axis machine (set-up).
 #pragma once
 
+#include <algorithm>
 #include <concepts>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,15 +19,27 @@ class BasicWallProgram {
  public:
   using Block = BasicWallBlock<S>;
 
-  /// Nothing nearer to the artwork's origin than `smallest_radius` (mm, > 0) is mapped.
-  BasicWallProgram(const kinematics::BasicSidewall<S>& sidewall, S smallest_radius)
-      : cutter_(sidewall, smallest_radius) {}
+  /// Nothing nearer to the artwork's origin than `smallest_radius` (mm, > 0) is mapped. The table's first
+  /// angle is the one nearest to `table`, rad: whole turns on it turn the program on.
+  BasicWallProgram(const kinematics::BasicSidewall<S>& sidewall, S smallest_radius, S table = S(0))
+      : cutter_(sidewall, smallest_radius), table_(table) {}
 
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
 
+  /// The table's least and greatest angle, rad; none without blocks.
+  [[nodiscard]] std::optional<std::pair<S, S>> table_range() const {
+    std::optional<std::pair<S, S>> range;
+    for (const Block& block : blocks_) {
+      const auto box = block.path.box();
+      range = std::pair(range ? std::min(range->first, box.low[3]) : box.low[3],
+                        range ? std::max(range->second, box.high[3]) : box.high[3]);
+    }
+    return range;
+  }
+
   /// Appends a flat block that begins where the last one ended. One of length zero is a place to stop. A kink
   /// is a stop before it and one behind it. Errors, with nothing appended: those of the cutter.
-  Expected<void> append(const cncplan::BasicBlock<S, 3>& flat) {
+  Expected<void> append(const cncplan::BasicBlock<S, 3, path::BasicSpline<S, 3>>& flat) {
     parts_.clear();
     if (flat.path.length() > S(0))
       if (auto ok = cutter_.cut(flat.path, parts_); !ok) return ok;

@@ -73,7 +73,7 @@ template <std::floating_point S>
   // no row of more than about 60 degrees of table, arc or tilt, where the nearest turn of C could be the
   // wrong
   const S end = part.parameter_end();
-  const S flat = part.artwork.derivative(part.from).norm() * end;
+  const S flat = part.artwork.length_at(part.to) - part.artwork.length_at(part.from);
   S shortest = part.map.reach(part.flat(S(0)));
   for (int k = 1; k <= places; ++k)
     shortest = std::min(shortest, part.map.reach(part.flat(end * static_cast<S>(k) / S(places))));
