@@ -25,7 +25,7 @@ inline constexpr const char* five_arcs =
     "G02 X5 Y5 R5\nX10 Y0 R5\nX10 Y-10 R5\nX5 Y-15 R5\nX0 Y-10 R5\nG01 X0 Y0\n";
 
 void figure7(support::Gnuplot* plot);
-/// How far a B-spline through points of a circle is off it; the arc is not.
+/// How far a B-spline by points of arcs is off them, on one circle and where two arcs meet; the arcs are not.
 void figure8(support::Gnuplot* plot);
 /// Figs. 9 and 10: six helices, and the axes of these and of the arcs of Fig. 7 over time.
 void figure9(support::Gnuplot* plot);
@@ -33,6 +33,9 @@ void figure9(support::Gnuplot* plot);
 void figure11(support::Gnuplot* plot);
 /// Fig. 14: path, speed, acceleration and jerk over a section of the roughing program.
 void figure14(Lengths lengths, support::Gnuplot* plot);
+/// Figs. 12, 13 and 16: what the control unit's screen shows of two programs; machine and parts cannot be
+/// had.
+void pictures(support::Gnuplot* plot);
 /// Roughing, finishing and pocket milling on the rotary table: run times, the axes and their errors over ten
 /// minutes (Figs. 15 and 17), and the errors of Table 4.
 void programs(const support::Machine& machine, const std::vector<std::string>& names, Lengths lengths,

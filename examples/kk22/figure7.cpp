@@ -62,7 +62,7 @@ void figure7(support::Gnuplot* plot) {
       "## Fig. 7: five arcs, and the way back\n\n"
       "| | length of the arcs, mm | speeds from arc to arc, mm/s | before the line | time, s |\n"
       "|---|---|---|---|---|\n"
-      "| KK22, our reading | 47.124 | 15, 15, 15, 15 | 0 | arcs alone: about 1.6 |\n");
+      "| KK22, our reading | 47.124 | 15, 15, 15, 15 | 0 | arcs alone: above 1.6, below 1.8 |\n");
   print_row("cncplan, planned as published", published);
   print_row("cncplan, look-ahead, deviation of 0.01 mm", ours);
   fmt::print(

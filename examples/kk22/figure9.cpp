@@ -46,7 +46,7 @@ void figure9(support::Gnuplot* plot) {
   fmt::print(
       "## Figs. 9 and 10: six helices\n\n"
       "| | length in space, mm | least speed at a junction, mm/s | largest speed, mm/s | time, s |\n"
-      "|---|---|---|---|---|\n| KK22, read from its axes | | Vmax | constant | a little over 6 |\n");
+      "|---|---|---|---|---|\n| KK22, read from its axes | | Vmax | constant | above 6 |\n");
   print_row("reconstructed, planned by lengths in space", in_space);
   print_row("reconstructed, planned by R theta", planar);
   fmt::print("\n");

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
     kk22::figure11(pictures);
     const auto lengths = planar ? kk22::Lengths::planar : kk22::Lengths::in_space;
     kk22::figure14(lengths, pictures);
+    kk22::pictures(pictures);
     if (!figures) kk22::programs(table, programs, lengths, pictures);
     if (plot) plot->finish();
     return 0;
