@@ -121,7 +121,10 @@ alignas(64) std::byte memory[part_size];
 
 }  // namespace
 
-void RunningPart::set_up() { std::memset(memory, 0, sizeof memory); }
+void RunningPart::set_up() {
+  end();
+  std::memset(memory, 0, sizeof memory);
+}
 
 void RunningPart::begin(const Settings& settings, const AxisLimits& limits) {
   end();

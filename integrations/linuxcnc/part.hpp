@@ -59,7 +59,7 @@ class RunningPart {
  public:
   ~RunningPart() { end(); }
 
-  /// Touches the memory, so that no servo cycle has to fetch it.
+  /// Ends what runs, and touches the memory, so that no servo cycle has to fetch it.
   void set_up();
   /// Ends the part before and begins another one.
   void begin(const Settings& settings, const AxisLimits& limits);

@@ -269,10 +269,23 @@ int Planner::run_part(TP_STRUCT& tp, long period) {
   return TP_ERR_OK;
 }
 
+// The last move ends at rest, and is to know it: one that might blend into another has half the acceleration.
+void Planner::feed_own() {
+  const std::int64_t most = std::min(queue_.end(), given_ + moves_in_cycle);
+  while (given_ < most && queue_[given_].by_linuxcnc) {
+    Move& move = queue_[given_];
+    const bool is_last_known = given_ + 1 == queue_.end();
+    if (is_last_known && ++quiet_cycles_ < quiet_cycles_at_end) return;
+    if (is_last_known || !queue_[given_ + 1].by_linuxcnc) move.end_condition = TC_TERM_COND_STOP;
+    if (!own_.push(move)) return;
+    ++given_;
+    quiet_cycles_ = 0;
+  }
+}
+
 int Planner::run_own(TP_STRUCT& tp, long period) {
   if (tp.aborting == 0) {
-    const std::int64_t most = std::min(queue_.end(), given_ + moves_in_cycle);
-    while (given_ < most && queue_[given_].by_linuxcnc && own_.push(queue_[given_])) ++given_;
+    feed_own();
     if (own_.failed()) fault(tp, "cncplan_tp: error: LinuxCNC's own planner refuses a move\n");
   }
   own_.run(tp, period);

@@ -47,6 +47,7 @@ class Planner {
   int run_part(TP_STRUCT& tp, long period);
   int run_own(TP_STRUCT& tp, long period);
   void feed_part();
+  void feed_own();
   void tell(TP_STRUCT& tp, const PartState& state);
   void switch_outputs(Move& move);
   void fault(TP_STRUCT& tp, const char* text);

@@ -117,6 +117,7 @@ bool read_jerks(const Ini& ini, const Parameters& parameters, Settings& settings
 }  // namespace
 
 bool read_settings(const Parameters& parameters, Settings& settings) {
+  settings = {};
   const char* const name = std::getenv("INI_FILE_NAME");
   const std::unique_ptr<std::FILE, Close> file(name != nullptr ? std::fopen(name, "r") : nullptr);
   if (!file) {
