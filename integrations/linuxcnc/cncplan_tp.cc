@@ -88,8 +88,9 @@ int tpAddCircle(TP_STRUCT* const tp, EmcPose end, PmCartesian center, PmCartesia
   move.tag = tag;
   return planner.add(*tp, move);
 }
-int tpAddRigidTap(TP_STRUCT* const tp, EmcPose end, double velocity, double most_velocity, double acceleration,
-                  CNCPLAN_TP_JERK_PARAMETER unsigned char enables, double scale, struct state_tag_t tag) {
+int tpAddRigidTap(TP_STRUCT* const tp, EmcPose end, double velocity, double most_velocity,
+                  double acceleration, CNCPLAN_TP_JERK_PARAMETER unsigned char enables, double scale,
+                  struct state_tag_t tag) {
   auto& move = planner.next_move();
   move.shape = cncplan::linuxcnc::Shape::rigid_tap;
   move.end = end;
@@ -179,7 +180,9 @@ int tpGetPos(TP_STRUCT const* const tp, EmcPose* const at) {
   return TP_ERR_OK;
 }
 int tpGetExecId(TP_STRUCT* const tp) { return tp->execId; }
-struct state_tag_t tpGetExecTag(TP_STRUCT* const tp) { return tp->execTag; }
+struct state_tag_t tpGetExecTag(TP_STRUCT* const tp) {
+  return tp->execTag;
+}
 int tpGetMotionType(TP_STRUCT* const tp) { return tp->motionType; }
 int tpIsDone(TP_STRUCT* const tp) { return tp->done; }
 int tpQueueDepth(TP_STRUCT* const tp) { return tp->depth; }

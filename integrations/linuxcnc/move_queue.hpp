@@ -35,7 +35,9 @@ class MoveQueue {
   [[nodiscard]] Move& operator[](std::int64_t number) { return moves_[slot(number)]; }
 
  private:
-  [[nodiscard]] static std::size_t slot(std::int64_t number) { return static_cast<std::size_t>(number % room); }
+  [[nodiscard]] static std::size_t slot(std::int64_t number) {
+    return static_cast<std::size_t>(number % room);
+  }
 
   std::array<Move, static_cast<std::size_t>(room)> moves_{};
   std::int64_t end_ = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "own_planner.hpp"
 
-#include <cstring>
 #include <dlfcn.h>
+#include <cstring>
 
 namespace cncplan::linuxcnc {
 namespace {
@@ -95,9 +95,9 @@ bool OwnPlanner::push(const Move& move) {
                                      static_cast<char>(move.waits_for_spindle), move.tag);
       break;
     case Shape::rigid_tap:
-      result = functions_.add_rigid_tap(&planner_, move.end, move.velocity, move.most_velocity,
-                                        move.acceleration, CNCPLAN_TP_JERK_ARGUMENT(move.jerk) move.enables,
-                                        move.scale, move.tag);
+      result =
+          functions_.add_rigid_tap(&planner_, move.end, move.velocity, move.most_velocity, move.acceleration,
+                                   CNCPLAN_TP_JERK_ARGUMENT(move.jerk) move.enables, move.scale, move.tag);
       break;
   }
   failed_ = failed_ || result < 0;

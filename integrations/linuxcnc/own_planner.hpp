@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// LinuxCNC's own planner, tpmod.so, loaded beside this one: it runs the moves that follow the spindle, those of
-// locking indexers, and circles in tilted planes.
+// LinuxCNC's own planner, tpmod.so, loaded beside this one: it runs the moves that follow the spindle, those
+// of locking indexers, and circles in tilted planes.
 #pragma once
 
 #include "move.hpp"

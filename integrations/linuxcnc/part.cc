@@ -129,9 +129,15 @@ void RunningPart::set_up() {
 void RunningPart::begin(const Settings& settings, const AxisLimits& limits) {
   end();
   switch (planned_coordinates(settings)) {
-    case 3: part_ = new (memory) ExecutorPart<3>(settings, limits); break;
-    case 6: part_ = new (memory) ExecutorPart<6>(settings, limits); break;
-    default: part_ = new (memory) ExecutorPart<9>(settings, limits); break;
+    case 3:
+      part_ = new (memory) ExecutorPart<3>(settings, limits);
+      break;
+    case 6:
+      part_ = new (memory) ExecutorPart<6>(settings, limits);
+      break;
+    default:
+      part_ = new (memory) ExecutorPart<9>(settings, limits);
+      break;
   }
 }
 

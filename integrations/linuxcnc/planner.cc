@@ -93,8 +93,8 @@ Move& Planner::next_move() {
 
 int Planner::add(TP_STRUCT& tp, Move& move) {
   if (tp.aborting != 0) {
-    rtapi_print_msg(RTAPI_MSG_ERR, "cncplan_tp: error: line %d: no move is taken while the motion is aborted\n",
-                    tp.nextId);
+    rtapi_print_msg(RTAPI_MSG_ERR,
+                    "cncplan_tp: error: line %d: no move is taken while the motion is aborted\n", tp.nextId);
     return TP_ERR_FAIL;
   }
   if (!queue_.has_room()) {
@@ -134,8 +134,8 @@ bool Planner::measure(Move& move) const {
   const Coordinates way = coordinates(move.end) - coordinates(move.start);
   for (int i = planned_coordinates(settings_); i < coordinate_count; ++i)
     if (way[i] != 0.0) {
-      rtapi_print_msg(RTAPI_MSG_ERR, "cncplan_tp: error: line %d: axis %c is not in [TRAJ]COORDINATES\n", move.id,
-                      coordinate_letters[i]);
+      rtapi_print_msg(RTAPI_MSG_ERR, "cncplan_tp: error: line %d: axis %c is not in [TRAJ]COORDINATES\n",
+                      move.id, coordinate_letters[i]);
       return false;
     }
   move.pure_rotary = !moves_in_space(move) && !moves_uvw(move);
@@ -144,8 +144,8 @@ bool Planner::measure(Move& move) const {
   if (!path) {
     const std::string_view what = message(path.error().code);
     rtapi_print_msg(RTAPI_MSG_ERR, "cncplan_tp: error: line %d: arc: %.*s: %g %.*s\n", move.id,
-                    static_cast<int>(path.error().field.size()), path.error().field.data(), path.error().value,
-                    static_cast<int>(what.size()), what.data());
+                    static_cast<int>(path.error().field.size()), path.error().field.data(),
+                    path.error().value, static_cast<int>(what.size()), what.data());
     return false;
   }
   move.length = path->length();
@@ -328,8 +328,7 @@ void Planner::tell(TP_STRUCT& tp, const PartState& state) {
   status_->enables_queued = move.enables;
   status_->requested_vel = move.velocity;
   status_->current_vel = std::abs(state.velocity) / unit;
-  status_->distance_to_go =
-      std::clamp(move.begins_at + move.length - state.along, 0.0, move.length) / unit;
+  status_->distance_to_go = std::clamp(move.begins_at + move.length - state.along, 0.0, move.length) / unit;
   status_->dtg = pose(coordinates(move.end) - at);
 }
 

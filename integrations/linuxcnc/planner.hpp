@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The planner behind LinuxCNC's tp functions: a queue of moves, cut into parts that begin and end at rest, each
-// of which cncplan or LinuxCNC's own planner runs. All but `set_up` is called by the servo thread.
+// The planner behind LinuxCNC's tp functions: a queue of moves, cut into parts that begin and end at rest,
+// each of which cncplan or LinuxCNC's own planner runs. All but `set_up` is called by the servo thread.
 #pragma once
 
 #include <cstdint>

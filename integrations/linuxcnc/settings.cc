@@ -26,8 +26,8 @@ struct Unit {
 // The names that LinuxCNC's task knows.
 constexpr Unit linear_units[] = {
     {"mm", 1.0}, {"metric", 1.0}, {"in", inch}, {"inch", inch}, {"imperial", inch}};
-constexpr Unit rotary_units[] = {{"deg", degree},       {"degree", degree},    {"rad", 1.0},
-                                 {"radian", 1.0},       {"grad", 0.9 * degree}, {"gon", 0.9 * degree}};
+constexpr Unit rotary_units[] = {{"deg", degree}, {"degree", degree},     {"rad", 1.0},
+                                 {"radian", 1.0}, {"grad", 0.9 * degree}, {"gon", 0.9 * degree}};
 
 template <class... Values>
 void complain(const char* format, Values... values) {
@@ -70,7 +70,8 @@ std::optional<double> positive(const char* what, const std::string& text) {
 }
 
 // What may be missing, and is `otherwise` then.
-std::optional<double> positive_or(const char* what, const std::optional<std::string>& text, double otherwise) {
+std::optional<double> positive_or(const char* what, const std::optional<std::string>& text,
+                                  double otherwise) {
   return text ? positive(what, *text) : otherwise;
 }
 std::optional<std::string> given(const char* parameter) {
@@ -81,8 +82,7 @@ bool read_coordinates(const Ini& ini, Settings& settings) {
   const std::string text = ini.text("TRAJ", "COORDINATES").value_or("XYZ");
   for (const char letter : text) {
     if (std::isspace(static_cast<unsigned char>(letter)) != 0) continue;
-    const char* const at =
-        std::strchr(coordinate_letters, std::toupper(static_cast<unsigned char>(letter)));
+    const char* const at = std::strchr(coordinate_letters, std::toupper(static_cast<unsigned char>(letter)));
     if (at == nullptr) {
       complain("cncplan_tp: error: [TRAJ]COORDINATES: '%s' names no axis\n", text.c_str());
       return false;
@@ -121,7 +121,8 @@ bool read_settings(const Parameters& parameters, Settings& settings) {
   const char* const name = std::getenv("INI_FILE_NAME");
   const std::unique_ptr<std::FILE, Close> file(name != nullptr ? std::fopen(name, "r") : nullptr);
   if (!file) {
-    complain("cncplan_tp: error: the ini cannot be read (INI_FILE_NAME: %s)\n", name != nullptr ? name : "not set");
+    complain("cncplan_tp: error: the ini cannot be read (INI_FILE_NAME: %s)\n",
+             name != nullptr ? name : "not set");
     return false;
   }
   const Ini ini(file.get());
@@ -138,8 +139,7 @@ bool read_settings(const Parameters& parameters, Settings& settings) {
   const auto velocity =
       positive_or("[TRAJ]MAX_LINEAR_VELOCITY", ini.text("TRAJ", "MAX_LINEAR_VELOCITY"), none);
   const auto jerk = positive_or("[TRAJ]MAX_LINEAR_JERK", ini.text("TRAJ", "MAX_LINEAR_JERK"), none);
-  const auto tolerance =
-      positive_or("tolerance", given(parameters.tolerance), settings.tolerance / *linear);
+  const auto tolerance = positive_or("tolerance", given(parameters.tolerance), settings.tolerance / *linear);
   const auto rotary_tolerance = positive_or("rotary_tolerance", given(parameters.rotary_tolerance),
                                             settings.rotary_tolerance / *rotary);
   if (!velocity || !jerk || !tolerance || !rotary_tolerance) return false;

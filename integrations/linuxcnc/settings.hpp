@@ -18,11 +18,11 @@ struct Parameters {
 
 struct Settings {
   Units units{};
-  std::array<bool, coordinate_count> used{};    ///< by [TRAJ]COORDINATES
-  std::array<double, coordinate_count> jerk{};  ///< mm/s^3, rad/s^3
-  double tool_velocity{};                       ///< mm/s; infinity: as the axes can
-  double tool_jerk{};                           ///< mm/s^3; the same
-  double tolerance = 0.01;                      ///< mm
+  std::array<bool, coordinate_count> used{};       ///< by [TRAJ]COORDINATES
+  std::array<double, coordinate_count> jerk{};     ///< mm/s^3, rad/s^3
+  double tool_velocity{};                          ///< mm/s; infinity: as the axes can
+  double tool_jerk{};                              ///< mm/s^3; the same
+  double tolerance = 0.01;                         ///< mm
   double rotary_tolerance = 8.726646259971648e-4;  ///< rad
 };
 

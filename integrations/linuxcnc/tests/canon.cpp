@@ -18,7 +18,8 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 
 std::vector<double> numbers_in(const std::string& line) {
   std::string text = line.substr(line.find('(') + 1);
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == ',' || c == ')'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ',' || c == ')'; }, ' ');
   std::istringstream in(text);
   std::vector<double> numbers;
   for (double number; in >> number;) numbers.push_back(number);
@@ -54,7 +55,9 @@ std::vector<CanonMove> read_motions(const std::string& file) {
     } else if (line.starts_with("SET_FEED_RATE")) {
       next.feed = n.at(0) * unit / 60.0;
     } else if (line.starts_with("SELECT_PLANE")) {
-      next.plane = line.find("PLANE_XY") != std::string::npos ? 2 : line.find("PLANE_YZ") != std::string::npos ? 0 : 1;
+      next.plane = line.find("PLANE_XY") != std::string::npos   ? 2
+                   : line.find("PLANE_YZ") != std::string::npos ? 0
+                                                                : 1;
     } else if (line.starts_with("STRAIGHT_")) {
       next.rapid = line.starts_with("STRAIGHT_TRAVERSE");
       next.rotation = 0;
@@ -114,7 +117,8 @@ std::vector<CanonMove> random_program(cncplan::test::Random& random, int count) 
       next.rotation = random.coin() ? 1 : -1;
       const double side = next.rotation > 0 ? 1.0 : -1.0;
       const double radius = random.log_uniform(0.3, 20.0), angle = random.uniform(0.3, 6.0);
-      next.center = start.head<3>() + radius * Vector3(-side * std::sin(heading), side * std::cos(heading), 0.0);
+      next.center =
+          start.head<3>() + radius * Vector3(-side * std::sin(heading), side * std::cos(heading), 0.0);
       const Vector3 out = start.head<3>() - next.center;
       const double c = std::cos(side * angle), s = std::sin(side * angle);
       next.end[0] = next.center[0] + c * out[0] - s * out[1];

@@ -14,7 +14,7 @@ namespace cncplan::linuxcnc::test {
 struct CanonMove {
   Coordinates end = Coordinates::Zero();
   bool rapid{};
-  double feed{};  ///< mm/s
+  double feed{};   ///< mm/s
   int rotation{};  ///< 0: a line; else turns, below 0 clockwise
   Vector3 center = Vector3::Zero();
   int plane = 2;  ///< axis of the circle

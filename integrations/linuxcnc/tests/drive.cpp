@@ -29,10 +29,14 @@ double thread_time() {
 
 int main(int count, char** arguments) {
   if (count < 3) {
-    std::fprintf(stderr, "usage: drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration]\n");
+    std::fprintf(
+        stderr,
+        "usage: drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration]\n");
     return 2;
   }
-  const auto number = [&](int i, double otherwise) { return count > i ? std::atof(arguments[i]) : otherwise; };
+  const auto number = [&](int i, double otherwise) {
+    return count > i ? std::atof(arguments[i]) : otherwise;
+  };
   const std::string file = arguments[2];
   const int lines = static_cast<int>(number(3, 1e9));
   const double jerk = number(4, 1e4), tolerance = number(5, 0.01);
@@ -64,10 +68,12 @@ int main(int count, char** arguments) {
     most.acceleration = std::max(most.acceleration, p.acceleration);
     most.jerk = std::max(most.jerk, p.jerk);
   }
-  std::printf("%s: %zu moves, %s, %.3f s, velocity %.4f, acceleration %.4f, jerk %.4f of the limits, deviation %.4f mm\n",
-              arguments[1], moves.size(), run.ended ? "ended" : "NOT ENDED", 1e-3 * static_cast<double>(run.samples.size() - 1),
-              most.velocity / options.velocity, most.acceleration / options.acceleration, most.jerk / jerk,
-              deviation(run, moves));
+  std::printf(
+      "%s: %zu moves, %s, %.3f s, velocity %.4f, acceleration %.4f, jerk %.4f of the limits, deviation %.4f "
+      "mm\n",
+      arguments[1], moves.size(), run.ended ? "ended" : "NOT ENDED",
+      1e-3 * static_cast<double>(run.samples.size() - 1), most.velocity / options.velocity,
+      most.acceleration / options.acceleration, most.jerk / jerk, deviation(run, moves));
   std::printf("servo cycle: mean %.1f us, 99.9 %% %.1f us, most %.1f us of %zu\n%s", mean,
               cycles[cycles.size() * 999 / 1000], cycles.back(), cycles.size(), printed().c_str());
   return run.ended ? 0 : 1;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "host.hpp"
 
+#include <dlfcn.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
-#include <dlfcn.h>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
-#include <unistd.h>
 
 extern "C" {
 int rtapi_app_main(void);
@@ -85,16 +85,15 @@ long& periods() {
 }
 
 TpFunctions our_functions() {
-  return {&::tpMotFunctions, &::tpMotData, &::tpCreate,       &::tpClear,         &::tpSetCycleTime,
-          &::tpSetVmax,      &::tpSetVlimit, &::tpSetId,      &::tpSetTermCond,   &::tpSetPos,
-          &::tpRunCycle,     &::tpPause,   &::tpResume,       &::tpAbort,         &::tpAddRigidTap,
-          &::tpAddLine,      &::tpAddCircle, &::tpSetSpindleSync, &::tpSetAout,   &::tpSetDout,
+  return {&::tpMotFunctions, &::tpMotData,   &::tpCreate,         &::tpClear,       &::tpSetCycleTime,
+          &::tpSetVmax,      &::tpSetVlimit, &::tpSetId,          &::tpSetTermCond, &::tpSetPos,
+          &::tpRunCycle,     &::tpPause,     &::tpResume,         &::tpAbort,       &::tpAddRigidTap,
+          &::tpAddLine,      &::tpAddCircle, &::tpSetSpindleSync, &::tpSetAout,     &::tpSetDout,
           &::tpSetRunDir,    &::tcqFull};
 }
 
 TpFunctions debians_functions() {
-  void* const library =
-      dlopen(CNCPLAN_TP_MODULES "/tpmod.so", RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
+  void* const library = dlopen(CNCPLAN_TP_MODULES "/tpmod.so", RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
   if (library == nullptr) throw std::runtime_error(dlerror());
   TpFunctions f{};
   find(library, "tpMotFunctions", f.mot_functions);
@@ -124,7 +123,8 @@ TpFunctions debians_functions() {
 
 bool load_module(const HostOptions& options) {
   printed().clear();
-  const auto name = std::filesystem::temp_directory_path() / ("cncplan_tp_" + std::to_string(getpid()) + ".ini");
+  const auto name =
+      std::filesystem::temp_directory_path() / ("cncplan_tp_" + std::to_string(getpid()) + ".ini");
   std::ofstream(name) << "[TRAJ]\nCOORDINATES = " << options.coordinates
                       << "\nLINEAR_UNITS = " << options.linear_units << "\nANGULAR_UNITS = degree\n"
                       << options.more_ini << '\n';
@@ -173,7 +173,7 @@ Host::Host(const HostOptions& wanted, const TpFunctions& planner)
 // The share of an axis' limit that a straight way has, as emccanon.cc reckons it.
 double Host::along_line(double limit, const Coordinates& end) const {
   const Coordinates way = end - goal();
-  const double length = way.head<3>().norm() > 0.0 ? way.head<3>().norm()
+  const double length = way.head<3>().norm() > 0.0   ? way.head<3>().norm()
                         : way.tail<3>().norm() > 0.0 ? way.tail<3>().norm()
                                                      : way.segment<3>(3).norm();
   const double most = way.cwiseAbs().maxCoeff();
@@ -189,12 +189,13 @@ int Host::line(const Coordinates& end, double feed, int type, bool waits_for_spi
                             static_cast<char>(waits_for_spindle), -1, state_tag_t{});
 }
 
-int Host::circle(const Coordinates& end, const Vector3& center, const Vector3& normal, int turn, double feed) {
+int Host::circle(const Coordinates& end, const Vector3& center, const Vector3& normal, int turn,
+                 double feed) {
   functions.set_id(&tp, next_id++);
   const auto point = [](const Vector3& v) { return PmCartesian{v.x(), v.y(), v.z()}; };
   const double velocity = std::min(feed, options.velocity);
-  return functions.add_circle(&tp, pose(end), point(center), point(normal), turn, EMC_MOTION_TYPE_ARC, velocity,
-                              options.velocity, options.acceleration,
+  return functions.add_circle(&tp, pose(end), point(center), point(normal), turn, EMC_MOTION_TYPE_ARC,
+                              velocity, options.velocity, options.acceleration,
                               CNCPLAN_TP_JERK_ARGUMENT(1e9) status.enables_new, 0, state_tag_t{});
 }
 

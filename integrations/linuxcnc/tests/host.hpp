@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What LinuxCNC's motion module and task do around a planner, as far as its functions can tell: they are called
-// in the same order, once a servo period.
+// What LinuxCNC's motion module and task do around a planner, as far as its functions can tell: they are
+// called in the same order, once a servo period.
 #pragma once
 
 #include <array>
@@ -64,7 +64,8 @@ class Host {
   explicit Host(const HostOptions& options, const TpFunctions& functions = our_functions());
 
   // What task sends. Velocities in machine units/s; result as of tpAddLine.
-  int line(const Coordinates& end, double feed, int type = EMC_MOTION_TYPE_FEED, bool waits_for_spindle = false);
+  int line(const Coordinates& end, double feed, int type = EMC_MOTION_TYPE_FEED,
+           bool waits_for_spindle = false);
   int circle(const Coordinates& end, const Vector3& center, const Vector3& normal, int turn, double feed);
   int tap(const Coordinates& end, double feed, double per_revolution);
   void exact_stop() { functions.set_term_cond(&tp, TC_TERM_COND_STOP, 0.0); }

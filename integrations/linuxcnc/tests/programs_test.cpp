@@ -16,7 +16,8 @@ namespace {
 
 constexpr double path_tolerance = 0.01;
 
-Run driven(const HostOptions& options, const std::vector<CanonMove>& moves, double tolerance = path_tolerance) {
+Run driven(const HostOptions& options, const std::vector<CanonMove>& moves,
+           double tolerance = path_tolerance) {
   Host host(options);
   host.blend(tolerance / (options.linear_units == "inch" ? 25.4 : 1.0));
   return drive(host, moves);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the operator and the program ask for besides motion: pauses, steps, backwards, aborts, overrides, outputs,
-// the spindle.
+// What the operator and the program ask for besides motion: pauses, steps, backwards, aborts, overrides,
+// outputs, the spindle.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -77,9 +77,12 @@ TEST_CASE("an abort at a random instant comes to rest, and the next program runs
     Host host({});
     host.blend(0.01);
     const long when = random.integer(0, 4000);
-    Run run = drive(host, moves, [&](long period) {
-      if (period == when) host.abort();
-    }, when + 1);
+    Run run = drive(
+        host, moves,
+        [&](long period) {
+          if (period == when) host.abort();
+        },
+        when + 1);
     for (int k = 0; k < 2000 && host.tp.aborting != 0; ++k) {
       host.cycle();
       run.samples.push_back({host.position(), host.tp.execId, 0.0});
@@ -126,7 +129,8 @@ TEST_CASE("steps end at the end of each move") {
   for (std::size_t k = 0; k < moves.size(); ++k) {
     INFO("step " << k);
     host.step();
-    for (int i = 0; i < 5000 && (host.status.stepping != 0 || host.status.current_vel > 0.0); ++i) host.cycle();
+    for (int i = 0; i < 5000 && (host.status.stepping != 0 || host.status.current_vel > 0.0); ++i)
+      host.cycle();
     for (int i = 0; i < 100; ++i) host.cycle();
     CHECK((host.position() - moves[k].end).norm() < 1e-9);
   }
@@ -140,22 +144,25 @@ TEST_CASE("backwards goes the same way back, and forwards again to the end") {
   int phase = 0;
   long since = 0;
   std::set<int> backward_ids;
-  const Run run = drive(host, moves, [&](long period) {
-    const bool rests = host.status.current_vel == 0.0 && period > since + 50;
-    if (phase == 0 && period == 2300) host.pause(), phase = 1, since = period;
-    if (phase == 1 && rests) {
-      CHECK(host.functions.set_run_dir(&host.tp, TC_DIR_REVERSE) == TP_ERR_OK);
-      host.resume(), phase = 2, since = period;
-    }
-    if (phase == 2) backward_ids.insert(host.tp.execId);
-    if (phase == 2 && period == since + 100)
-      CHECK(host.functions.set_run_dir(&host.tp, TC_DIR_FORWARD) == TP_ERR_FAIL);  // it moves
-    if (phase == 2 && rests && host.position().norm() < 1e-9) {
-      CHECK(host.tp.done == 0);
-      CHECK(host.functions.set_run_dir(&host.tp, TC_DIR_FORWARD) == TP_ERR_OK);
-      phase = 3;
-    }
-  }, 30000);
+  const Run run = drive(
+      host, moves,
+      [&](long period) {
+        const bool rests = host.status.current_vel == 0.0 && period > since + 50;
+        if (phase == 0 && period == 2300) host.pause(), phase = 1, since = period;
+        if (phase == 1 && rests) {
+          CHECK(host.functions.set_run_dir(&host.tp, TC_DIR_REVERSE) == TP_ERR_OK);
+          host.resume(), phase = 2, since = period;
+        }
+        if (phase == 2) backward_ids.insert(host.tp.execId);
+        if (phase == 2 && period == since + 100)
+          CHECK(host.functions.set_run_dir(&host.tp, TC_DIR_FORWARD) == TP_ERR_FAIL);  // it moves
+        if (phase == 2 && rests && host.position().norm() < 1e-9) {
+          CHECK(host.tp.done == 0);
+          CHECK(host.functions.set_run_dir(&host.tp, TC_DIR_FORWARD) == TP_ERR_OK);
+          phase = 3;
+        }
+      },
+      30000);
   CHECK(phase == 3);
   CHECK(backward_ids == std::set<int>{1, 2, 3});
   REQUIRE(run.ended);
@@ -489,30 +496,51 @@ TEST_CASE("random requests at random instants") {
     host.blend(tolerance);
     long asks = random.integer(1, 12);
     bool ended = false;
-    const Run run = drive(host, moves, [&](long period) {
-      if (period > 20000 || asks == 0) {  // let it end
-        if (!ended) host.resume(), host.feed_hold = false, host.adaptive_feed = 1.0;
-        ended = true;
-        if (host.status.current_vel == 0.0 && host.tp.reverse_run == TC_DIR_REVERSE)
-          host.functions.set_run_dir(&host.tp, TC_DIR_FORWARD);
-        host.status.feed_scale = host.status.rapid_scale = 1.0;
-        host.functions.set_v_limit(&host.tp, 1e9);
-        return;
-      }
-      if (random.integer(0, 79) != 0) return;
-      --asks;
-      switch (random.integer(0, 8)) {
-        case 0: host.pause(); break;
-        case 1: host.resume(); break;
-        case 2: host.step(); break;
-        case 3: host.status.feed_scale = random.coin() ? random.uniform(0.0, 1.5) : 1.0; break;
-        case 4: host.status.rapid_scale = random.uniform(0.0, 1.0); break;
-        case 5: host.feed_hold = !host.feed_hold; break;
-        case 6: host.adaptive_feed = random.uniform(-1.0, 1.0); break;
-        case 7: host.functions.set_v_limit(&host.tp, random.log_uniform(1.0, 100.0)); break;
-        default: host.functions.set_run_dir(&host.tp, random.coin() ? TC_DIR_REVERSE : TC_DIR_FORWARD); break;
-      }
-    }, 300'000);
+    const Run run = drive(
+        host, moves,
+        [&](long period) {
+          if (period > 20000 || asks == 0) {  // let it end
+            if (!ended) host.resume(), host.feed_hold = false, host.adaptive_feed = 1.0;
+            ended = true;
+            if (host.status.current_vel == 0.0 && host.tp.reverse_run == TC_DIR_REVERSE)
+              host.functions.set_run_dir(&host.tp, TC_DIR_FORWARD);
+            host.status.feed_scale = host.status.rapid_scale = 1.0;
+            host.functions.set_v_limit(&host.tp, 1e9);
+            return;
+          }
+          if (random.integer(0, 79) != 0) return;
+          --asks;
+          switch (random.integer(0, 8)) {
+            case 0:
+              host.pause();
+              break;
+            case 1:
+              host.resume();
+              break;
+            case 2:
+              host.step();
+              break;
+            case 3:
+              host.status.feed_scale = random.coin() ? random.uniform(0.0, 1.5) : 1.0;
+              break;
+            case 4:
+              host.status.rapid_scale = random.uniform(0.0, 1.0);
+              break;
+            case 5:
+              host.feed_hold = !host.feed_hold;
+              break;
+            case 6:
+              host.adaptive_feed = random.uniform(-1.0, 1.0);
+              break;
+            case 7:
+              host.functions.set_v_limit(&host.tp, random.log_uniform(1.0, 100.0));
+              break;
+            default:
+              host.functions.set_run_dir(&host.tp, random.coin() ? TC_DIR_REVERSE : TC_DIR_FORWARD);
+              break;
+          }
+        },
+        300'000);
     INFO("CNCPLAN_SEED=" << first + static_cast<std::uint64_t>(k) << " CNCPLAN_TP_SEQUENCES=1");
     REQUIRE(printed().empty());
     REQUIRE(run.ended);

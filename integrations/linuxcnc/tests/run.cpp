@@ -26,6 +26,7 @@ Run drive(Host& host, const std::vector<CanonMove>& moves, const std::function<v
   Coordinates to_mm = Coordinates::Constant(unit);
   to_mm.segment<3>(3).setOnes();
   Run run;
+  run.samples.reserve(65536);
   run.samples.push_back({host.position().cwiseProduct(to_mm), 0, 0.0});
   std::size_t sent = 0;
   for (long i = 0; i < most_periods; ++i) {
@@ -71,8 +72,8 @@ std::string beyond_limits(const Run& run, const HostOptions& options, double jer
         if (value <= allowed * limits[order - 1] + rounding) continue;
         std::ostringstream text;
         text << "axis " << coordinate_letters[c] << ": difference " << order << " in period " << i << " is "
-             << value << ", " << value / limits[order - 1] << " times the limit (move "
-             << run.samples[i].id << ')';
+             << value << ", " << value / limits[order - 1] << " times the limit (move " << run.samples[i].id
+             << ')';
         return text.str();
       }
   }

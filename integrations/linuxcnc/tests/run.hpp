@@ -33,7 +33,8 @@ struct Peaks {
 };
 [[nodiscard]] Peaks peaks(const Run& run, int coordinate);
 
-/// "" where every axis keeps its limits, else what does not and when. Share: of a limit that rounding may add.
+/// "" where every axis keeps its limits, else what does not and when. Share: of a limit that rounding may
+/// add.
 [[nodiscard]] std::string beyond_limits(const Run& run, const HostOptions& options, double jerk,
                                         double rotary_jerk = 1e300);
 
