@@ -376,4 +376,14 @@ Machine read_machine(const std::string& file) {
   return interpret(file, root);
 }
 
+Machine parse_machine(const std::string& text, const std::string& name) {
+  try {
+    return interpret(name, toml::parse(text, name));
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw Failure(Exit::bad_input,
+                  fmt::format("{}:{}:{}: error: {}", name, at.line, at.column, error.description()));
+  }
+}
+
 }  // namespace support

@@ -78,5 +78,7 @@ struct Machine {
 
 /// Reads a machine file. Throws `Failure` for one that cannot be read or has an unknown or wrong entry.
 [[nodiscard]] Machine read_machine(const std::string& file);
+/// The same of a text; `name` stands for the file in messages.
+[[nodiscard]] Machine parse_machine(const std::string& text, const std::string& name);
 
 }  // namespace support

@@ -1,0 +1,8 @@
+"""Lets pip build the package from the root of the repository: the build is that of this folder."""
+
+import os
+from pathlib import Path
+
+os.chdir(Path(__file__).resolve().parent)
+
+from setuptools.build_meta import *  # noqa: E402, F403

@@ -1,0 +1,166 @@
+"""Axes from one state to another, and profiles along a path."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._errors import Error, choice, integer, kind, not_negative, number, row
+from ._machine import Machine, core_of
+
+_SYNCHRONIZATIONS = ("time", "phase", "none")
+PHASE_DTYPE = np.dtype([("time", "f8"), ("duration", "f8"), ("position", "f8"), ("velocity", "f8"),
+                        ("acceleration", "f8"), ("jerk", "f8")])
+
+
+@dataclass(frozen=True)
+class State:
+    """Where the axes are and how they move; mm, rad and s. What is not given is 0."""
+
+    position: Any
+    velocity: Any = None
+    acceleration: Any = None
+
+
+def _times(t: Any) -> np.ndarray:
+    if np.ndim(t) == 0:
+        times = np.array([number(t, "t")])
+    else:
+        times = np.asarray(t)
+        if times.ndim != 1 or times.dtype.kind not in "iuf":
+            raise TypeError(f"t: expected a number or an array of n numbers, got {kind(t)}")
+        times = np.ascontiguousarray(times, dtype=float)
+    if np.isnan(times).any():
+        raise Error("t: is not a finite number", "not_finite", "t", np.nan)
+    return times
+
+
+class Motion:
+    """The motion of all axes, from 0 to `duration`."""
+
+    def __init__(self, core: Any, axes: int) -> None:
+        self._core = core
+        self._axes = axes
+
+    @property
+    def duration(self) -> float:
+        """s, of the axis that moves longest."""
+        return self._core.duration()
+
+    @property
+    def durations(self) -> np.ndarray:
+        """(axes,) s, of each axis."""
+        return self._core.durations(self._axes)
+
+    def at(self, t: float | Sequence[float] | np.ndarray) -> State:
+        """All axes at t seconds: arrays of shape (axes,), or (n, axes) for n instants. Behind the end they keep
+        the velocity that they have come to."""
+        position, velocity, acceleration = self._core.at(_times(t), self._axes)
+        if np.ndim(t) == 0:
+            return State(position[0], velocity[0], acceleration[0])
+        return State(position, velocity, acceleration)
+
+
+def _rows(state: Any, name: str, machine: Machine) -> list[list[float]]:
+    n = len(machine)
+    if not isinstance(state, State):
+        state = State(state)
+    return [[0.0] * n if value is None else row(value, f"{part} of {name}", n)
+            for part, value in (("position", state.position), ("velocity", state.velocity),
+                                ("acceleration", state.acceleration))]
+
+
+def move_to(start: State | Sequence[float], target: State | Sequence[float], machine: Machine,
+            synchronization: str = "time", minimum_duration: float = 0.0) -> Motion:
+    """The fastest motion of the machine's axes from one state to another, each within its own limits; those of
+    the tool do not act.
+
+    Parameters
+    ----------
+    start, target : State, or the positions of axes at rest
+        n numbers each; mm, rad and s.
+    machine : Machine
+        Each axis needs a velocity, and an acceleration or a jerk.
+    synchronization : str
+        "time": all axes arrive together; "phase": on a straight line where that costs no time; "none": each as
+        soon as it can.
+    minimum_duration : float
+        s, >= 0.
+    """
+    core = core_of(machine)
+    return Motion(_core.move_to(core, _rows(start, "start", machine), _rows(target, "target", machine),
+                                _SYNCHRONIZATIONS.index(choice(synchronization, "synchronization",
+                                                               _SYNCHRONIZATIONS)),
+                                not_negative(minimum_duration, "minimum_duration")), len(machine))
+
+
+def reach_velocity(start: State | Sequence[float], velocities: Sequence[float], machine: Machine,
+                   synchronization: str = "time", minimum_duration: float = 0.0) -> Motion:
+    """The fastest motion of the axes to velocities (mm/s, rad/s), which they keep until the end of their travel;
+    to zero, the fastest stop. Parameters as of `move_to`."""
+    core = core_of(machine)
+    return Motion(_core.reach_velocity(core, _rows(start, "start", machine),
+                                       row(velocities, "velocities", len(machine)),
+                                       _SYNCHRONIZATIONS.index(choice(synchronization, "synchronization",
+                                                                      _SYNCHRONIZATIONS)),
+                                       not_negative(minimum_duration, "minimum_duration")), len(machine))
+
+
+@dataclass(frozen=True)
+class ProfileState:
+    """Motion along a path: s (mm), v (mm/s), a (mm/s^2) and j (mm/s^3); numbers, or arrays of n."""
+
+    s: Any
+    v: Any
+    a: Any
+    j: Any
+
+
+class Profile:
+    """A change of position along a path, between two speeds."""
+
+    def __init__(self, core: Any) -> None:
+        self._core = core
+
+    @property
+    def duration(self) -> float:
+        """s"""
+        return self._core.duration()
+
+    @property
+    def phases(self) -> np.ndarray:
+        """The seven phases of constant jerk, those left out with duration 0, as a structured array: time and
+        duration (s), position (mm), velocity, acceleration and jerk at its start."""
+        return np.asarray(self._core.phases()).view(PHASE_DTYPE)
+
+    def at(self, t: float | Sequence[float] | np.ndarray) -> ProfileState:
+        """The motion at t seconds, or at n instants."""
+        found = self._core.at(_times(t))
+        return ProfileState(*(array[0].item() if np.ndim(t) == 0 else array for array in found))
+
+
+def profile(length: float, start: float = 0.0, end: float = 0.0, *, velocity: float, acceleration: float,
+            jerk: float, phases: int = 7) -> Profile:
+    """The fastest profile over a length between two speeds, with no acceleration at both ends.
+
+    Parameters
+    ----------
+    length : float
+        mm, >= 0.
+    start, end : float
+        Speeds, mm/s, >= 0 and within the velocity.
+    velocity, acceleration, jerk : float
+        Limits; mm/s, mm/s^2, mm/s^3.
+    phases : int
+        7: the fastest of all. 5: without a phase of constant acceleration (KK22, section 3.1).
+    """
+    if integer(phases, "phases") not in (5, 7):
+        raise Error(f"phases: {phases} is neither 5 nor 7", "not_supported", "phases", phases)
+    numbers = [number(value, name) for value, name in (
+        (length, "length"), (start, "start"), (end, "end"), (velocity, "velocity"), (acceleration, "acceleration"),
+        (jerk, "jerk"))]
+    return Profile(_core.profile(*numbers, phases == 5))

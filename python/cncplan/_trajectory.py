@@ -1,0 +1,242 @@
+"""Planning, and what a trajectory answers."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._blocks import Block, tuples_of
+from ._errors import Error, choice, kind, not_negative, number, path_of, positive, row, text_of
+from ._machine import Machine, core_of
+
+LEVELS = ("exact", "fast", "good", "best")
+
+BLOCK_DTYPE = np.dtype([("block", "i8"), ("line", "i8"), ("length", "f8"), ("start", "f8"), ("duration", "f8"),
+                        ("entry", "f8"), ("peak", "f8"), ("exit", "f8")])
+WORD_DTYPE = np.dtype([("letter", "U1"), ("number", "f8"), ("time", "f8"), ("line", "i8")])
+EDGE_DTYPE = np.dtype([("time", "f8"), ("motor", "i8"), ("axis", "i8"), ("direction", "i8")])
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The motion on a grid of n instants, of a machine with so many axes. mm, rad and s."""
+
+    t: np.ndarray  #: (n,) s
+    line: np.ndarray  #: (n,) line of the program
+    position: np.ndarray  #: (n, axes) mm; rad of rotary axes
+    velocity: np.ndarray  #: (n, axes) mm/s
+    acceleration: np.ndarray  #: (n, axes) mm/s^2
+    jerk: np.ndarray  #: (n, axes) mm/s^3
+    s: np.ndarray  #: (n,) programmed length since the start, mm
+    v: np.ndarray  #: (n,) its time derivative, mm/s
+    a: np.ndarray  #: (n,) mm/s^2
+    j: np.ndarray  #: (n,) mm/s^3
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True)
+class SetPoint:
+    """The axes and the tool at one instant, or at an array of instants. mm, rad and s."""
+
+    t: Any  #: s
+    block: Any  #: counted from 0, of the blocks that were planned
+    line: Any  #: line of the program; 0 where there is none
+    position: np.ndarray  #: (axes,) mm; rad of rotary axes
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    jerk: np.ndarray
+    tool: np.ndarray  #: (3,) X Y Z of the tool, mm
+    s: Any  #: programmed length since the start, mm
+    v: Any
+    a: Any
+    j: Any
+    words: tuple[tuple[str, float, int], ...] = ()  #: of an executor: letter, number and line of words reached
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Largest magnitudes of a trajectory inside blocks. mm, rad and s."""
+
+    velocity: np.ndarray  #: (axes,)
+    acceleration: np.ndarray  #: (axes,)
+    jerk: np.ndarray  #: (axes,)
+    tool: tuple[float, float, float]  #: velocity, acceleration and jerk of the tool's vectors
+    along: tuple[float, float, float]  #: of the motion along the path
+
+
+def _available_bytes() -> int:
+    return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+class Trajectory:
+    """A planned program: where everything is at any instant. `plan_file` and its kin make it."""
+
+    def __init__(self, core: Any, machine: Machine, level: str, tolerance: float) -> None:
+        self._core = core
+        self.machine = machine
+        self.level = level  #: what was asked for
+        self.tolerance = tolerance  #: mm
+
+    @property
+    def duration(self) -> float:
+        """s, from rest to rest."""
+        return self._core.duration()
+
+    @property
+    def length(self) -> float:
+        """mm of the programmed path; what only rotary axes do does not count."""
+        return self._core.length()
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the program has that has no effect, as sentences."""
+        return self._core.warnings()
+
+    @property
+    def blocks(self) -> np.ndarray:
+        """When each block that moves runs, as a structured array: block (from 0), line, length (mm; rad where
+        only rotary axes move), start and duration (s), entry, peak and exit (speed at its start, at most, and
+        at its end; mm/s)."""
+        return np.asarray(self._core.blocks()).view(BLOCK_DTYPE)
+
+    @property
+    def words(self) -> np.ndarray:
+        """Words that others act on (M3, S, T ...), in order, as a structured array: letter, number, time (s at
+        which the motion reaches it), line."""
+        return np.array(self._core.words(), dtype=WORD_DTYPE)
+
+    def at(self, t: float | Sequence[float] | np.ndarray) -> SetPoint:
+        """The set point at t seconds, or at an array of n instants: arrays with n rows then. Before the start,
+        the start; after the end, the end."""
+        if np.ndim(t) == 0:
+            times = np.array([number(t, "t")])
+        else:
+            times = np.asarray(t)
+            if times.ndim != 1 or times.dtype.kind not in "iuf":
+                raise TypeError(f"t: expected a number or an array of n numbers, got {kind(t)} of shape {times.shape}")
+            times = np.ascontiguousarray(times, dtype=float)
+        if np.isnan(times).any():
+            raise Error("t: is not a finite number", "not_finite", "t", np.nan)
+        found = self._core.at(times, len(self.machine))
+        found["t"] = times
+        if np.ndim(t) == 0:
+            found = {key: value[0] if value.ndim > 1 else value[0].item() for key, value in found.items()}
+        return SetPoint(**found)
+
+    def sample(self, period: float) -> Samples:
+        """The motion at k period while that is before the end, and at the end itself.
+
+        Parameters
+        ----------
+        period : float
+            s, > 0.
+        """
+        period = positive(period, "period")
+        count = self._core.sample_count(period)
+        axes = len(self.machine)
+        if count * 8 * (6 + 4 * axes) > _available_bytes():
+            raise MemoryError(f"period: {period} makes {count} samples, more than there is memory for")
+        return Samples(**self._core.sample(period, axes))
+
+    def step_edges(self) -> np.ndarray:
+        """Every step of the machine's motors, in order of time, as a structured array: time (s), motor (from 0,
+        in the order of the axes), axis (from 0), direction (+1 or -1)."""
+        most = max(1, _available_bytes() // (3 * EDGE_DTYPE.itemsize))
+        return np.asarray(self._core.step_edges(most)).view(EDGE_DTYPE)
+
+    def peaks(self) -> Peaks:
+        """The largest velocities, accelerations and jerks, found on the whole motion and not on samples."""
+        velocity, acceleration, jerk, tool, along = self._core.peaks()
+        n = len(self.machine)
+        return Peaks(velocity[:n], acceleration[:n], jerk[:n], tool, along)
+
+    def to_csv(self, path: str | os.PathLike[str], period: float = 0.001) -> None:
+        """Writes samples: t, the axes, s, v, a, j; mm, rad and s, with 17 significant digits.
+
+        Parameters
+        ----------
+        path
+            The file that is made, or made anew.
+        period : float
+            s, > 0.
+        """
+        samples = self.sample(period)
+        table = np.column_stack([samples.t, samples.position, samples.s, samples.v, samples.a, samples.j])
+        heading = ",".join(["t", *self.machine.letters.lower(), "s", "v", "a", "j"])
+        # no number is -0
+        np.savetxt(path_of(path), table + 0.0, fmt="%.17g", delimiter=",", header=heading, comments="")
+
+    def __repr__(self) -> str:
+        return f"<cncplan.Trajectory {self.duration:.6g} s, {self.length:.6g} mm>"
+
+
+def options_of(machine: Machine, tolerance: Any, rotary_tolerance: Any, junction_deviation: Any, start: Any) -> Any:
+    core_of(machine)
+    turn = not_negative(rotary_tolerance, "rotary_tolerance")
+    return _core.PlanOptions(not_negative(tolerance, "tolerance"), turn * (np.pi / 180),
+                             not_negative(junction_deviation, "junction_deviation"),
+                             [] if start is None else row(start, "start", len(machine)))
+
+
+def plan_file(path: str | os.PathLike[str], machine: Machine, tolerance: float = 0.01, level: str = "best", *,
+              rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
+              start: Sequence[float] | None = None) -> Trajectory:
+    """Plans a G-code file.
+
+    Parameters
+    ----------
+    path
+        The file; files of its folder are found as subprograms.
+    machine : Machine
+    tolerance : float
+        mm, >= 0: how far the tool may leave the programmed path, so that it moves without jumps; a program's
+        own G64 P comes before it. 0: the exact path.
+    level : str
+        "exact": the programmed path, where the tolerance does not act. "fast", "good" and "best": the fastest
+        motion within the tolerance, with more and more work.
+    rotary_tolerance : float
+        degrees: the same for rotary axes.
+    junction_deviation : float
+        mm, >= 0: corners that are left exact are passed as fast as ones rounded within it would be.
+    start : n numbers, optional
+        Where the motion starts; mm, and rad of rotary axes. Default: 0.
+
+    Raises
+    ------
+    Error
+        With the place in the program.
+    """
+    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start)
+    core = _core.plan_file(core_of(machine), path_of(path), options, LEVELS.index(choice(level, "level", LEVELS)))
+    return Trajectory(core, machine, level, float(tolerance))
+
+
+def plan_text(text: str, machine: Machine, tolerance: float = 0.01, level: str = "best", *,
+              rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
+              start: Sequence[float] | None = None) -> Trajectory:
+    """Plans the text of a G-code program. Parameters and errors are those of `plan_file`."""
+    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start)
+    core = _core.plan_text(core_of(machine), _program(text), options, LEVELS.index(choice(level, "level", LEVELS)))
+    return Trajectory(core, machine, level, float(tolerance))
+
+
+def _program(text: Any) -> bytes:
+    # what is no UTF-8 is for the reader to refuse, at its place
+    return text_of(text, "text").encode(errors="surrogatepass")
+
+
+def plan_blocks(blocks: Sequence[Block], machine: Machine, tolerance: float = 0.01, level: str = "best", *,
+                rotary_tolerance: float = 0.05, junction_deviation: float = 0.01) -> Trajectory:
+    """Plans blocks made by hand (`line`, `arc`, `curve`), from rest to rest. Each begins where the one before
+    ends. Parameters as of `plan_file`; errors have the number of the block."""
+    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, None)
+    core = _core.plan_blocks(core_of(machine), tuples_of(blocks, len(machine)), options,
+                             LEVELS.index(choice(level, "level", LEVELS)))
+    return Trajectory(core, machine, level, float(tolerance))

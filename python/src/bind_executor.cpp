@@ -1,0 +1,65 @@
+// A controller that is stepped in a loop.
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "executor.hpp"
+#include "fault.hpp"
+#include "sizes.hpp"
+
+namespace cncplan::python {
+
+void bind_executor(py::module_& module) {
+  using E = AnyExecutor;
+  py::class_<AnyExecutor>(module, "Executor")
+      .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
+                       double quick_stop_share) {
+        const ExecutorSettings settings{
+            options,      options.tolerance, options.rotary_tolerance, options.junction_deviation,
+            longest_wait, quick_stop_share};
+        return with_size(machine.axes.size(), [&](auto n) { return make_executor<n>(machine, settings); });
+      }))
+      .def("push_line", [](E& e, const std::string& line) { return e.push_line(line); })
+      .def("push_block", [](E& e, const py::tuple& block) { return e.push_block(block_from(block)); })
+      .def("end_of_program", &E::end_of_program)
+      .def("tick",
+           [](E& e, double period) {
+             const AnySetPoint p = e.tick(period);
+             py::list words;
+             for (const auto& word : p.words)
+               words.append(py::make_tuple(std::string(1, word.letter), word.number, word.line));
+             Numbers tool(3, p.tool.data());
+             return py::make_tuple(p.time, p.block, p.line, array_of(p.position), array_of(p.velocity),
+                                   array_of(p.acceleration), array_of(p.jerk), tool, p.along.position,
+                                   p.along.velocity, p.along.acceleration, p.along.jerk, words);
+           })
+      .def("warnings", &E::warnings)
+      .def("finished", &E::finished)
+      .def("error",
+           [](const E& e) -> py::object {
+             const auto error = e.error();
+             if (!error) return py::none();
+             return error_arguments(*error, to_text(*error));
+           })
+      .def("pushed", &E::pushed)
+      .def("time", &E::time)
+      .def("until_change", &E::until_change)
+      .def("rested", &E::rested)
+      .def("feed_hold", &E::feed_hold)
+      .def("resume", &E::resume)
+      .def("feed_override", &E::feed_override)
+      .def("rapid_override", &E::rapid_override)
+      .def("stop", &E::stop)
+      .def("quick_stop", &E::quick_stop)
+      .def("reverse", &E::reverse)
+      .def("single_step", &E::single_step)
+      .def("optional_stop", &E::optional_stop)
+      .def("program_stop", &E::program_stop)
+      .def("pause_at", &E::pause_at)
+      .def("jog", [](E& e, const std::vector<double>& v) { e.jog(places_of(v)); })
+      .def("jog_to", [](E& e, const std::vector<double>& p) { e.jog_to(places_of(p)); })
+      .def("return_to_path", &E::return_to_path)
+      .def("restart",
+           [](E& e, int line, const std::vector<double>& p) { return e.restart(line, places_of(p)); });
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,115 @@
+// Motions of axes between states, and profiles along a path.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "bindings.hpp"
+#include "cncplan/path/b_spline_through.hpp"
+#include "cncplan/plan/move_to.hpp"
+#include "cncplan/profile/five_phase.hpp"
+#include "cncplan/profile/seven_phase.hpp"
+#include "fault.hpp"
+
+namespace cncplan::python {
+
+namespace {
+
+constexpr int room = gcode::max_axes;
+using RoomyMachine = Machine<room>;
+using States = AxisStates<room>;
+using AxesMove = BasicAxesMove<double, room>;
+
+// Axes that are not there stand still, within limits that do not matter.
+RoomyMachine roomy(const AnyMachine& from) {
+  RoomyMachine machine = machine_of<room>(from);
+  for (std::size_t i = from.axes.size(); i < machine.axes.size(); ++i)
+    machine.axes[i] = {.velocity = 1, .acceleration = 1, .jerk = 1};
+  return machine;
+}
+
+using Rows = std::array<std::vector<double>, 3>;
+
+States states_of(const Rows& rows) { return {places_of(rows[0]), places_of(rows[1]), places_of(rows[2])}; }
+
+}  // namespace
+
+void bind_motion(py::module_& module) {
+  py::class_<AxesMove>(module, "AxesMove")
+      .def("duration", [](const AxesMove& move) { return move.duration(); })
+      .def("durations",
+           [](const AxesMove& move, std::size_t axes) {
+             std::vector<double> durations;
+             for (std::size_t i = 0; i < axes; ++i) durations.push_back(move.axis(i).duration());
+             return array_of(durations);
+           })
+      .def("at", [](const AxesMove& move, const Numbers& times, std::size_t axes) {
+        const auto n = static_cast<std::size_t>(times.size());
+        std::array<Numbers, 3> out;
+        for (Numbers& array : out)
+          array = Numbers(std::vector<py::ssize_t>{times.size(), static_cast<py::ssize_t>(axes)});
+        for (std::size_t row = 0; row < n; ++row) {
+          const States state = move.at(times.data()[row]);
+          std::copy_n(state.position.begin(), axes, out[0].mutable_data() + row * axes);
+          std::copy_n(state.velocity.begin(), axes, out[1].mutable_data() + row * axes);
+          std::copy_n(state.acceleration.begin(), axes, out[2].mutable_data() + row * axes);
+        }
+        return py::make_tuple(out[0], out[1], out[2]);
+      });
+  module.def("move_to", [](const AnyMachine& machine, const Rows& from, const Rows& to, int synchronization,
+                           double minimum_duration) {
+    return value_of(move_to(states_of(from), states_of(to), roomy(machine),
+                            MoveOptions{static_cast<Synchronization>(synchronization), minimum_duration}));
+  });
+  module.def(
+      "reach_velocity", [](const AnyMachine& machine, const Rows& from, const std::vector<double>& velocities,
+                           int synchronization, double minimum_duration) {
+        return value_of(
+            reach_velocity(states_of(from), places_of(velocities), roomy(machine),
+                           MoveOptions{static_cast<Synchronization>(synchronization), minimum_duration}));
+      });
+
+  py::class_<profile::BasicProfile<double>>(module, "Profile")
+      .def("duration", &profile::BasicProfile<double>::duration)
+      .def("phases",
+           [](const profile::BasicProfile<double>& made) {
+             const auto phases = made.phases();
+             return bytes_of(std::vector<Phase>(phases.begin(), phases.end()));
+           })
+      .def("at", [](const profile::BasicProfile<double>& made, const Numbers& times) {
+        const std::vector<py::ssize_t> shape{times.size()};
+        Numbers s(shape), v(shape), a(shape), j(shape);
+        for (py::ssize_t i = 0; i < times.size(); ++i) {
+          const State state = made.at(times.data()[i]);
+          s.mutable_data()[i] = state.position;
+          v.mutable_data()[i] = state.velocity;
+          a.mutable_data()[i] = state.acceleration;
+          j.mutable_data()[i] = state.jerk;
+        }
+        return py::make_tuple(s, v, a, j);
+      });
+  module.def("profile", [](double length, double start, double end, double velocity, double acceleration,
+                           double jerk, bool five) {
+    const Limits limits{velocity, acceleration, jerk};
+    return value_of(five ? profile::five_phase(length, {start, end}, limits)
+                         : profile::seven_phase(length, {start, end}, limits));
+  });
+
+  // Pieces of the spline through points, (n - 1, 4, 3): control points of Bezier curves.
+  module.def("spline_through", [](const Numbers& points) {
+    std::vector<Vector3> given;
+    for (py::ssize_t i = 0; i < points.shape(0); ++i)
+      given.emplace_back(points.at(i, 0), points.at(i, 1), points.at(i, 2));
+    const auto controls = value_of(path::b_spline_through(std::span<const Vector3>(given)));
+    Numbers pieces(std::vector<py::ssize_t>{static_cast<py::ssize_t>(given.size()) - 1, 4, 3});
+    double* out = pieces.mutable_data();
+    for (std::size_t i = 0; i + 1 < given.size(); ++i)
+      for (const Vector3& control : {given[i], Vector3((2 * controls[i + 1] + controls[i + 2]) / 3),
+                                     Vector3((controls[i + 1] + 2 * controls[i + 2]) / 3), given[i + 1]})
+        out = std::copy_n(control.data(), 3, out);
+    return pieces;
+  });
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,154 @@
+// Planning, and what a trajectory answers.
+#include <pybind11/stl.h>
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <system_error>
+
+#include "bindings.hpp"
+#include "cncplan/gcode/language/find_file.hpp"
+#include "fault.hpp"
+#include "interruption.hpp"
+#include "sizes.hpp"
+#include "trajectory.hpp"
+
+namespace cncplan::python {
+
+namespace {
+
+PlanOptions options_of(double tolerance, double rotary_tolerance, double junction_deviation,
+                       const std::vector<double>& start) {
+  PlanOptions options{
+      .tolerance = tolerance, .rotary_tolerance = rotary_tolerance, .junction_deviation = junction_deviation};
+  options.start = places_of(start);
+  return options;
+}
+
+TrajectoryPointer plan(const AnyMachine& machine, std::streambuf& buffer, const PlanOptions& options,
+                       int level, const std::string& file) {
+  std::istream text(&buffer);
+  return with_size(machine.axes.size(), [&](auto n) {
+    return plan_program<n>(machine, text, options, static_cast<Level>(level), file);
+  });
+}
+
+TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, PlanOptions options,
+                            int level) {
+  const std::filesystem::path path(file);
+  InterruptibleBuffer<std::filebuf> buffer;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored) ||
+      buffer.open(path, std::ios::in | std::ios::binary) == nullptr)
+    raise({{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file, {}});
+  options.subprograms = gcode::files_of(path.parent_path());
+  return plan(machine, buffer, options, level, file);
+}
+
+TrajectoryPointer plan_text(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
+                            int level) {
+  InterruptibleBuffer<std::stringbuf> buffer(text, std::ios::in);
+  return plan(machine, buffer, options, level, {});
+}
+
+// New arrays of so many rows, and where they are.
+struct Arrays {
+  py::dict named;
+  Columns columns;
+
+  Arrays(std::size_t rows, std::size_t axes, bool with_places) {
+    const auto n = static_cast<py::ssize_t>(rows), width = static_cast<py::ssize_t>(axes);
+    const auto add = [&]<class T>(const char* name, T*& column, std::vector<py::ssize_t> shape) {
+      py::array_t<T> array(std::move(shape));
+      column = array.mutable_data();
+      named[name] = std::move(array);
+    };
+    columns.axes = axes;
+    add("t", columns.t, {n});
+    add("line", columns.line, {n});
+    add("position", columns.position, {n, width});
+    add("velocity", columns.velocity, {n, width});
+    add("acceleration", columns.acceleration, {n, width});
+    add("jerk", columns.jerk, {n, width});
+    add("s", columns.s, {n});
+    add("v", columns.v, {n});
+    add("a", columns.a, {n});
+    add("j", columns.j, {n});
+    if (!with_places) return;
+    add("block", columns.block, {n});
+    add("tool", columns.tool, {n, 3});
+  }
+};
+
+}  // namespace
+
+void bind_trajectory(py::module_& module) {
+  using Released = py::call_guard<py::gil_scoped_release>;
+  py::class_<AnyTrajectory>(module, "Trajectory")
+      .def("duration", &AnyTrajectory::duration)
+      .def("length", &AnyTrajectory::length)
+      .def("sample_count", &AnyTrajectory::sample_count)
+      .def("sample",
+           [](const AnyTrajectory& trajectory, double period, std::size_t axes) {
+             Arrays arrays(static_cast<std::size_t>(trajectory.sample_count(period)), axes, false);
+             {
+               const py::gil_scoped_release released;
+               trajectory.sample(period, arrays.columns);
+             }
+             return arrays.named;
+           })
+      .def("at",
+           [](const AnyTrajectory& trajectory, const Numbers& times, std::size_t axes) {
+             Arrays arrays(static_cast<std::size_t>(times.size()), axes, true);
+             {
+               const py::gil_scoped_release released;
+               trajectory.at({times.data(), static_cast<std::size_t>(times.size())}, arrays.columns);
+             }
+             return arrays.named;
+           })
+      .def("blocks", [](const AnyTrajectory& trajectory) { return bytes_of(trajectory.blocks()); })
+      .def("words",
+           [](const AnyTrajectory& trajectory) {
+             py::list rows;
+             for (const WordRow& row : trajectory.words())
+               rows.append(py::make_tuple(std::string(1, row.letter[0]), row.number, row.time, row.line));
+             return rows;
+           })
+      .def("warnings", &AnyTrajectory::warnings)
+      .def("step_edges",
+           [](const AnyTrajectory& trajectory, std::size_t most) {
+             std::vector<EdgeRow> rows;
+             {
+               const py::gil_scoped_release released;
+               rows = trajectory.step_edges(most);
+             }
+             return bytes_of(rows);
+           })
+      .def("peaks", [](const AnyTrajectory& trajectory) {
+        PeakRow found;
+        {
+          const py::gil_scoped_release released;
+          found = trajectory.peaks();
+        }
+        const auto limits = [](const Limits& l) {
+          return py::make_tuple(l.velocity, l.acceleration, l.jerk);
+        };
+        return py::make_tuple(array_of(found.velocity), array_of(found.acceleration), array_of(found.jerk),
+                              limits(found.tool), limits(found.along));
+      });
+
+  py::class_<PlanOptions>(module, "PlanOptions").def(py::init(&options_of));
+  module.def("plan_file", &plan_file, Released());
+  module.def("plan_text", &plan_text, Released());
+  module.def("plan_blocks",
+             [](const AnyMachine& machine, const py::list& given, const PlanOptions& options, int level) {
+               std::vector<AnyBlock> blocks;
+               for (const auto& block : given) blocks.push_back(block_from(block.cast<py::tuple>()));
+               const py::gil_scoped_release released;
+               return with_size(machine.axes.size(), [&](auto n) {
+                 return plan_hand_made<n>(machine, blocks, options, static_cast<Level>(level));
+               });
+             });
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,50 @@
+// What the files of the extension module share.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "blocks.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "machine.hpp"
+
+namespace cncplan::python {
+
+namespace py = pybind11;
+
+void bind_machine(py::module_& module);
+void bind_trajectory(py::module_& module);
+void bind_executor(py::module_& module);
+void bind_motion(py::module_& module);
+void bind_program(py::module_& module);
+
+/// The arguments of cncplan.Error.
+[[nodiscard]] py::tuple error_arguments(const ProgramError& error, const std::string& text);
+
+/// Rows as bytes, which Python sees as a structured array.
+template <class Row>
+[[nodiscard]] py::array_t<std::uint8_t> bytes_of(const std::vector<Row>& rows) {
+  py::array_t<std::uint8_t> bytes(static_cast<py::ssize_t>(rows.size() * sizeof(Row)));
+  if (!rows.empty()) std::memcpy(bytes.mutable_data(), rows.data(), rows.size() * sizeof(Row));
+  return bytes;
+}
+
+using Numbers = py::array_t<double, py::array::c_style>;
+
+[[nodiscard]] inline Numbers array_of(const std::vector<double>& numbers) {
+  return Numbers(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+}
+
+/// So many coordinates, 9 at most.
+[[nodiscard]] Places places_of(const std::vector<double>& coordinates);
+
+/// From the tuple that cncplan._blocks makes.
+[[nodiscard]] AnyBlock block_from(const py::tuple& block);
+
+}  // namespace cncplan::python

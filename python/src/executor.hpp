@@ -1,0 +1,82 @@
+// An executor of a machine with any number of axes, with the reader of its program.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "blocks.hpp"
+#include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan/set_point.hpp"
+#include "machine.hpp"
+
+namespace cncplan::python {
+
+struct ExecutorSettings {
+  PlanOptions read;  ///< start and dialect
+  double tolerance = 0.01;
+  double rotary_tolerance = 8.726646259971648e-4;
+  double junction_deviation = 0.01;
+  double longest_wait = 0.05;
+  double quick_stop_share = 1;
+};
+
+struct AnySetPoint {
+  double time{};
+  std::size_t block{};
+  int line{};
+  std::vector<double> position, velocity, acceleration, jerk;
+  Vector3 tool = Vector3::Zero();
+  State along;
+  ReachedWords words;
+};
+
+class AnyExecutor {
+ public:
+  AnyExecutor() = default;
+  AnyExecutor(const AnyExecutor&) = delete;
+  AnyExecutor& operator=(const AnyExecutor&) = delete;
+  virtual ~AnyExecutor() = default;
+
+  /// Takes a line of the program, or a block. False, and nothing is taken, where there is no room. Throws
+  /// `Fault` for a line in error.
+  virtual bool push_line(std::string_view line) = 0;
+  virtual bool push_block(const AnyBlock& block) = 0;
+  virtual void end_of_program() = 0;
+  virtual AnySetPoint tick(double period) = 0;
+  [[nodiscard]] virtual std::vector<std::string> warnings() const = 0;  ///< of the last line
+
+  [[nodiscard]] virtual bool finished() const = 0;
+  [[nodiscard]] virtual std::optional<ProgramError> error() const = 0;
+  [[nodiscard]] virtual std::int64_t pushed() const = 0;
+  [[nodiscard]] virtual double time() const = 0;
+  [[nodiscard]] virtual double until_change() const = 0;
+  [[nodiscard]] virtual double rested() const = 0;
+
+  virtual void feed_hold() = 0;
+  virtual void resume() = 0;
+  virtual void feed_override(double share) = 0;
+  virtual void rapid_override(double share) = 0;
+  virtual void stop() = 0;
+  virtual void quick_stop() = 0;
+  virtual void reverse(bool wanted) = 0;
+  virtual void single_step(bool wanted) = 0;
+  virtual void optional_stop(bool wanted) = 0;
+  virtual void program_stop(bool wanted) = 0;
+  virtual void pause_at(int line) = 0;
+  virtual void jog(const Places& velocities) = 0;
+  virtual void jog_to(const Places& positions) = 0;
+  virtual void return_to_path() = 0;
+  virtual bool restart(int line, const Places& position) = 0;
+};
+
+/// Throws `Fault` for a machine that cannot be run.
+template <int N>
+[[nodiscard]] std::unique_ptr<AnyExecutor> make_executor(const AnyMachine& machine,
+                                                         const ExecutorSettings& settings);
+
+}  // namespace cncplan::python

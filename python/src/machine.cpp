@@ -1,0 +1,47 @@
+#include "machine.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "fault.hpp"
+#include "support/failure.hpp"
+#include "support/machine_file.hpp"
+
+namespace cncplan::python {
+
+namespace {
+
+// "NAME:LINE:COLUMN: error: TEXT" of a machine file.
+[[noreturn]] void refuse(const std::string& text, const std::string& name) {
+  ProgramError error{{{ErrorCode::malformed, "machine", 0, 0}, 0, 0, {}}, name, {}};
+  if (text.starts_with(name + ':')) {
+    const char* const end = text.data() + text.size();
+    const auto line = std::from_chars(text.data() + name.size() + 1, end, error.about.line);
+    if (line.ec == std::errc{} && line.ptr != end) std::from_chars(line.ptr + 1, end, error.about.column);
+  }
+  throw Fault{std::move(error), text};
+}
+
+}  // namespace
+
+AnyMachine read_machine(const std::string& text, const std::string& name, const Limits& limits) {
+  const support::Machine file = [&] {
+    try {
+      return support::parse_machine(text, name);
+    } catch (const support::Failure& failure) {
+      refuse(failure.what(), name);
+    }
+  }();
+  if (file.kinematics != support::Kinematics::cartesian)
+    refuse(name + ": error: machines with a rotary table that turns the work are not known to Python", name);
+  AnyMachine machine;
+  machine.limits = limits;
+  machine.rapid_rate = file.rapid_rate.value_or(0.0);
+  if (std::isfinite(file.feed_limit)) machine.feed_limit = file.feed_limit;
+  for (std::size_t i = 0; i < file.axes.size(); ++i) machine.axes.push_back(file.axis(i));
+  machine.dialect = file.dialect;
+  return machine;
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,127 @@
+// The extension module cncplan._core: plain functions on numbers and arrays, which the package around it
+// checks and explains.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "bindings.hpp"
+#include "cncplan/version.hpp"
+#include "fault.hpp"
+#include "interruption.hpp"
+#include "sizes.hpp"
+
+namespace cncplan::python {
+
+namespace {
+
+// In the order of ErrorCode; made of its enumerators by CMakeLists.txt.
+constexpr std::array<std::string_view, static_cast<std::size_t>(ErrorCode::count_)> code_names{
+#include "error_names.inc"
+};
+static_assert(!code_names.back().empty());
+
+void translate(std::exception_ptr pointer) {
+  try {
+    if (pointer) std::rethrow_exception(pointer);
+  } catch (const Fault& fault) {
+    const py::object type = py::module_::import("cncplan._errors").attr("Error");
+    PyErr_SetObject(type.ptr(), type(*error_arguments(fault.error, fault.text)).ptr());
+  }
+}
+
+}  // namespace
+
+py::tuple error_arguments(const ProgramError& error, const std::string& text) {
+  const auto or_none = [](bool there, auto value) {
+    return there ? py::cast(value) : py::object(py::none());
+  };
+  const auto code = static_cast<std::size_t>(error.error().code);
+  return py::make_tuple(
+      text, code < code_names.size() ? code_names[code] : "unknown", std::string(error.error().field),
+      error.error().value, error.error().bound, or_none(error.about.line > 0, error.about.line),
+      or_none(error.about.column > 0, error.about.column), or_none(!error.file.empty(), error.file),
+      or_none(error.block.has_value(), error.block.value_or(0)));
+}
+
+void Interruption::ask() {
+  const py::gil_scoped_acquire held;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+Places places_of(const std::vector<double>& coordinates) {
+  Places places{};
+  std::copy_n(coordinates.begin(), std::min(coordinates.size(), places.size()), places.begin());
+  return places;
+}
+
+AnyBlock block_from(const py::tuple& block) {
+  const auto point = [](const py::handle& numbers) {
+    const auto list = numbers.cast<std::array<double, 3>>();
+    return Vector3(list[0], list[1], list[2]);
+  };
+  AnyBlock made;
+  made.kind = static_cast<BlockKind>(block[0].cast<int>());
+  const auto start = block[1].cast<std::vector<double>>();
+  made.axes = start.size();
+  made.start = places_of(start);
+  made.end = places_of(block[2].cast<std::vector<double>>());
+  made.center = point(block[3]);
+  made.radius = block[4].cast<double>();
+  made.turn = block[5].cast<bool>() ? Turn::clockwise : Turn::counterclockwise;
+  made.plane = static_cast<Plane>(block[6].cast<int>());
+  made.extra_turns = block[7].cast<int>();
+  made.controls = {point(block[8]), point(block[9])};
+  if (!block[10].is_none()) made.feed = block[10].cast<double>();
+  made.pause = block[11].cast<double>();
+  made.exact_stop = block[12].cast<bool>();
+  made.rapid = block[13].cast<bool>();
+  if (!block[14].is_none()) made.tolerance = block[14].cast<double>();
+  made.line = block[15].cast<int>();
+  return made;
+}
+
+void bind_machine(py::module_& module) {
+  py::class_<AnyMachine>(module, "Machine")
+      .def(py::init([](const std::string& text, const std::string& name, double velocity, double acceleration,
+                       double jerk) {
+        auto machine = read_machine(text, name, {velocity, acceleration, jerk});
+        with_size(machine.axes.size(), [&](auto n) { value_of(validate(machine_of<n>(machine))); });
+        return machine;
+      }))
+      .def_property_readonly("letters",
+                             [](const AnyMachine& machine) {
+                               std::string letters;
+                               for (const Axis& axis : machine.axes) letters += axis.letter;
+                               return letters;
+                             })
+      .def_property_readonly("rotary", [](const AnyMachine& machine) {
+        std::vector<bool> rotary;
+        for (const Axis& axis : machine.axes) rotary.push_back(axis.kind == AxisKind::rotary);
+        return rotary;
+      });
+}
+
+}  // namespace cncplan::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace cncplan::python;
+  py::register_exception_translator(translate);
+  module.attr("version") = std::to_string(CNCPLAN_VERSION_MAJOR) + "." +
+                           std::to_string(CNCPLAN_VERSION_MINOR) + "." +
+                           std::to_string(CNCPLAN_VERSION_PATCH);
+  module.attr("code_names") = [] {
+    py::list names;
+    for (const auto name : code_names) names.append(py::str(name.data(), name.size()));
+    return py::tuple(names);
+  }();
+  bind_machine(module);
+  bind_trajectory(module);
+  bind_executor(module);
+  bind_motion(module);
+  bind_program(module);
+}

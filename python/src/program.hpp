@@ -1,0 +1,44 @@
+// A program that was read without a plan: its motions, and all that is wrong with it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <vector>
+
+#include "cncplan/gcode/motion.hpp"
+#include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "machine.hpp"
+
+namespace cncplan::python {
+
+/// A motion as it is driven, in machine coordinates, mm and rad. What an arc alone has is no number
+/// elsewhere.
+struct MotionRow {
+  std::int64_t line{}, column{};
+  std::int64_t kind{};   ///< 0 rapid, 1 line, 2 arc, 3 spline
+  std::int64_t plane{};  ///< 17, 18 or 19
+  Places start{}, end{};
+  std::array<double, 3> center{};
+  double radius{}, sweep{};
+  double length{}, feed{};
+};
+
+struct ReadProgram {
+  gcode::Dialect dialect;
+  std::vector<gcode::Item> items;
+  std::vector<MotionRow> motions;
+  std::vector<ProgramError> problems;  ///< each with its file
+  std::vector<std::string> warnings;
+  int lines{};
+};
+
+/// Reads on behind problems, up to `most` of them.
+template <int N>
+[[nodiscard]] ReadProgram read_all(const AnyMachine& machine, std::istream& text, const PlanOptions& options,
+                                   const std::string& file, std::size_t most);
+
+}  // namespace cncplan::python

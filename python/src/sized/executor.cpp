@@ -1,0 +1,145 @@
+// An executor for machines of AXES axes.
+#include "executor.hpp"
+
+#include "cncplan/plan/block_reader.hpp"
+#include "cncplan/plan/executor.hpp"
+#include "fault.hpp"
+#include "planned.hpp"
+
+namespace cncplan::python {
+
+namespace {
+
+using MachineOfSize = Machine<AXES>;
+using Runner = Executor<MachineOfSize, 256>;
+using Reader = BlockReader<MachineOfSize>;
+using Vector = Runner::Vector;
+
+Vector vector_of(const Places& places) {
+  Vector vector;
+  for (int i = 0; i < AXES; ++i) vector[i] = places[static_cast<std::size_t>(i)];
+  return vector;
+}
+
+PlanOptions reading(const AnyMachine& machine, PlanOptions options) {
+  options.dialect = machine.dialect;
+  return options;
+}
+
+class ExecutorOfSize final : public AnyExecutor {
+ public:
+  ExecutorOfSize(const AnyMachine& machine, const ExecutorSettings& settings)
+      : axes_(machine.axes.size()),
+        read_(reading(machine, settings.read)),
+        reader_(std::in_place, machine_of<AXES>(machine), read_),
+        executor_(machine_of<AXES>(machine), {.tolerance = settings.tolerance,
+                                              .rotary_tolerance = settings.rotary_tolerance,
+                                              .junction_deviation = settings.junction_deviation,
+                                              .longest_wait = settings.longest_wait,
+                                              .quick_stop_share = settings.quick_stop_share}) {
+    value_of(validate(executor_.machine()));
+  }
+
+  bool push_line(std::string_view line) override {
+    if (!push_pending()) return false;
+    auto blocks = reader_->read_line(line);
+    if (!blocks) raise(blocks.error());
+    pending_ = *blocks;
+    next_ = 0;
+    ended_ = false;
+    push_pending();
+    return true;
+  }
+  bool push_block(const AnyBlock& block) override {
+    const auto made = block_of<AXES>(block);
+    ended_ = false;
+    return push_pending() && executor_.push(made);
+  }
+  void end_of_program() override {
+    ended_ = true;
+    if (push_pending()) executor_.end_of_program();
+  }
+
+  AnySetPoint tick(double period) override {
+    // What a line had no room for comes as soon as there is some.
+    if (next_ < pending_.size() || reader_->busy())
+      if (push_pending() && ended_) executor_.end_of_program();
+    const auto point = executor_.tick(period);
+    const auto list = [this](const Vector& vector) {
+      return std::vector<double>(vector.data(), vector.data() + axes_);
+    };
+    return {point.time,           point.block,          point.line,
+            list(point.position), list(point.velocity), list(point.acceleration),
+            list(point.jerk),     point.tool,           point.along,
+            point.words};
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    std::vector<std::string> texts;
+    for (const auto& warning : reader_->warnings()) texts.push_back(gcode::to_text({}, warning, "warning"));
+    return texts;
+  }
+
+  [[nodiscard]] bool finished() const override {
+    return executor_.finished() && (next_ == pending_.size() || executor_.error());
+  }
+  [[nodiscard]] std::optional<ProgramError> error() const override { return executor_.error(); }
+  [[nodiscard]] std::int64_t pushed() const override { return executor_.pushed(); }
+  [[nodiscard]] double time() const override { return executor_.time(); }
+  [[nodiscard]] double until_change() const override { return executor_.until_change(); }
+  [[nodiscard]] double rested() const override { return executor_.rested(); }
+
+  void feed_hold() override { executor_.feed_hold(); }
+  void resume() override { executor_.resume(); }
+  void feed_override(double share) override { executor_.feed_override(share); }
+  void rapid_override(double share) override { executor_.rapid_override(share); }
+  void stop() override { executor_.stop(); }
+  void quick_stop() override { executor_.quick_stop(); }
+  void reverse(bool wanted) override { executor_.reverse(wanted); }
+  void single_step(bool wanted) override { executor_.single_step(wanted); }
+  void optional_stop(bool wanted) override { executor_.optional_stop(wanted); }
+  void program_stop(bool wanted) override { executor_.program_stop(wanted); }
+  void pause_at(int line) override { executor_.pause_at(line); }
+  void jog(const Places& velocities) override { value_of(executor_.jog(vector_of(velocities))); }
+  void jog_to(const Places& positions) override { value_of(executor_.jog_to(vector_of(positions))); }
+  void return_to_path() override { value_of(executor_.return_to_path()); }
+  bool restart(int line, const Places& position) override {
+    if (!executor_.restart(line, vector_of(position))) return false;
+    reader_.emplace(executor_.machine(), read_);
+    pending_ = {};
+    next_ = 0;
+    ended_ = false;
+    return true;
+  }
+
+ private:
+  // Whether the blocks of the last line have all found room.
+  bool push_pending() {
+    for (;;) {
+      for (; next_ < pending_.size(); ++next_)
+        if (!executor_.push(pending_[next_])) return false;
+      if (!reader_->busy()) return true;
+      auto more = reader_->go_on();
+      if (!more) raise(more.error());
+      pending_ = *more;
+      next_ = 0;
+    }
+  }
+
+  std::size_t axes_;
+  PlanOptions read_;
+  std::optional<Reader> reader_;
+  Runner executor_;
+  Reader::Blocks pending_;  // of the last line
+  std::size_t next_ = 0;    // of them
+  bool ended_ = false;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<AnyExecutor> make_executor<AXES>(const AnyMachine& machine,
+                                                 const ExecutorSettings& settings) {
+  return std::make_unique<ExecutorOfSize>(machine, settings);
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,126 @@
+// What Python asks a trajectory, for machines of AXES axes.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cncplan/plan/peaks.hpp"
+#include "cncplan/plan/step_edges.hpp"
+#include "fault.hpp"
+#include "planned.hpp"
+
+namespace cncplan::python {
+
+namespace {
+
+void write(const Planned<AXES>::SetPoint& point, std::size_t row, const Columns& out) {
+  const auto put = [row](double* column, double value) {
+    if (column != nullptr) column[row] = value;
+  };
+  const auto put_axes = [&](double* column, const auto& vector) {
+    if (column != nullptr) std::copy_n(vector.data(), out.axes, column + row * out.axes);
+  };
+  put(out.t, point.time);
+  if (out.line != nullptr) out.line[row] = point.line;
+  if (out.block != nullptr) out.block[row] = static_cast<std::int64_t>(point.block);
+  put_axes(out.position, point.position);
+  put_axes(out.velocity, point.velocity);
+  put_axes(out.acceleration, point.acceleration);
+  put_axes(out.jerk, point.jerk);
+  if (out.tool != nullptr) std::copy_n(point.tool.data(), 3, out.tool + row * 3);
+  put(out.s, point.along.position);
+  put(out.v, point.along.velocity);
+  put(out.a, point.along.acceleration);
+  put(out.j, point.along.jerk);
+}
+
+class TrajectoryOfSize final : public AnyTrajectory {
+ public:
+  TrajectoryOfSize(std::unique_ptr<InterruptibleMemory> memory, Planned<AXES>&& planned)
+      : memory_(std::move(memory)), planned_(std::move(planned)) {
+    memory_->stop_asking();
+  }
+
+  [[nodiscard]] double duration() const override { return planned_.duration(); }
+  [[nodiscard]] double length() const override { return planned_.length(); }
+
+  [[nodiscard]] std::int64_t sample_count(double period) const override {
+    return planned_.samples(period).size();
+  }
+
+  void sample(double period, const Columns& out) const override {
+    Interruption interruption;
+    std::size_t row = 0;
+    for (const auto& point : planned_.samples(period)) {
+      write(point, row++, out);
+      if (row % 4096 == 0) interruption.poll();
+    }
+  }
+
+  void at(std::span<const double> times, const Columns& out) const override {
+    Interruption interruption;
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      write(planned_.at(times[row]), row, out);
+      if (row % 4096 == 0) interruption.poll();
+    }
+  }
+
+  // Pieces of one block are told as that block.
+  [[nodiscard]] std::vector<BlockRow> blocks() const override {
+    std::vector<BlockRow> rows;
+    for (const BlockMotion& motion : planned_.blocks()) {
+      const auto source = static_cast<std::int64_t>(planned_.program()[motion.block].source);
+      if (rows.empty() || rows.back().block != source)
+        rows.push_back({source, motion.line, 0, motion.start, 0, motion.entry, 0, 0});
+      BlockRow& row = rows.back();
+      row.length += motion.length;
+      row.duration = motion.start + motion.duration - row.start;
+      row.peak = std::max(row.peak, motion.peak);
+      row.exit = motion.exit;
+    }
+    return rows;
+  }
+
+  [[nodiscard]] std::vector<WordRow> words() const override {
+    std::vector<WordRow> rows;
+    for (const TimedWord& word : planned_.words())
+      rows.push_back({{word.word.letter}, word.word.number, word.time, word.word.line});
+    return rows;
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    return {planned_.warnings().begin(), planned_.warnings().end()};
+  }
+
+  [[nodiscard]] std::vector<EdgeRow> step_edges(std::size_t most) const override {
+    Interruption interruption;
+    std::vector<EdgeRow> rows;
+    for (const MotorEdge& edge : planned_.step_edges()) {
+      if (rows.size() == most)
+        raise(Error{ErrorCode::above_limit, "number of step edges", static_cast<double>(most + 1),
+                    static_cast<double>(most)});
+      rows.push_back({edge.time, static_cast<std::int64_t>(edge.motor), edge.axis, edge.direction});
+      if (rows.size() % 4096 == 0) interruption.poll();
+    }
+    return rows;
+  }
+
+  [[nodiscard]] PeakRow peaks() const override {
+    const auto found = cncplan::peaks(planned_);
+    const auto list = [](const auto& vector) {
+      return std::vector<double>(vector.data(), vector.data() + vector.size());
+    };
+    return {list(found.velocity), list(found.acceleration), list(found.jerk), found.tool, found.along};
+  }
+
+ private:
+  std::unique_ptr<InterruptibleMemory> memory_;  // of all that follows
+  Planned<AXES> planned_;
+};
+
+}  // namespace
+
+template <>
+TrajectoryPointer any_trajectory<AXES>(std::unique_ptr<InterruptibleMemory> memory, Planned<AXES>&& planned) {
+  return std::make_unique<TrajectoryOfSize>(std::move(memory), std::move(planned));
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,21 @@
+// The numbers of axes that the module is built for: a machine of others has some that stand still.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+
+namespace cncplan::python {
+
+inline constexpr std::array sizes{CNCPLAN_PYTHON_SIZES};  // ascending
+inline constexpr std::size_t most_axes = sizes.back();
+
+/// Calls `f` with the smallest size that has room for so many axes, `most_axes` at most.
+template <std::size_t i = 0, class F>
+decltype(auto) with_size(std::size_t axes, const F& f) {
+  if constexpr (i + 1 < sizes.size())
+    if (axes > static_cast<std::size_t>(sizes[i])) return with_size<i + 1>(axes, f);
+  return f(std::integral_constant<int, sizes[i]>{});
+}
+
+}  // namespace cncplan::python

@@ -1,0 +1,87 @@
+// A planned trajectory of a machine with any number of axes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <istream>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "blocks.hpp"
+#include "cncplan/plan/plan_options.hpp"
+#include "machine.hpp"
+
+namespace cncplan::python {
+
+enum class Level { exact, fast, good, best };
+
+/// Arrays that samples are written to: `axes` numbers a row of position to jerk, three of tool, one of the
+/// others.
+struct Columns {
+  std::size_t axes{};
+  double* t{};
+  std::int64_t* line{};
+  std::int64_t* block{};
+  double *position{}, *velocity{}, *acceleration{}, *jerk{}, *tool{};
+  double *s{}, *v{}, *a{}, *j{};
+};
+
+struct BlockRow {
+  std::int64_t block{}, line{};
+  double length{}, start{}, duration{}, entry{}, peak{}, exit{};
+};
+struct WordRow {
+  char letter[1]{};
+  double number{};
+  double time{};
+  std::int64_t line{};
+};
+struct EdgeRow {
+  double time{};
+  std::int64_t motor{}, axis{}, direction{};
+};
+struct PeakRow {
+  std::vector<double> velocity, acceleration, jerk;  ///< of each axis
+  Limits tool, along;
+};
+
+class AnyTrajectory {
+ public:
+  AnyTrajectory() = default;
+  AnyTrajectory(const AnyTrajectory&) = delete;
+  AnyTrajectory& operator=(const AnyTrajectory&) = delete;
+  virtual ~AnyTrajectory() = default;
+
+  [[nodiscard]] virtual double duration() const = 0;
+  [[nodiscard]] virtual double length() const = 0;
+  /// Rows of `sample`; as many as a 64-bit number has where there are more.
+  [[nodiscard]] virtual std::int64_t sample_count(double period) const = 0;
+  virtual void sample(double period, const Columns& out) const = 0;
+  virtual void at(std::span<const double> times, const Columns& out) const = 0;
+  [[nodiscard]] virtual std::vector<BlockRow> blocks() const = 0;
+  [[nodiscard]] virtual std::vector<WordRow> words() const = 0;
+  [[nodiscard]] virtual std::vector<std::string> warnings() const = 0;
+  /// Error above_limit where there are more than `most`.
+  [[nodiscard]] virtual std::vector<EdgeRow> step_edges(std::size_t most) const = 0;
+  [[nodiscard]] virtual PeakRow peaks() const = 0;
+};
+
+using TrajectoryPointer = std::unique_ptr<AnyTrajectory>;
+
+/// Each throws `Fault`.
+template <int N>
+[[nodiscard]] TrajectoryPointer plan_program(const AnyMachine& machine, std::istream& text,
+                                             const PlanOptions& options, Level level,
+                                             const std::string& file);
+template <int N>
+[[nodiscard]] TrajectoryPointer plan_hand_made(const AnyMachine& machine, const std::vector<AnyBlock>& blocks,
+                                               const PlanOptions& options, Level level);
+
+/// Errors of arcs and splines alone.
+void check(const AnyBlock& block);
+
+}  // namespace cncplan::python

@@ -1,0 +1,34 @@
+"""What the tests of the Python module share."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import cncplan
+
+ROOT = Path(__file__).resolve().parents[2]
+LIMITS = {"velocity": 30, "acceleration": 1000, "jerk": 10000}
+LEVELS = ("exact", "fast", "good", "best")
+
+
+@pytest.fixture
+def mill():
+    return cncplan.Machine(**LIMITS)
+
+
+@pytest.fixture
+def simulate():
+    """The program cncplan_simulate, which CNCPLAN_SIMULATE names."""
+    program = os.environ.get("CNCPLAN_SIMULATE", str(ROOT / "build/g++/examples/cncplan_simulate"))
+    if not os.access(program, os.X_OK):
+        pytest.skip("cncplan_simulate is not built here (CNCPLAN_SIMULATE)")
+    return program
+
+
+@pytest.fixture
+def shared():
+    """The folder of other projects' data, which CNCPLAN_SHARED names."""
+    if "CNCPLAN_SHARED" not in os.environ:
+        pytest.skip("CNCPLAN_SHARED is not set")
+    return Path(os.environ["CNCPLAN_SHARED"])

@@ -1,0 +1,184 @@
+"""A controller in a loop: it ends where the plan ends, keeps the limits, and takes every request."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import LIMITS
+
+import cncplan
+from cncplan import Axis, Machine
+
+PROGRAM = ["G21 G90 F1200", "M3 S1000", "G1 X20", "G3 X25 Y5 R5", "G1 Y15", "G4 P0.2", "G1 X0 Y0", "M30"]
+
+
+@pytest.fixture
+def mill():
+    limits = {"velocity": 50, "acceleration": 800, "jerk": 8000}
+    return Machine(**LIMITS, axes=[Axis("X", **limits), Axis("Y", **limits), Axis("Z", **limits)])
+
+
+def run(executor, program=PROGRAM, at_tick=None, period=0.001):
+    points = []
+
+    def tick():
+        if at_tick is not None:
+            at_tick(len(points), executor)
+        points.append(executor.tick(period))
+
+    for item in program:
+        while not executor.push(item):
+            tick()
+    executor.end_of_program()
+    while not executor.finished:
+        tick()
+        assert len(points) < 100000
+    return points
+
+
+def test_undisturbed_it_is_the_plan(mill):
+    points = run(cncplan.Executor(mill))
+    planned = cncplan.plan_text("\n".join(PROGRAM), mill, level="fast")
+    assert points[-1].t == pytest.approx(planned.duration, abs=0.002)
+    for point in points[::50]:
+        assert point.position == pytest.approx(planned.at(point.t).position, abs=1e-3)
+    words = [(letter, number) for point in points for letter, number, _ in point.words]
+    assert words == [("M", 3), ("S", 1000), ("M", 30)]
+    assert points[0].position.shape == (3,) and points[-1].position == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+def test_hold_override_and_limits(mill):
+    def ask(tick, executor):
+        if tick == 300:
+            executor.feed_hold()
+        if tick == 700:
+            executor.resume()
+            executor.feed_override(0.5)
+        if tick == 1200:
+            executor.feed_override(2)
+
+    points = run(cncplan.Executor(mill), at_tick=ask)
+    velocity = np.array([point.velocity for point in points])
+    assert np.linalg.norm(velocity[600:700], axis=1).max() == 0
+    speed = np.linalg.norm(velocity, axis=1)
+    assert speed.max() <= 30 * (1 + 1e-9)
+    assert np.linalg.norm([p.acceleration for p in points], axis=1).max() <= 1000 * (1 + 1e-6)
+    assert np.linalg.norm([p.jerk for p in points], axis=1).max() <= 10000 * (1 + 1e-6)
+    position = np.array([point.position for point in points])
+    assert np.abs((position[2:] - position[:-2]) / 0.002 - velocity[1:-1]).max() < 10000 * 0.001**2
+
+
+def test_stop_jog_and_restart(mill):
+    executor = cncplan.Executor(mill)
+    for text in PROGRAM[:5]:
+        assert executor.push(text)
+    executor.end_of_program()
+    with pytest.raises(cncplan.Error):
+        for _ in range(100):
+            executor.tick(0.001)
+        executor.jog([1, 0, 0])  # a program moves the axes
+    for _ in range(300):
+        executor.tick(0.001)
+    executor.stop()
+    while not executor.finished:
+        point = executor.tick(0.001)
+    place = point.position
+    assert 0 < place[0] < 20
+    executor.jog_to([5, 5, 5])
+    for _ in range(5000):
+        point = executor.tick(0.001)
+    assert point.position == pytest.approx([5, 5, 5])
+    executor.jog_to(place)
+    for _ in range(5000):
+        point = executor.tick(0.001)
+    assert executor.restart(3, place)
+    points = run(executor)
+    assert points[-1].position == pytest.approx([0, 0, 0], abs=1e-9)
+    assert np.linalg.norm(points[0].position - place) < 0.05
+
+
+def test_every_request_can_be_made(mill):
+    executor = cncplan.Executor(mill, longest_wait=0.01, quick_stop_share=4)
+    for text in PROGRAM[:5]:
+        executor.push(text)
+    executor.push(cncplan.line([25, 15, 0], [25, 20, 0], feed=10))
+    executor.end_of_program()
+    executor.optional_stop(True)
+    executor.program_stop(True)
+    executor.single_step(True)
+    executor.single_step(False)
+    executor.pause_at(5)
+    executor.rapid_override(0.5)
+    assert executor.pushed > 3 and executor.until_change > 0 and executor.rested >= 0
+    for _ in range(3000):
+        point = executor.tick(0.001)
+    assert point.position == pytest.approx([25, 5, 0], abs=0.02)  # before line 5
+    executor.resume()
+    for _ in range(100):
+        executor.tick(0.001)
+    executor.reverse()
+    for _ in range(3000):
+        point = executor.tick(0.001)
+    assert point.position == pytest.approx([0, 0, 0], abs=1e-9)
+    executor.reverse(False)
+    for _ in range(500):
+        executor.tick(0.001)
+    executor.quick_stop()
+    for _ in range(1000):
+        executor.tick(0.001)
+    executor.resume()
+    for _ in range(4000):
+        point = executor.tick(0.001)
+    assert executor.finished and executor.error is None
+    assert point.position == pytest.approx([25, 20, 0]) and executor.time == point.t
+    executor.jog([10, 0, 0])
+    for _ in range(500):
+        point = executor.tick(0.001)
+    assert point.velocity == pytest.approx([10, 0, 0])
+    executor.jog([0, 0, 0])
+    executor.return_to_path()
+
+
+def test_many_lines_come_in_by_and_by(mill):
+    lines = ["G1 F1800"] + [f"X{i / 10} Y{math.sin(i / 5):.4f}" for i in range(1000)]
+    executor = cncplan.Executor(mill)
+    points = run(executor, lines, period=0.01)
+    assert points[-1].position == pytest.approx([99.9, round(math.sin(999 / 5), 4), 0])
+
+
+def test_cycles_of_many_blocks(mill):
+    points = run(cncplan.Executor(mill), ["G81 X5 Y5 Z-2 R1 F600 L3 G91", "G80", "M2"], period=0.01)
+    assert min(point.position[2] for point in points) < -1
+
+
+def test_errors(mill):
+    executor = cncplan.Executor(mill)
+    with pytest.raises(cncplan.Error) as caught:
+        executor.push("G1 X??")
+    assert caught.value.line == 1 and caught.value.column == 5
+    with pytest.raises(TypeError, match=r"item: expected a line \(str\) or a block, got int"):
+        executor.push(3)
+    with pytest.raises(cncplan.Error, match="more than one line"):
+        executor.push("G1 X1\nG1 X2")
+    for period in (0, -1, math.nan, math.inf):
+        with pytest.raises(cncplan.Error) as caught:
+            executor.tick(period)
+        assert caught.value.field == "period"
+    with pytest.raises(TypeError, match="period: expected a number, got str"):
+        executor.tick("1 ms")
+    with pytest.raises(TypeError, match="wanted: expected True or False, got int"):
+        executor.reverse(1)
+    with pytest.raises(cncplan.Error):
+        executor.jog([1, 2])
+    with pytest.raises(cncplan.Error):
+        cncplan.Executor(mill, tolerance=-1)
+
+
+def test_a_block_that_cannot_be_planned_is_told(mill):
+    executor = cncplan.Executor(mill)
+    executor.push(cncplan.line([0, 0, 0], [5, 0, 0], feed=10))
+    executor.push(cncplan.line([7, 0, 0], [9, 0, 0], feed=10))
+    executor.end_of_program()
+    for _ in range(5000):
+        executor.tick(0.001)
+    assert executor.finished and executor.error.code == "discontinuous"
