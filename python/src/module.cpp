@@ -90,6 +90,9 @@ void bind_machine(py::module_& module) {
       .def(py::init([](const std::string& text, const std::string& name, double velocity, double acceleration,
                        double jerk) {
         auto machine = read_machine(text, name, {velocity, acceleration, jerk});
+        if (machine.axes.size() > static_cast<std::size_t>(most_axes))
+          raise(Error{ErrorCode::above_limit, "number of axes", static_cast<double>(machine.axes.size()),
+                      static_cast<double>(most_axes)});
         with_size(machine.axes.size(), [&](auto n) { value_of(validate(machine_of<n>(machine))); });
         return machine;
       }))

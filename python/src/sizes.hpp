@@ -8,7 +8,7 @@
 namespace cncplan::python {
 
 inline constexpr std::array sizes{CNCPLAN_PYTHON_SIZES};  // ascending
-inline constexpr std::size_t most_axes = sizes.back();
+inline constexpr int most_axes = sizes.back();
 
 /// Calls `f` with the smallest size that has room for so many axes, `most_axes` at most.
 template <std::size_t i = 0, class F>

@@ -38,7 +38,9 @@ def test_curve_goes_through_its_points(mill):
     for point in points:
         assert np.linalg.norm(position - point, axis=1).min() < 0.02  # half a period at 10 mm/s, and rounding
     radius = np.hypot(position[:, 0], position[:, 1])
-    assert np.abs(radius - 20).max() < 0.05
+    assert np.abs(radius - 20).max() < 0.1  # at the natural ends
+    inside = (position[:, 2] > 1) & (position[:, 2] < 2)
+    assert np.abs(radius - 20)[inside].max() < 0.005
     speed = trajectory.sample(0.001).v
     assert speed[(position[:, 2] > 0.3) & (position[:, 2] < 2.8)].min() > 9.9  # no stop at a point
     assert len(cncplan.curve([[0, 0, 0], [1, 0, 0]])) == 1
@@ -101,7 +103,7 @@ def test_move_to(slides):
     move = cncplan.move_to([10, 0], [310, -20], slides)
     # X from rest to rest: L/v + v/a + a/j.
     assert move.duration == pytest.approx(300 / 80 + 80 / 600 + 600 / 9000, rel=1e-12)
-    assert move.durations.tolist() == [move.duration] * 2
+    assert move.durations == pytest.approx([move.duration] * 2)
     end = move.at(move.duration)
     assert end.position == pytest.approx([310, -20]) and end.velocity == pytest.approx([0, 0], abs=1e-9)
     h = 1e-6
@@ -109,7 +111,7 @@ def test_move_to(slides):
     a, b, c = move.at(times - h), move.at(times), move.at(times + h)
     assert np.abs((c.position - a.position) / (2 * h) - b.velocity).max() < 1e-5
     assert np.abs((c.velocity - a.velocity) / (2 * h) - b.acceleration).max() < 0.05
-    assert np.abs(b.velocity).max() <= 80 and np.abs(b.acceleration).max() <= 600
+    assert np.abs(b.velocity).max() <= 80 * (1 + 1e-9) and np.abs(b.acceleration).max() <= 600 * (1 + 1e-9)
     alone = cncplan.move_to([10, 0], [310, -20], slides, synchronization="none")
     assert alone.durations[1] < alone.durations[0] == pytest.approx(move.duration)
     assert cncplan.move_to([10, 0], [310, -20], slides, minimum_duration=9).duration == pytest.approx(9)
@@ -139,13 +141,18 @@ def test_states_of_other_programs(shared):
         names = file.readline().strip().split(",")
         rows = [dict(zip(names, map(float, line.split(",")))) for line in (file.readline() for _ in range(200))]
     assert len(rows) == 200
+    compared = 0
     for row in rows:
         machine = Machine(axes=[Axis("X", velocity=row["V0"], acceleration=row["A0"], jerk=row["J0"]),
                                 Axis("Y", velocity=1, acceleration=1, jerk=1)])
         move = cncplan.move_to(State([row["p0"], 0], [row["v0"], 0], [row["a0"], 0]),
                                State([row["pt0"], 0], [row["vt0"], 0], [row["at0"], 0]), machine)
-        assert move.duration <= row["duration"] * (1 + 1e-9)  # it is the fastest
-        assert move.duration == pytest.approx(row["duration"], rel=0.2)
+        # A start beyond the limits comes back to them in another way.
+        if abs(row["a0"]) <= row["A0"] and abs(row["v0"] + row["a0"] * abs(row["a0"]) / (2 * row["J0"])) <= row["V0"] \
+                and abs(row["v0"]) <= row["V0"]:
+            compared += 1
+            assert move.duration == pytest.approx(row["duration"], rel=1e-9)
+    assert compared > 50
 
 
 def test_profile():
@@ -170,7 +177,7 @@ def test_profile():
         cncplan.profile(1, velocity=30, acceleration=200, jerk=10000, phases=3)
 
 
-WRONG = "F600\nG1 X10\nG2 X20 Y0 R2\nG99 Q\nG1 Y??\nX30\nG1 Z-5000\nG2 X0 I1 J1\nM30\n"
+WRONG = "F600\nG1 X10\nG2 X20 Y0 R2\nG99 Q\nG1 Y5 K1\nX30\nG1 Z-5000\nG2 X0 I1 J1\nM30\n"
 
 
 def test_all_problems():
@@ -178,7 +185,7 @@ def test_all_problems():
     program = cncplan.read_program(text=WRONG, machine=machine)
     found = {problem.line: problem for problem in program.problems}
     assert set(found) == {3, 4, 5, 7, 8}
-    assert found[3].code == "chord_exceeds_diameter" and found[3].column == 12
+    assert found[3].code == "chord_exceeds_diameter" and found[3].column == 11
     assert found[7].code == "below_limit" and found[7].bound == -100
     assert found[8].code == "radius_mismatch"
     assert all(isinstance(problem, cncplan.Error) for problem in program.problems)
@@ -199,7 +206,7 @@ def test_motions_of_a_program():
     assert motions["end"][-1] == pytest.approx([21, 12, 0]) and motions["center"][-1] == pytest.approx([11, 12, 0])
     assert motions["radius"][-1] == pytest.approx(10) and motions["sweep"][-1] == pytest.approx(math.pi / 2)
     assert motions["feed"][1:].tolist() == [10, 20] and math.isnan(motions["feed"][0])
-    assert [f"{w['letter']}{w['number']:g}" for w in program.words] == ["M3", "S500", "M30"]
+    assert [f"{w['letter']}{w['number']:g}" for w in program.words] == ["S500", "M3", "M30"]
 
 
 @pytest.mark.parametrize("name", ["short_lines.ngc", "pocket.ngc", "kk22_figure7.ngc"])

@@ -71,7 +71,7 @@ def test_a_period_is_above_0(mill, period, tmp_path):
 
 
 def test_more_samples_than_memory(mill):
-    trajectory = cncplan.plan_text("G1 X1\nG4 P1e12", mill)
+    trajectory = cncplan.plan_text("G1 X1\nG4 P1000000000000", mill)
     with pytest.raises(MemoryError):
         trajectory.sample(1e-6)
 

@@ -107,7 +107,7 @@ REQUESTS = ["feed_hold", "resume", "stop", "quick_stop", "return_to_path", "reve
 @given(st.lists(st.tuples(st.sampled_from(REQUESTS), junk), max_size=30), st.lists(coordinate, min_size=3, max_size=3))
 def test_any_requests(requests, place):
     executor = cncplan.Executor(BENCH)
-    for line in ("F1200", "G1 X20", "Y20", "G2 X0 Y0 R30", "M1", "X5"):
+    for line in ("F1200", "G1 X20", "Y20", "G2 X0 Y0 R30", "M1", "G1 X5"):
         executor.push(line)
     executor.end_of_program()
     for name, argument in requests:
