@@ -87,10 +87,11 @@ def not_negative(value: Any, name: str) -> float:
 def integer(value: Any, name: str, low: int = -2**31, high: int = 2**31 - 1) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name}: expected a whole number, got {kind(value)}")
-    if value < low:
-        raise Error(f"{name}: {value} is below the limit {low}", "below_limit", name, float(value), float(low))
-    if value > high:
-        raise Error(f"{name}: {value} is above the limit {high}", "above_limit", name, min(float(value), 1e300) if value < 10**300 else math.inf, float(high))
+    for code, sentence, wrong, bound in (("below_limit", "is below the limit", value < low, low),
+                                         ("above_limit", "is above the limit", value > high, high)):
+        if wrong:
+            found = float(value) if abs(int(value)) < 2**1000 else math.copysign(math.inf, 1 if value > 0 else -1)
+            raise Error(f"{name}: {found:g} {sentence} {bound}", code, name, found, float(bound))
     return int(value)
 
 

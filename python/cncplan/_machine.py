@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from collections.abc import Mapping, Sequence
@@ -16,17 +17,14 @@ def _toml(value: Any, name: str) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        # TOML takes the escapes of JSON, but for lone surrogates
         try:
             value.encode()
         except UnicodeEncodeError:
             raise Error(f"{name}: is no text in UTF-8", "malformed", name) from None
-        import json
-
+        # TOML has the escapes of JSON, and one more character that needs one
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_toml(text_of(k if not isinstance(k, int) or isinstance(k, bool) else str(k), f'a key of {name}'), name)} = {_toml(v, f'{name}.{k}')}"
-                               for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(key, name)} = {_toml(item, f'{name}.{key}')}" for key, item in value.items()) + "}"
     if isinstance(value, Axis):
         return _toml(value.entries, name)
     if isinstance(value, (list, tuple)):
@@ -35,6 +33,13 @@ def _toml(value: Any, name: str) -> str:
     if not math.isfinite(result):
         raise Error(f"{name}: {result} is not a finite number", "not_finite", name, result)
     return repr(result)
+
+
+def _key(key: Any, name: str) -> str:
+    """Of tools, numbers are keys too."""
+    if isinstance(key, int) and not isinstance(key, bool):
+        key = str(key)
+    return _toml(text_of(key, f"a key of {name}"), name)
 
 
 class Axis:
@@ -125,9 +130,7 @@ class Machine:
                     if not isinstance(axis, (Axis, Mapping)):
                         raise TypeError(f"axes: expected an Axis or a dict, got {kind(axis)}")
                 named["axis"] = list(listed)
-            # one line an entry, and the axes one a line
-            text = "".join(f"{_toml(text_of(key, 'a key of the machine'), 'machine')} = {_toml(value, str(key))}\n"
-                           for key, value in named.items())
+            text = "".join(f"{_key(key, 'machine')} = {_toml(value, str(key))}\n" for key, value in named.items())
         else:
             if not isinstance(source, (str, os.PathLike)):
                 raise TypeError(f"source: expected a path, a dict or nothing, got {kind(source)}")
@@ -142,7 +145,14 @@ class Machine:
                 raise Error(f"{name}: cannot be read", "unreadable", "file", file=name) from None
         limits = [number(limits_only[key], key) if key in limits_only else math.inf
                   for key in ("velocity", "acceleration", "jerk")]
-        self._core = _core.Machine(text, name, *limits)
+        try:
+            self._core = _core.Machine(text, name, *limits)
+        except Error as error:
+            if name != "machine" or error.line is None:
+                raise
+            # places in the text that was made of the keywords mean nothing to the caller
+            raise Error("machine: " + str(error).partition(": error: ")[2], error.code, error.field, error.value,
+                        error.bound) from None
         self._limits = tuple(limits)
 
     @property

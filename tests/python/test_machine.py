@@ -96,6 +96,7 @@ def test_errors(make, code, text):
     with pytest.raises(cncplan.Error) as caught:
         make()
     assert caught.value.code == code and text in str(caught.value)
+    assert caught.value.line is None  # of a machine file alone
 
 
 def test_place_of_an_error_in_a_file(tmp_path):

@@ -132,7 +132,7 @@ def test_other_threads_run_while_it_plans(mill):
     thread = threading.Thread(target=count)
     thread.start()
     start = time.perf_counter()
-    cncplan.plan_text(LONG, mill, level="fast").sample(0.0005)
+    cncplan.plan_text(LONG[:200000], mill, level="fast").sample(0.002)
     seconds = time.perf_counter() - start
     done.set()
     thread.join()

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import cncplan
 
-CALLS = int(os.environ.get("CNCPLAN_CALLS", "400"))
+CALLS = int(os.environ.get("CNCPLAN_CALLS", "160"))
 MILL = cncplan.Machine(**LIMITS)
 quick = settings(max_examples=CALLS // 4, deadline=None, database=None, derandomize="CNCPLAN_CALLS" not in os.environ,
                  suppress_health_check=list(HealthCheck))
