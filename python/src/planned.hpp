@@ -52,6 +52,12 @@ template <int N>
 [[nodiscard]] TrajectoryPointer any_trajectory(std::unique_ptr<InterruptibleMemory> memory,
                                                Planned<N>&& trajectory);
 
+/// The options that read a program for a machine.
+[[nodiscard]] inline PlanOptions with_dialect(PlanOptions options, const AnyMachine& machine) {
+  options.dialect = machine.dialect;
+  return options;
+}
+
 /// A block as the library has it. Throws `Fault`.
 template <int N>
 [[nodiscard]] ReadBlock<N> block_of(const AnyBlock& block);

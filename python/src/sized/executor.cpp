@@ -21,16 +21,11 @@ Vector vector_of(const Places& places) {
   return vector;
 }
 
-PlanOptions reading(const AnyMachine& machine, PlanOptions options) {
-  options.dialect = machine.dialect;
-  return options;
-}
-
 class ExecutorOfSize final : public AnyExecutor {
  public:
   ExecutorOfSize(const AnyMachine& machine, const ExecutorSettings& settings)
       : axes_(machine.axes.size()),
-        read_(reading(machine, settings.read)),
+        read_(with_dialect(settings.read, machine)),
         reader_(std::in_place, machine_of<AXES>(machine), read_),
         executor_(machine_of<AXES>(machine), {.tolerance = settings.tolerance,
                                               .rotary_tolerance = settings.rotary_tolerance,

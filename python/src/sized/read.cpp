@@ -16,13 +16,6 @@ namespace cncplan::python {
 
 namespace {
 
-// Axes that the machine has beyond its own have no words, but Z of a machine of X and Y.
-PlanOptions with_dialect(const PlanOptions& options, const AnyMachine& machine) {
-  PlanOptions result = options;
-  result.dialect = machine.dialect;
-  return result;
-}
-
 [[noreturn]] void refuse(ProgramError error, const std::string& file) {
   error.file = file;
   raise(std::move(error));
