@@ -236,9 +236,14 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
       double value = 0.0;
       const auto [end, code] =
           std::from_chars(word.data() + 1, word.data() + word.size(), value, std::chars_format::fixed);
-      if (code != std::errc{} || end != word.data() + word.size())
+      std::string_view owned(end, static_cast<std::size_t>(word.data() + word.size() - end));
+      const bool owns = passed.letter == 'M' && owned.starts_with(' ');
+      if (owns) owned.remove_prefix(1);
+      const bool letters = owned.find_first_not_of("ABCDEFHIJKLPQRSTUVWXYZ") == std::string_view::npos;
+      if (code != std::errc{} || !(owns ? letters : owned.empty()))
         section.refuse(item, "'" + word + "' is not a word");
       passed.number = value;
+      if (owns) passed.words = gcode::bits(owned);
     }
     const bool moves = std::any_of(machine.dialect.axes.begin(), machine.dialect.axes.end(),
                                    [&](const gcode::Axis& axis) { return axis.letter == passed.letter; });

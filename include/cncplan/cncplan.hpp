@@ -36,6 +36,7 @@
 #include "cncplan/core/state.hpp"
 #include "cncplan/core/transfer.hpp"
 #include "cncplan/core/vector.hpp"
+#include "cncplan/gcode/alphabet.hpp"
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/canned_cycle.hpp"
 #include "cncplan/gcode/compensation.hpp"

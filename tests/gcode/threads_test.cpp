@@ -76,7 +76,8 @@ TEST_CASE("the $ of a tap or a thread may name spindle 0, and does not come out"
   }
   CHECK(test::read("F1\nG74 Z-3 R1 $1").error == "2:12: $ is not supported");
   CHECK(test::read("S9 M3\nG33 Z-5 K1 $1").error == "2:12: $ is not supported");
-  CHECK(test::read("S9 $1 M3").all<gcode::Word>().size() == 3);
+  CHECK(test::read("S9 $1 M3").all<gcode::Word>() ==
+        std::vector<gcode::Word>{{'S', 9, 1, 1, {{'$', 1}}}, {'M', 3, 1, 7, {{'$', 1}}}});
   CHECK(test::read("G95 F1 S9 $1 M3 G1 X1").error == "1:17: S: a required word is missing");
   CHECK(test::read("G95 F1 S9\nS5 $1 G1 X1").motions()[0].feed == 9.0 / 60.0);
 }

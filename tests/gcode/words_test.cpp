@@ -10,20 +10,12 @@ using test::read;
 
 TEST_CASE("outputs, inputs and overrides are handed out with the words that they take") {
   CHECK(read("M62 P3\nM67 E1 Q-2.5\nM66 P0 L3 Q5\nM51 P0\nM48\nG1 X1 M63 P2").all<Word>() ==
-        std::vector<Word>{{'M', 62, 1, 1},
-                          {'P', 3, 1, 5},
-                          {'M', 67, 2, 1},
-                          {'E', 1, 2, 5},
-                          {'Q', -2.5, 2, 8},
-                          {'M', 66, 3, 1},
-                          {'P', 0, 3, 5},
-                          {'L', 3, 3, 8},
-                          {'Q', 5, 3, 11},
-                          {'M', 51, 4, 1},
-                          {'P', 0, 4, 5},
+        std::vector<Word>{{'M', 62, 1, 1, {{'P', 3}}},
+                          {'M', 67, 2, 1, {{'E', 1}, {'Q', -2.5}}},
+                          {'M', 66, 3, 1, {{'P', 0}, {'L', 3}, {'Q', 5}}},
+                          {'M', 51, 4, 1, {{'P', 0}}},
                           {'M', 48, 5, 1},
-                          {'M', 63, 6, 7},
-                          {'P', 2, 6, 11}});
+                          {'M', 63, 6, 7, {{'P', 2}}}});
   CHECK(read("M60").all<gcode::Stop>() == std::vector<gcode::Stop>{{60, 1}});
   CHECK(read("G4 P1 M62").error == "1:4: P: words exclude each other (two codes use it)");
 }
@@ -91,7 +83,7 @@ TEST_CASE("a feed per revolution is a feed at the spindle's speed") {
   CHECK(feed("G95 G96 S60 D120 G0 X20\nG1 Z-5 F.4") == Approx(0.8));
   CHECK(feed("G95 G96 S60 G0 X20\nG97 S300 G1 Z-5 F.4") == Approx(2.0));
   CHECK(read("G96 D2500 S180").all<Word>() ==
-        std::vector<Word>{{'S', 180, 1, 11}, {'G', 96, 1, 1}, {'D', 2500, 1, 5}});
+        std::vector<Word>{{'S', 180, 1, 11}, {'G', 96, 1, 1, {{'D', 2500}}}});
 }
 
 TEST_CASE("a probing move goes to its end, with one warning") {

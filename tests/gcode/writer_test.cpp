@@ -204,9 +204,21 @@ TEST_CASE("a tap's turns of the spindle are written on lines of their own") {
 
 TEST_CASE("a centre's letter behind a passed-through code is no arc where one holds") {
   const auto reading = test::read("G2 X20 I5\nG1\nM482 I5 Q2\nG2 X30 I5\n");
-  REQUIRE(reading.all<gcode::Word>().size() == 3);
+  REQUIRE(reading.all<gcode::Word>().size() == 1);
   REQUIRE(reading.motions().size() == 2);
   check_round_trip(reading.items);
+}
+
+TEST_CASE("codes are written with their words, and read back with them") {
+  Dialect dialect;
+  dialect.pass_through = {{'M', 201.0, gcode::bits("XYZEF")}, {'M', 88.0}, {'G', 251.0}};
+  const auto reading = test::read(
+      "G1 X1 F600\nM201 X500 Y500\nM67 E1 Q-2.5\nG1 X2 M88 T3 P4\nM101 P1 Q2\nX3 M102 P1\nG2 X5 I1\nG251 L3\n"
+      "G80 M88 I5\nG2 X9 I2 M201 M67 E0 Q0 T1\nM19 R90 $1\nS5 M62 P1\nG96 D900 S20\nM201 F9\nG1 X5 F9 M102\n",
+      dialect);
+  REQUIRE(reading.error == "");
+  REQUIRE(reading.all<gcode::Word>().size() == 18);
+  check_round_trip(reading.items, dialect);
 }
 
 TEST_CASE("what cannot be written is refused") {
@@ -233,6 +245,8 @@ TEST_CASE("what cannot be written is refused") {
   CHECK(error(gcode::Dwell{-1.0, 1}) == Error{ErrorCode::negative, "P", -1.0, 0.0});
   CHECK(error(gcode::Word{'S', INFINITY, 1, 1}) == Error{ErrorCode::not_finite, "S", INFINITY, 1e15});
   CHECK(error(gcode::Word{'O', 1e16, 1, 1}).code == ErrorCode::above_limit);
+  CHECK(error(gcode::Word{'M', 67, 1, 1, {{'Q', INFINITY}}}) ==
+        Error{ErrorCode::not_finite, "Q", INFINITY, 1e15});
   CHECK(text.empty());
 }
 
@@ -281,15 +295,18 @@ TEST_CASE("the $ of a spindle goes with its S and with its M3, a tool change bet
     REQUIRE(reading.error.empty());
     std::ostringstream result;
     for (const auto& item : reading.items) {
-      if (const auto* word = std::get_if<gcode::Word>(&item)) result << word->letter << word->number << ' ';
+      if (const auto* word = std::get_if<gcode::Word>(&item)) {
+        result << word->letter << word->number << ' ';
+        if (const auto spindle = word->arguments.find('$')) result << '$' << *spindle << ' ';
+      }
       if (const auto* stop = std::get_if<gcode::Stop>(&item)) result << "stop " << stop->code << ' ';
     }
     return result.str();
   };
-  for (const auto& [line, items] : {std::pair("$1 M3", "$1 M3 "),
-                                    {"$1 S9 M3", "$1 S9 M3 "},
-                                    {"$1 M6 M3", "stop 6 $1 M3 "},
-                                    {"$1 S9 T2 M6 M3", "$1 S9 T2 stop 6 $1 M3 "}}) {
+  for (const auto& [line, items] : {std::pair("$1 M3", "M3 $1 "),
+                                    {"$1 S9 M3", "S9 $1 M3 $1 "},
+                                    {"$1 M6 M3", "stop 6 M3 $1 "},
+                                    {"$1 S9 T2 M6 M3", "S9 $1 T2 stop 6 M3 $1 "}}) {
     INFO(line);
     CHECK(told(line) == items);
     const std::string text = written(test::read(line).items);

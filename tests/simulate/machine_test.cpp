@@ -138,6 +138,11 @@ TEST_CASE("homes and words to pass through are the machine's") {
   const test::Table motions(folder / "m.csv");
   CHECK(motions["x1"] == std::vector<double>{1, 4});
   CHECK(motions["z1"] == std::vector<double>{3, 6});
+  folder.write("own.toml", "pass_through = [\"M201 XYZ\"]\n");
+  REQUIRE(
+      folder.run_text("G1 X1 F600\nM201 X500 Y500\n", "--quiet --machine own.toml --motions o.csv").exit ==
+      0);
+  CHECK(test::Table(folder / "o.csv").rows() == 1);
   const auto own = folder.run_text("M162 P3\n", "--quiet");  // of nobody: handed on, and told
   CHECK(own.exit == 0);
   CHECK(own.err.find("1:1: warning: M162 is not known here") != std::string::npos);
@@ -221,6 +226,8 @@ TEST_CASE("bad machine files: file, line, column and what is wrong") {
            {"[home]\nG29 = [0, 0, 0]\n", "2:1: error: unknown key 'G29' in home"},
            {"pass_through = \"M62\"\n", "1:16: error: pass_through must be a list of words"},
            {"pass_through = [\"M6x\"]\n", "1:17: error: 'M6x' is not a word"},
+           {"pass_through = [\"M201 Xy\"]\n", "1:17: error: 'M201 Xy' is not a word"},
+           {"pass_through = [\"G251 X\"]\n", "1:17: error: 'G251 X' is not a word"},
        }) {
     INFO(file);
     folder.write("m.toml", file);

@@ -60,6 +60,11 @@ enum class ErrorCode : std::uint8_t {
   needs_operator,
   not_an_axis,
   no_memory,
+  unclear_owner,
+  no_such_tool,
+  no_tool_table,
+  division_by_zero,
+  loses_pitch,
   count_,  // number of codes
 };
 
@@ -112,6 +117,11 @@ enum class ErrorCode : std::uint8_t {
       "needs the operator's hand or the spindle at an angle: it is not planned",
       "names no axis of the machine",
       "gives out; fewer blocks held need less",
+      "is beside a word that may be its own",
+      "names a tool that the table does not have",
+      "names a tool, and there is no tool table: its length and diameter are 0",
+      "divides by zero",
+      "is faster than the axes follow: the thread would lose its pitch",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -37,7 +37,7 @@ inline std::string word_text(const Error& error) {
       sentence.starts_with("is ") || sentence.starts_with("must ") || sentence.starts_with("has ") ||
       sentence.starts_with("does ") || sentence.starts_with("says ") || sentence.starts_with("goes ") ||
       sentence.starts_with("finds ") || sentence.starts_with("belongs ") || sentence.starts_with("moves ") ||
-      sentence.starts_with("names ") || sentence.starts_with("needs ");
+      sentence.starts_with("names ") || sentence.starts_with("needs ") || sentence.starts_with("divides ");
   std::string text = detail::word_text(error);
   text += has_verb ? " " : ": ";
   text += sentence;

@@ -37,12 +37,18 @@ struct Tool {
   friend bool operator==(const Tool&, const Tool&) = default;
 };
 
-/// A word that comes out as it is. Without a number, the letter with any number. The words that nothing else
-/// on the line uses go with a passed-through G or M (the P and Q of `G05 P10000 Q3`). What moves the axes
-/// cannot pass: neither F and the axes' letters, nor G codes that take axis words.
+/// A word that comes out as it is. Without a number, the letter with any number. A passed-through G or M
+/// takes the words of its line that nothing else uses (the P and Q of `G05 P10000 Q3`), and is handed on as
+/// one word with them. What moves the axes cannot pass: neither F and the axes' letters, nor G codes that
+/// take axis words.
 struct PassThrough {
   char letter{};
   std::optional<double> number{};
+  /// The letters that belong to an M code wherever no code of motion on its line takes them, F and those of
+  /// axes too (XYZE of Marlin's M201); what they leave is the line's own. None: not known, and then a line on
+  /// which F, T or an axis word could be either's is in error.
+  std::optional<Letters> words{};
+  bool text = false;  ///< what follows it on the line is a text, not words
 
   friend bool operator==(const PassThrough&, const PassThrough&) = default;
 };
@@ -68,6 +74,9 @@ struct Dialect {
   /// name no axis are left out; G0 holds at the start (grbl) and behind every G80; G4 S counts seconds
   /// (Marlin).
   bool lenient = false;
+  bool user_codes = true;     ///< M100 to M199 are LinuxCNC's user codes: P and Q are theirs, and no more
+  bool bare_m_codes = false;  ///< M codes that nothing is known of take no F, T or axis words (Fanuc)
+  bool g70_units = false;     ///< G70 and G71 are G20 and G21 (Mach3)
 
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };
@@ -147,6 +156,8 @@ inline constexpr Letters reserved_letters = bits("FGHIJKMNOPQST");
     if (passed.letter < 'A' || passed.letter > 'Z')
       return fail(ErrorCode::unknown_character, "word to pass through");
     if (takes_axis_words(passed)) return fail(ErrorCode::not_to_pass, "G", passed.number.value_or(0.0));
+    if (passed.letter != 'M' && (passed.words.value_or(0) & (seen | bit('F'))) != 0)
+      return fail(ErrorCode::not_to_pass, name(first_of(*passed.words & (seen | bit('F')))));
     if (((seen | bit('F')) & bit(passed.letter)) != 0)
       return fail(ErrorCode::not_to_pass, name(passed.letter));
   }

@@ -92,9 +92,9 @@ struct Warning {
   friend bool operator==(const Warning&, const Warning&) = default;
 };
 
-/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 M19 M48 to M53 M61 to M68 G96 G97 S T
-/// $, the program's number (O), or one that the dialect passes through. The words that an M or G word takes
-/// follow it (the E and Q of M67).
+/// What comes out of the reader. A `Word` is one of M3 M4 M5 M7 M8 M9 M19 M48 to M53 M61 to M68 G96 G97 S T,
+/// the program's number (O), or one that the dialect passes through. The words that it takes are its
+/// arguments: E and Q of M67, $ of S and of M3.
 using Item = std::variant<Motion, Dwell, Stop, Word, Warning>;
 
 /// When a word takes effect: as soon as it is read, with the start of the next motion, or with the machine at

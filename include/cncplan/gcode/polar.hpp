@@ -10,9 +10,6 @@
 
 namespace cncplan::gcode {
 
-/// The words of polar coordinates.
-inline constexpr Letters polar_words = bits("@^");
-
 [[nodiscard]] inline bool names_polar(const Block& block) { return (block.letters() & polar_words) != 0; }
 
 /// X and Y that the words lead to from `here`, mm of work coordinates. What no word names stays; in

@@ -30,7 +30,7 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 26;
+inline constexpr std::size_t max_items_per_line = max_passed + 19;
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -94,7 +94,8 @@ class Reader {
   /// the end of the program. Motions that begin at a place that is not known for sure do not come out.
   void recover(std::string_view text) {
     if (!readable_ || text.size() > max_line_length) return;
-    block_.salvage(text, 0, dialect_.pass_through);
+    block_.salvage(text, 0, dialect_, alphabet_);
+    block_.lose(unclear_words(block_, modal_, alphabet_));
     splines_.forget();
     modal_ = after(block_, modal_, dialect_);
     if (modal_.motion == code(5.3)) modal_.motion = no_code;
@@ -157,7 +158,7 @@ class Reader {
       *out = Item(at_line(*number));
       return ++out;
     }
-    if (auto ok = block_.parse(text, from, dialect_.pass_through); !ok) return tl::unexpected(ok.error());
+    if (auto ok = block_.parse(text, from, dialect_, alphabet_); !ok) return tl::unexpected(ok.error());
     if (block_.empty()) return out;
     const Modal modal = after(block_, modal_, dialect_);
     const auto motion = resolve(block_, modal, alphabet_, modal_.motion);
@@ -182,7 +183,8 @@ class Reader {
   /// The first % stands before the program, the next one ends it.
   template <class Out>
   Expected<Out, Diagnostic> read_percent(std::string_view text, std::size_t from, Out out) {
-    if (auto nothing = block_.parse(text, from, {}); !nothing) return tl::unexpected(nothing.error());
+    if (auto nothing = block_.parse(text, from, dialect_, alphabet_); !nothing)
+      return tl::unexpected(nothing.error());
     if (!block_.empty())
       return tl::unexpected(Diagnostic{{ErrorCode::unused_word, "%", 0.0, 0.0}, 0, static_cast<int>(from)});
     finished_ = percent_seen_ || words_seen_;
@@ -206,21 +208,14 @@ class Reader {
   void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
     const bool speed = block_.has('S') && !dwells_by_s(block_);
-    const auto pass = [&](char letter) {
-      if (block_.has(letter)) emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
-    };
-    if (speed) {
-      pass('$');  // with what it names only: that of a tap does not come out
-      pass('S');
+    if (speed) emit(word('S', bit('$')));  // with what it names only: that of a tap does not come out
+    if (block_.has('T')) {
+      emit(word('T', 0));
+      selected_tool_ = static_cast<int>(block_.number('T'));
     }
-    pass('T');
-    if (block_.has('T')) selected_tool_ = static_cast<int>(block_.number('T'));
     hand_out(Group::spindle_mode, emit);
     hand_out(Group::input_output, emit);
     change_tool(emit);
-    // Once more behind a tool change, which ends what was said before it.
-    const bool told = speed && block_.code(Group::tool_change) != code(6);
-    if (block_.has(Group::spindle) && !told) pass('$');
     for (const Group group : {Group::spindle, Group::coolant, Group::override_control}) hand_out(group, emit);
     spindle_.take(block_, modal_.millimetres_per_unit);
     const Code non_modal = block_.code(Group::non_modal);
@@ -274,14 +269,29 @@ class Reader {
     emit(Stop{stop / 10, line_});
   }
 
-  /// A code comes out as a word, and behind it the words that it takes.
+  /// A code comes out as a word, with the words that it takes.
   template <class Emit>
   void hand_out(Group group, Emit& emit) const {
     if (!block_.has(group)) return;
-    emit(Word{letter(group), block_.code(group) / 10.0, line_, block_.column(group)});
-    for (const char letter : {'R', 'P', 'E', 'L', 'Q', 'D'})
-      if ((detail::words_of(group, block_, alphabet_) & bit(letter)) != 0 && block_.has(letter))
-        emit(Word{letter, block_.number(letter), line_, block_.column(letter)});
+    const Letters spindle = group == Group::spindle ? bit('$') : 0;
+    Word code{letter(group), block_.code(group) / 10.0, line_, block_.column(group)};
+    add_arguments(code, (detail::words_of(group, block_, alphabet_) & ~bit('S')) | spindle);
+    emit(code);
+  }
+
+  /// A word of the line, with others that belong to it.
+  [[nodiscard]] Word word(char letter, Letters arguments) const {
+    Word word{letter, block_.number(letter), line_, block_.column(letter)};
+    add_arguments(word, arguments);
+    return word;
+  }
+
+  void add_arguments(Word& word, Letters letters) const {
+    for (Letters left = letters & block_.letters(); left != 0;) {
+      const char next = block_.first_in_text(left);
+      word.arguments.push_back({next, block_.number(next)});  // four at most
+      left &= ~bit(next);
+    }
   }
 
   /// M6 loads the tool that T has selected; M61 Q says which one is loaded.

@@ -9,6 +9,7 @@
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/plane.hpp"
+#include "cncplan/gcode/alphabet.hpp"
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/canned_cycle.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
@@ -27,31 +28,6 @@ inline constexpr int max_turns = 1000;
 /// Largest whole number of a T, H or N word.
 inline constexpr int max_count = 1'000'000'000;
 
-/// What the letters mean on a machine.
-struct Alphabet {
-  Letters axes{};
-  bool has_radius{};   ///< R is the radius of an arc; else it is an axis
-  bool has_arcs{};     ///< the first three axes are X, Y and Z
-  bool lenient{};      ///< G4 may have S
-  Letters left_out{};  ///< of axes that the machine lacks, where their words are not errors
-
-  explicit Alphabet(const Dialect& dialect) {
-    std::size_t in_order = 0;
-    for (std::size_t i = 0; i < dialect.axes.size(); ++i) {
-      const Axis axis = dialect.axes[i];
-      axes |= bit(axis.letter);
-      if (i < 3 && axis == Axis{"XYZ"[i], AxisKind::linear}) ++in_order;
-    }
-    has_radius = (axes & bit('R')) == 0;
-    has_arcs = in_order == 3;
-    lenient = dialect.lenient;
-    if (lenient) left_out = bits("ABCEUVW") & ~axes;
-  }
-
-  /// Letters that some code uses.
-  [[nodiscard]] Letters known() const { return bits("FHIJKLNPQST@^$") | axes | (has_radius ? bit('R') : 0); }
-};
-
 /// Letters of axes that the machine lacks and whose words are left out. E is a word of some codes, too, and
 /// in X1E5 an exponent, which no number has.
 [[nodiscard]] inline Letters left_out(const Block& block, const Alphabet& alphabet, Code motion) {
@@ -68,6 +44,16 @@ struct Alphabet {
 
 /// G5.2, G6.2: a control of a NURBS each line.
 [[nodiscard]] constexpr bool is_nurbs(Code motion) { return motion == code(5.2) || motion == code(6.2); }
+
+/// Words that would act here without a code on their line, and may as well belong to one that passes through:
+/// of the axes, centres of a modal arc, F and T.
+[[nodiscard]] inline Letters unclear_words(const Block& block, const Modal& modal, const Alphabet& alphabet) {
+  const Code motion = block.code(Group::motion);
+  if (block.unclear_code() == nullptr || (motion != no_code && motion != code(80))) return 0;
+  const bool centers = is_arc(modal.motion) || is_nurbs(modal.motion);
+  const Letters acting = alphabet.axes | polar_words | bits("FT") | (centers ? bits("IJK") : 0);
+  return block.letters() & acting & ~block.taken_by_codes(alphabet);
+}
 
 /// G38.2 to G38.5, and G31 of Fanuc's and Mach3's controls.
 [[nodiscard]] constexpr bool is_probe(Code motion) {
@@ -390,21 +376,36 @@ using Check = Expected<void, Diagnostic>;
 /// What becomes of words that nothing has used: they go with a passed-through code, or they are errors. Axis
 /// words and feeds are never for others: what moves the machine is read here or refused.
 [[nodiscard]] inline Check settle(Block& block, Letters unused, const Alphabet& alphabet) {
-  for (Letters left = unused; left != 0; left &= left - 1) {
-    const char letter = first_of(left);
+  for (Letters left = unused; left != 0;) {
+    const char letter = block.first_in_text(left);
+    left &= ~bit(letter);
     if (block.passes_code() && (bit(letter) & (alphabet.axes | bit('F'))) == 0) {
       if (auto ok = block.pass(letter); !ok) return ok;
-    } else if (block.column(letter) ==
-               block.first_column(unused)) {  // the first in the text is the one to report
-      const bool meant = (alphabet.known() & bit(letter)) != 0;
-      const bool axis = (bits("ABCUVW") & bit(letter)) != 0;
-      return tl::unexpected(block.error(meant  ? ErrorCode::unused_word
-                                        : axis ? ErrorCode::not_an_axis
-                                               : ErrorCode::not_supported,
-                                        letter));
+      continue;
     }
+    const bool meant = (alphabet.known() & bit(letter)) != 0;
+    const bool axis = (bits("ABCUVW") & bit(letter)) != 0;
+    return tl::unexpected(block.error(meant  ? ErrorCode::unused_word
+                                      : axis ? ErrorCode::not_an_axis
+                                             : ErrorCode::not_supported,
+                                      letter));
   }
   return {};
+}
+
+/// A code that passes through leaves no doubt whose words stand on its line: one of which it is not known
+/// what belongs to it stands beside none that acts here without a code of its own on the line.
+[[nodiscard]] inline Check check_owners(const Block& block, const Modal& modal, const Alphabet& alphabet) {
+  const Letters words = unclear_words(block, modal, alphabet);
+  if (words == 0) return {};
+  const Word& code = *block.unclear_code();
+  const bool axes = (words & (alphabet.axes | polar_words)) != 0;
+  if (code.letter == 'G' && axes)
+    return tl::unexpected(Diagnostic{{ErrorCode::not_to_pass, "G", code.number, 0.0}, 0, code.column});
+  return tl::unexpected(Diagnostic{{ErrorCode::unclear_owner, name(code.letter), code.number, 0.0},
+                                   0,
+                                   code.column,
+                                   name(block.first_in_text(words))});
 }
 
 }  // namespace detail
@@ -426,6 +427,7 @@ using Check = Expected<void, Diagnostic>;
   const bool takes_axes = homes || shifts || sets_length;
 
   if (auto ok = check_tools(block); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_owners(block, modal, alphabet); !ok) return tl::unexpected(ok.error());
   if (block.code(Group::tool_length) == code(43.2) &&
       axis_words != 0)  // LinuxCNC 2.10 adds them to the offset
     return conflict(block.error(ErrorCode::conflicting_words, first_of(axis_words)), "G", 43.2);
@@ -518,7 +520,8 @@ using Check = Expected<void, Diagnostic>;
     return missing("axis", column);
   const bool feeds = is_arc(motion) || is_cycle(motion) || is_spline(motion) || is_nurbs(motion) ||
                      ((motion == code(1) || is_probe(motion)) && axis_words != 0);
-  const Letters lacking = left_out(block, alphabet, motion);
+  const bool may_own = block.unclear_code() != nullptr && requested == no_code && !takes_axes;
+  const Letters lacking = may_own ? 0 : left_out(block, alphabet, motion);
   if (feeds || lacking != 0 || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
   used |= lacking;
   const bool signed_diameter = block.has(Group::compensation);

@@ -67,7 +67,9 @@ class Scanner {
       double magnitude{};
       if (const char* const behind = read_short(first, magnitude)) {
         at_ = behind;
-        word = {letter, negative ? 0.0 - magnitude : magnitude, 0, column};
+        word.letter = letter;
+        word.number = negative ? 0.0 - magnitude : magnitude;
+        word.column = column;
         return true;
       }
     }

@@ -42,7 +42,7 @@ class Warnings {
       if (block.has('Q') && first(merging_))
         about(ErrorCode::ignored, merging_of_g64, 0.0, block.column('Q'));
     }
-    if (const auto& own = block.unknown_code())
+    if (const Word* own = block.unknown_code())
       if (const auto number = static_cast<std::size_t>(own->number); !own_codes_[number]) {
         own_codes_.set(number);
         about(ErrorCode::handed_on, name(own->letter), own->number, own->column);

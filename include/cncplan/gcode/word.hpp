@@ -1,19 +1,68 @@
 // The word of G-code: a letter and its number.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <optional>
 #include <string_view>
 
 namespace cncplan::gcode {
+
+/// The letter and the number of a word that belongs to a code.
+struct Argument {
+  char letter{};
+  double number{};
+
+  friend bool operator==(const Argument&, const Argument&) = default;
+};
+
+/// The words that a code takes of its line, in their order: E and Q of M67, X Y Z of a printer's M201.
+class Arguments {
+ public:
+  static constexpr std::size_t capacity = 10;
+
+  constexpr Arguments() = default;
+  /// Those beyond the capacity are left out.
+  constexpr Arguments(std::initializer_list<Argument> list) {
+    for (const Argument& argument : list) push_back(argument);
+  }
+
+  /// False, and nothing done, where there is no room.
+  constexpr bool push_back(const Argument& argument) {
+    if (size_ == capacity) return false;
+    letters_[size_] = argument.letter;
+    numbers_[size_++] = argument.number;
+    return true;
+  }
+
+  [[nodiscard]] constexpr std::size_t size() const { return size_; }
+  [[nodiscard]] constexpr bool empty() const { return size_ == 0; }
+  [[nodiscard]] constexpr Argument operator[](std::size_t i) const { return {letters_[i], numbers_[i]}; }
+  /// The number of a letter; none where the code has no such word.
+  [[nodiscard]] constexpr std::optional<double> find(char letter) const {
+    for (std::size_t i = 0; i < size_; ++i)
+      if (letters_[i] == letter) return numbers_[i];
+    return std::nullopt;
+  }
+
+  friend bool operator==(const Arguments&, const Arguments&) = default;
+
+ private:
+  std::array<double, capacity> numbers_{};
+  std::array<char, capacity> letters_{};
+  std::uint8_t size_{};
+};
 
 /// A letter (upper case, or one of @ ^ $) and its number, and where it stood.
 struct Word {
   char letter{};
   double number{};
-  int line{};    ///< counted from 1
-  int column{};  ///< in bytes, counted from 1
+  int line{};             ///< counted from 1
+  int column{};           ///< in bytes, counted from 1
+  Arguments arguments{};  ///< of a code: the words that belong to it
 
   friend bool operator==(const Word&, const Word&) = default;
 };

@@ -132,7 +132,12 @@ class Writer {
   [[nodiscard]] Expected<void> check(const Item& item) const {
     if (!writable_) return writable_;
     if (const auto* motion = std::get_if<Motion>(&item)) return check(*motion);
-    if (const auto* word = std::get_if<Word>(&item)) return number(word->number, name(word->letter));
+    if (const auto* word = std::get_if<Word>(&item)) {
+      Expected<void> ok = number(word->number, name(word->letter));
+      for (std::size_t i = 0; ok && i < word->arguments.size(); ++i)
+        ok = number(word->arguments[i].number, name(word->arguments[i].letter));
+      return ok;
+    }
     const auto* dwell = std::get_if<Dwell>(&item);
     if (dwell == nullptr) return {};
     if (dwell->seconds < 0.0) return tl::unexpected(Error{ErrorCode::negative, "P", dwell->seconds, 0.0});
@@ -168,6 +173,7 @@ class Writer {
     if (line_open_) pen.text("\n");
     line_open_ = false;
     word_turns_ = false;
+    word_spindle_ = false;
     word_line_ = 0;
   }
 
@@ -195,19 +201,29 @@ class Writer {
     pen.text({digits.data(), end});
   }
 
-  /// Words that came from one line stay on one: some belong together. A tap stops its spindle and turns it
-  /// the other way, which takes two lines. I, J and K would be an arc's where its code holds. The program's
-  /// number stands before everything.
+  /// Words that came from one line stay on one: G96 has its S there. A tap stops its spindle and turns it the
+  /// other way, which takes two lines. T stands alone, where no code may be thought to own it. I, J and K
+  /// would be an arc's where its code holds. The program's number stands before everything.
   template <class Out>
   void pass(const Word& word, Pen<Out>& pen) {
     if (word.letter != 'O' && !begun_) begin(pen);
     const bool turns = word.letter == 'M' && word.number >= 3.0 && word.number <= 5.0;
-    if (word.line == 0 || word.line != word_line_ || (turns && word_turns_)) end_line(pen);
-    if (is_arc(modal_.motion) && (bit(word.letter) & bits("IJK")) != 0) {
+    const bool alone = word.letter == 'T';
+    if (word.line == 0 || word.line != word_line_ || (turns && word_turns_) || alone) end_line(pen);
+    Letters letters = bit(word.letter);
+    for (std::size_t i = 0; i < word.arguments.size(); ++i) letters |= bit(word.arguments[i].letter);
+    if (is_arc(modal_.motion) && (letters & bits("IJK")) != 0) {
       put(pen, "G", 80);
       modal_.motion = no_code;
     }
     put(pen, name(word.letter), word.number);
+    for (std::size_t i = 0; i < word.arguments.size(); ++i) {
+      const auto [letter, number] = word.arguments[i];
+      if (letter == '$' && word_spindle_) continue;  // of S and of M3 alike
+      put(pen, name(letter), number);
+      word_spindle_ = word_spindle_ || letter == '$';
+    }
+    if (alone) return end_line(pen);
     word_line_ = word.line;
     word_turns_ = word_turns_ || turns;
   }
@@ -340,7 +356,8 @@ class Writer {
   Position offset_{};
   std::size_t work_system_{};
   int word_line_{};
-  bool word_turns_{};  ///< there is one of M3 to M5 on the line
+  bool word_turns_{};    ///< there is one of M3 to M5 on the line
+  bool word_spindle_{};  ///< there is $ on the line
   bool begun_{};
   bool line_open_{};
 };

@@ -72,7 +72,7 @@ namespace detail {
   for (auto word = scanner.next();; word = scanner.next()) {
     if (!word) return std::nullopt;
     if (!*word) break;
-    const auto [letter, number, unused_line, column] = **word;
+    const auto [letter, number, unused_line, column, unused_arguments] = **word;
     if (letter == 'M' && number == 98.0 && call.column == 0) {
       call.column = column;
     } else if (letter == 'P' && !has_number && number >= 0.0) {
