@@ -63,6 +63,44 @@ TEST_CASE("G10 sets work coordinate systems and tools") {
   CHECK(read(many).error == "65:8: P is not supported");
 }
 
+TEST_CASE("a tool that the table does not have is an error, and without a table a warning once") {
+  Dialect dialect;
+  dialect.tools = {{1, 12.0, 6.0}};
+  for (const auto& [line, at] : {std::pair("T2 M6", "1:1: T2"),
+                                 {"T2", "1:1: T2"},
+                                 {"G0 X1\nM6 T2", "2:4: T2"},
+                                 {"G43 H2", "1:5: H2"},
+                                 {"G43.2 H2", "1:7: H2"},
+                                 {"G41 D2", "1:5: D2"},
+                                 {"G42 D2", "1:5: D2"},
+                                 {"M61 Q2", "1:5: Q2"},
+                                 {"T2 G43 H3", "1:1: T2"},
+                                 {"T1 M6 G43 H3", "1:11: H3"}}) {
+    CAPTURE(line);
+    CHECK(read(line, dialect).error == std::string(at) + " names a tool that the table does not have");
+  }
+  for (const char* line : {"T1 M6", "T0 M6", "G43", "G43 H0", "G43 H1", "G41 D1", "G41 D0", "G41.1 D6",
+                           "M61 Q1", "G10 L1 P2 Z5\nT2 M6\nG43 H2", "G49 H1"}) {
+    CAPTURE(line);
+    const std::string error = read(line, dialect).error;
+    CHECK(error.find("names a tool") == std::string::npos);
+    CHECK(read(line, dialect).all<gcode::Warning>().empty());
+  }
+  const auto warnings = [](const std::string& text) {
+    std::string all;
+    const auto reading = read(text);
+    for (const auto& warning : reading.all<gcode::Warning>())
+      all += gcode::to_text("", warning.about, "warning") + '\n';
+    return all + reading.error;
+  };
+  const std::string sentence = " names a tool, and there is no tool table: its length and diameter are 0\n";
+  CHECK(warnings("G0 X1\nT1 M6\nG43 H1\nT2 M6\nG41 D3") == "2:1: warning: T1" + sentence);
+  CHECK(warnings("G43 H1") == "1:5: warning: H1" + sentence);
+  CHECK(warnings("G41 D1") == "1:5: warning: D1" + sentence);
+  CHECK(warnings("T0 M6\nG43\nG41\nG40\nG41.1 D6").empty());
+  CHECK(warnings("G10 L1 P7 Z3\nT7 M6\nG43 H7").empty());
+}
+
 TEST_CASE("X words are diameters under G7") {
   const auto ends = read("G7 G0 X8 Z1\nG91 X2\nG8 X2").motions();
   REQUIRE(ends.size() == 3);

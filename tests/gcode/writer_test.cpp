@@ -214,10 +214,11 @@ TEST_CASE("codes are written with their words, and read back with them") {
   dialect.pass_through = {{'M', 201.0, gcode::bits("XYZEF")}, {'M', 88.0}, {'G', 251.0}};
   const auto reading = test::read(
       "G1 X1 F600\nM201 X500 Y500\nM67 E1 Q-2.5\nG1 X2 M88 T3 P4\nM101 P1 Q2\nX3 M102 P1\nG2 X5 I1\nG251 L3\n"
-      "G80 M88 I5\nG2 X9 I2 M201 M67 E0 Q0 T1\nM19 R90 $1\nS5 M62 P1\nG96 D900 S20\nM201 F9\nG1 X5 F9 M102\n",
+      "G80 M88 I5\nG2 X9 I2 M201 M67 E0 Q0 T1\nM19 R90 $1\nS5 M62 P1\nG96 D900 S20\nM201 F9\nG1 X5 F9 "
+      "M102\nM88 G1 X6 G96 D900 S20 T1\n",
       dialect);
   REQUIRE(reading.error == "");
-  REQUIRE(reading.all<gcode::Word>().size() == 18);
+  REQUIRE(reading.all<gcode::Word>().size() == 22);
   check_round_trip(reading.items, dialect);
 }
 

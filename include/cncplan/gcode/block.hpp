@@ -173,6 +173,15 @@ class Block {
     return give(letter, *owner);
   }
 
+  /// A word or a code as it is handed on, with those of some letters that are there. The line is the
+  /// caller's.
+  [[nodiscard]] Word word(char letter, Letters with = 0) const {
+    return {letter, number(letter), 0, column(letter), arguments(with)};
+  }
+  [[nodiscard]] Word word(Group group, Letters with) const {
+    return {letter(group), code(group) / 10.0, 0, column(group), arguments(with)};
+  }
+
   /// A word of the block as the field of an error.
   [[nodiscard]] Diagnostic error(ErrorCode code, char letter, double bound = 0.0) const {
     return {{code, name(letter), number(letter), bound}, 0, column(letter)};
@@ -215,6 +224,16 @@ class Block {
     text_follows_ = false;
     exponent_ = false;
     lost_ = 0;
+  }
+
+  [[nodiscard]] Arguments arguments(Letters letters) const {
+    Arguments arguments;
+    for (Letters left = letters & letters_; left != 0;) {
+      const char next = first_in_text(left);
+      arguments.push_back({next, number(next)});
+      left &= ~bit(next);
+    }
+    return arguments;
   }
 
   template <class Is>

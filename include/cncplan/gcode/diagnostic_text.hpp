@@ -20,11 +20,12 @@ inline std::string character_text(double code) {
   return text.insert(0, 1, '\'').append(1, '\'');
 }
 
-/// A code is known by its number (G41), any other word by its letter.
+/// A code is known by its number (G41), a tool too (T5), any other word by its letter.
 inline std::string word_text(const Error& error) {
   if (error.field == "byte") return character_text(error.value);
   const bool code = (error.field == "G" || error.field == "M") && error.code != ErrorCode::missing_number;
-  return std::string(error.field) + (code ? number_text(error.value) : "");
+  const bool tool = error.code == ErrorCode::no_such_tool || error.code == ErrorCode::no_tool_table;
+  return std::string(error.field) + (code || tool ? number_text(error.value) : "");
 }
 
 }  // namespace detail

@@ -59,7 +59,7 @@ inline constexpr int work_systems = 9;
 /// The machine's side of the language. The value as it stands is a three-axis mill with empty tables.
 struct Dialect {
   std::vector<Axis> axes{{'X', AxisKind::linear}, {'Y', AxisKind::linear}, {'Z', AxisKind::linear}};
-  std::vector<Tool> tools;  ///< a tool that is not here has length 0
+  std::vector<Tool> tools;  ///< a tool that is not here cannot be named; of an empty table any, with length 0
   std::vector<PassThrough> pass_through;
   std::array<Position, work_systems> work_offsets{};  ///< machine coordinates of each system's origin
   Position home_g28{};                                ///< machine coordinates

@@ -30,7 +30,7 @@
 namespace cncplan::gcode {
 
 /// Most items that one line yields: so large a buffer takes every line.
-inline constexpr std::size_t max_items_per_line = max_passed + 19;
+inline constexpr std::size_t max_items_per_line = max_passed + 20;
 
 /// The state of an RS274/NGC interpreter. At the start all axes are at 0, if nothing else is said, and G17
 /// G21 G90 G91.1 G94 G54 hold; no motion code does, and no feed.
@@ -45,6 +45,7 @@ class Reader {
   explicit Reader(const Dialect& dialect = {}, const Position& start = {})
       : readable_(validate(dialect).map([](const Dialect&) {})),
         dialect_(readable_ ? dialect : Dialect{}),
+        has_table_(!dialect_.tools.empty()),
         alphabet_(dialect_),
         place_(dialect_, start) {
     modal_.retract_to_r = dialect_.retract_to_r;
@@ -208,9 +209,10 @@ class Reader {
   void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
     const bool speed = block_.has('S') && !dwells_by_s(block_);
-    if (speed) emit(word('S', bit('$')));  // with what it names only: that of a tap does not come out
+    if (speed)
+      emit(at_line(block_.word('S', bit('$'))));  // with what it names only: that of a tap does not come out
     if (block_.has('T')) {
-      emit(word('T', 0));
+      emit(at_line(block_.word('T')));
       selected_tool_ = static_cast<int>(block_.number('T'));
     }
     hand_out(Group::spindle_mode, emit);
@@ -235,7 +237,7 @@ class Reader {
   template <class Out>
   Out execute(Code motion, Out out) {
     const auto emit = emitter(out);
-    warnings_.tell(block_, modal_, motion, alphabet_, [&](Diagnostic about) {
+    warnings_.tell(block_, modal_, motion, alphabet_, missing_tool(block_, dialect_), [&](Diagnostic about) {
       about.line = line_;
       emit(Warning{about});
     });
@@ -274,24 +276,7 @@ class Reader {
   void hand_out(Group group, Emit& emit) const {
     if (!block_.has(group)) return;
     const Letters spindle = group == Group::spindle ? bit('$') : 0;
-    Word code{letter(group), block_.code(group) / 10.0, line_, block_.column(group)};
-    add_arguments(code, (detail::words_of(group, block_, alphabet_) & ~bit('S')) | spindle);
-    emit(code);
-  }
-
-  /// A word of the line, with others that belong to it.
-  [[nodiscard]] Word word(char letter, Letters arguments) const {
-    Word word{letter, block_.number(letter), line_, block_.column(letter)};
-    add_arguments(word, arguments);
-    return word;
-  }
-
-  void add_arguments(Word& word, Letters letters) const {
-    for (Letters left = letters & block_.letters(); left != 0;) {
-      const char next = block_.first_in_text(left);
-      word.arguments.push_back({next, block_.number(next)});  // four at most
-      left &= ~bit(next);
-    }
+    emit(at_line(block_.word(group, (detail::words_of(group, block_, alphabet_) & ~bit('S')) | spindle)));
   }
 
   /// M6 loads the tool that T has selected; M61 Q says which one is loaded.
@@ -380,6 +365,9 @@ class Reader {
   /// What words alone do not tell: a feed per revolution needs a spindle that turns.
   [[nodiscard]] Expected<void, Diagnostic> check_state(const Modal& modal, Code motion, Code before) {
     if (auto ok = spindle_.check(block_, modal, motion); !ok) return ok;
+    if (has_table_)
+      if (const auto tool = missing_tool(block_, dialect_))
+        return tl::unexpected(block_.error(ErrorCode::no_such_tool, *tool));
     if (block_.code(Group::non_modal) == code(10) && sets_tool()) {
       if (!has_room_for(dialect_, static_cast<int>(block_.number('P'))))
         return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
@@ -589,6 +577,7 @@ class Reader {
 
   Expected<void> readable_;
   Dialect dialect_;
+  bool has_table_;  ///< of tools; without one a program may name any
   Alphabet alphabet_;
   Block block_;
   Modal modal_;

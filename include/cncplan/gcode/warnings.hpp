@@ -5,6 +5,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "cncplan/gcode/block.hpp"
@@ -26,9 +27,11 @@ inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64", merging
 /// The warnings of a program, each told at its first line.
 class Warnings {
  public:
-  /// Hands what is new on a line to `warn`, a few at most, with its column.
+  /// Hands what is new on a line to `warn`, a few at most, with its column. `missing_tool`: the word that
+  /// names a tool without an entry, if one does.
   template <class Warn>
-  void tell(const Block& block, const Modal& modal, Code motion, const Alphabet& alphabet, Warn&& warn) {
+  void tell(const Block& block, const Modal& modal, Code motion, const Alphabet& alphabet,
+            std::optional<char> missing_tool, Warn&& warn) {
     const auto about = [&warn](ErrorCode code, std::string_view field, double value, int column) {
       warn(Diagnostic{{code, field, value, 0.0}, 0, std::max(1, column)});
     };
@@ -47,6 +50,9 @@ class Warnings {
         own_codes_.set(number);
         about(ErrorCode::handed_on, name(own->letter), own->number, own->column);
       }
+    if (missing_tool && first(tool_))
+      about(ErrorCode::no_tool_table, name(*missing_tool), block.number(*missing_tool),
+            block.column(*missing_tool));
     if (const Letters left = left_out(block, alphabet, motion) & ~left_out_; left != 0) {
       left_out_ |= left;
       const char letter = gcode::first_of(left);
@@ -80,7 +86,7 @@ class Warnings {
   std::uint32_t groups_{};
   std::bitset<max_m_code + 1> own_codes_;
   Letters left_out_{};  ///< axes that the machine lacks
-  bool tolerance_{}, merging_{}, spindle_{}, probe_{}, rapid_{}, sender_{};
+  bool tolerance_{}, merging_{}, spindle_{}, probe_{}, rapid_{}, sender_{}, tool_{};
 };
 
 }  // namespace cncplan::gcode

@@ -174,6 +174,7 @@ class Writer {
     line_open_ = false;
     word_turns_ = false;
     word_spindle_ = false;
+    word_code_ = false;
     word_line_ = 0;
   }
 
@@ -202,14 +203,14 @@ class Writer {
   }
 
   /// Words that came from one line stay on one: G96 has its S there. A tap stops its spindle and turns it the
-  /// other way, which takes two lines. T stands alone, where no code may be thought to own it. I, J and K
-  /// would be an arc's where its code holds. The program's number stands before everything.
+  /// other way, which takes two lines. S and T stand behind no code, which may be thought to own them. I, J
+  /// and K would be an arc's where its code holds. The program's number stands before everything.
   template <class Out>
   void pass(const Word& word, Pen<Out>& pen) {
     if (word.letter != 'O' && !begun_) begin(pen);
     const bool turns = word.letter == 'M' && word.number >= 3.0 && word.number <= 5.0;
-    const bool alone = word.letter == 'T';
-    if (word.line == 0 || word.line != word_line_ || (turns && word_turns_) || alone) end_line(pen);
+    const bool owned = (word.letter == 'S' || word.letter == 'T') && word_code_;
+    if (word.line == 0 || word.line != word_line_ || (turns && word_turns_) || owned) end_line(pen);
     Letters letters = bit(word.letter);
     for (std::size_t i = 0; i < word.arguments.size(); ++i) letters |= bit(word.arguments[i].letter);
     if (is_arc(modal_.motion) && (letters & bits("IJK")) != 0) {
@@ -223,8 +224,8 @@ class Writer {
       put(pen, name(letter), number);
       word_spindle_ = word_spindle_ || letter == '$';
     }
-    if (alone) return end_line(pen);
     word_line_ = word.line;
+    word_code_ = word_code_ || word.letter == 'G' || word.letter == 'M';
     word_turns_ = word_turns_ || turns;
   }
 
@@ -358,6 +359,7 @@ class Writer {
   int word_line_{};
   bool word_turns_{};    ///< there is one of M3 to M5 on the line
   bool word_spindle_{};  ///< there is $ on the line
+  bool word_code_{};     ///< there is a G or an M of a word on the line
   bool begun_{};
   bool line_open_{};
 };
