@@ -95,6 +95,7 @@ TEST_CASE("words are told where they stand, stops at rest", "[executor]") {
   bool stops_at_rest = true, in_place = true;
   while (!executor.finished()) {
     const auto point = executor.tick(period);
+    if (executor.rested() > 0) executor.resume();  // at M0
     for (const auto& word : point.words) {
       told += word.letter + std::to_string(static_cast<int>(word.number)) + ' ';
       const bool stops =
@@ -121,8 +122,8 @@ TEST_CASE("more words than a set point has room for come one after another", "[e
   CHECK(ticks == 2);
 }
 
-TEST_CASE("M0 and M1 hold where that is switched on, lines and blocks where it is asked", "[executor]") {
-  const Lines lines{"G1 X5 F1200", "M0", "X10", "M1", "X15", "X20"};
+TEST_CASE("M0 holds unless that is switched off, M1 where it is switched on, lines and blocks where it is asked", "[executor]") {
+  const Lines lines{"G1 X5 F1200", "M0", "X10", "M1", "X15", "M60", "X20", "X25"};
   const auto places = [&](auto ask) {
     Runner executor(mill);
     ask(executor);
@@ -134,12 +135,18 @@ TEST_CASE("M0 and M1 hold where that is switched on, lines and blocks where it i
     }
     return held;
   };
-  CHECK(places([](Runner&) {}) == std::vector{20.0});
-  CHECK(places([](Runner& e) { e.program_stop(true); }) == std::vector{5.0, 20.0});
-  CHECK(places([](Runner& e) { e.optional_stop(true); }) == std::vector{10.0, 20.0});
-  CHECK(places([](Runner& e) { e.pause_at(6); }) == std::vector{15.0, 20.0});
-  const auto steps = places([](Runner& e) { e.single_step(true); });
-  for (const double place : {5.0, 10.0, 15.0, 20.0})
+  CHECK(places([](Runner&) {}) == std::vector{5.0, 15.0, 25.0});
+  CHECK(places([](Runner& e) { e.program_stop(false); }) == std::vector{25.0});
+  CHECK(places([](Runner& e) { e.optional_stop(true); }) == std::vector{5.0, 10.0, 15.0, 25.0});
+  const auto only = [](auto ask) {
+    return [ask](Runner& e) {
+      e.program_stop(false);
+      ask(e);
+    };
+  };
+  CHECK(places(only([](Runner& e) { e.pause_at(8); })) == std::vector{20.0, 25.0});
+  const auto steps = places(only([](Runner& e) { e.single_step(true); }));
+  for (const double place : {5.0, 10.0, 15.0, 20.0, 25.0})
     CHECK(std::count(steps.begin(), steps.end(), place) >= 1);
 }
 

@@ -81,7 +81,9 @@ class Executor {
         longest_wait_(options.longest_wait),
         feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
               {options.tolerance, options.rotary_tolerance, options.exact_between_rapids_and_feeds}),
-        player_({played_, ahead_, waypoints_, spare_waypoints_}, static_cast<std::int64_t>(capacity)) {}
+        player_({played_, ahead_, waypoints_, spare_waypoints_}, static_cast<std::int64_t>(capacity)) {
+    player_.program_stop(true);
+  }
 
   [[nodiscard]] const M& machine() const { return machine_; }
 
@@ -156,7 +158,8 @@ class Executor {
   void single_step(bool wanted) { player_.single_step(wanted); }
   /// Rests at M1 until it is resumed.
   void optional_stop(bool wanted) { player_.optional_stop(wanted); }
-  /// Rests at M0 and M60 until it is resumed. Without it they stop the motion, and it goes on.
+  /// Rests at M0 and M60 until it is resumed, which it does unless it is switched off. Then they stop the
+  /// motion, and it goes on.
   void program_stop(bool wanted) { player_.program_stop(wanted); }
   /// Rests before the first block of a line until it is resumed. 0: none.
   void pause_at(int line) { player_.pause_at(line); }

@@ -77,7 +77,8 @@ class TrajectoryExecutor {
   void reverse(bool wanted) { backwards_ = wanted; }
   /// Rests at M1 until it is resumed.
   void optional_stop(bool wanted) { optional_stop_ = wanted; }
-  /// Rests at M0 and M60 until it is resumed.
+  /// Rests at M0 and M60 until it is resumed, which it does unless it is switched off. Then they stop the
+  /// motion, and it goes on.
   void program_stop(bool wanted) { program_stop_ = wanted; }
 
   /// Whether it is over: at rest at the end of the trajectory, or where it was stopped.
@@ -315,7 +316,8 @@ class TrajectoryExecutor {
   std::size_t told_ = 0;
   ReachedWords reached_;
   plan::BasicElapsed<Scalar> time_;
-  bool held_{}, stopped_{}, backwards_{}, optional_stop_{}, program_stop_{};
+  bool held_{}, stopped_{}, backwards_{}, optional_stop_{};
+  bool program_stop_ = true;
   Scalar share_ = Scalar(1);
   // At a rest, for so long; else behind that rest, by a ramp of the clock that began some time ago.
   bool standing_{};
