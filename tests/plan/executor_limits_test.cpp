@@ -116,6 +116,7 @@ TEST_CASE("a quick stop keeps its share of every axis' limits on bends", "[execu
     const auto executor = std::make_unique<Executor3>(
         test::slow_axes<double>,
         Executor3::Options{.tolerance = i % 2 == 0 ? 0.0 : 0.01, .quick_stop_share = share});
+    executor->program_stop(false);
     test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(strong, blocks,
                                                                              {1, 1, period, 1e-12});
     for (const auto& block : blocks) REQUIRE(executor->push(block));

@@ -367,6 +367,7 @@ TEST_CASE("blocks come from another thread", "[executor]") {
   const auto blocks = test::blocks_of(lines, mill);
   const auto executor =
       std::make_unique<Runner>(mill, Runner::Options{.tolerance = tolerance, .background = true});
+  executor->program_stop(false);
   std::atomic<bool> over{false};
   std::thread feeder([&] {
     for (const auto& block : blocks)

@@ -29,6 +29,7 @@ using Runner = Executor<Machine<3>, 32>;
 std::unique_ptr<Runner> loaded(const Machine<3>& machine, const std::vector<ProgramBlock<Machine<3>>>& blocks,
                                double tolerance = 0.01) {
   auto executor = std::make_unique<Runner>(machine, Runner::Options{.tolerance = tolerance});
+  executor->program_stop(false);
   for (const auto& block : blocks) REQUIRE(executor->push(block));
   executor->end_of_program();
   return executor;

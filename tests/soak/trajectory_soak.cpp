@@ -99,6 +99,7 @@ void examine(const T& trajectory, const std::vector<ProgramBlock<Mill>>& blocks,
   for (const auto& block : blocks) ends.push_back((ends.empty() ? 0 : ends.back()) + block.path.length());
   const Mill& machine = c.program.machine;
   TrajectoryExecutor executor(trajectory, machine);
+  executor.program_stop(false);
   const auto share = [&](const Vector3& value, double rounding, double of_tool, auto of_axis) {
     double result = (value.norm() - rounding) / of_tool;
     for (int i = 0; i < 3; ++i)
