@@ -16,10 +16,10 @@ using namespace cncplan;
 void smooth_ball(benchmark::State& state, const smooth::BasicSmoothOptions<double>& options) {
   using Segment = bench::Block::Path;
   const Limits& tool = bench::mill.limits;
-  const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, PlanOptions{});
-  if (!program) return state.SkipWithError("the program does not read");
+  const auto program = read_text(bench::ball(), bench::mill);
+  if (program.failed()) return state.SkipWithError("the program does not read");
   std::vector<smooth::BandBlock<Segment>> blocks;
-  for (const auto& block : program->blocks)
+  for (const auto& block : program.blocks())
     if (block.path.length() > 0)
       blocks.push_back({&block.path, block.rapid ? tool.velocity : std::min(block.feed, tool.velocity),
                         Vector3::Constant(0.01)});

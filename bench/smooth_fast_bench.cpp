@@ -11,25 +11,25 @@ using namespace cncplan;
 // An item is a block; `seconds` is the motion's duration.
 void smooth_ball_fast(benchmark::State& state) {
   const PlanOptions options{.tolerance = 0.01};
-  const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, options);
-  if (!program) return state.SkipWithError("the program does not read");
+  const auto program = read_text(bench::ball(), bench::mill, options);
+  if (program.failed()) return state.SkipWithError("the program does not read");
   double seconds = 0;
   for (auto _ : state) {
-    const auto planned = plan_blocks(program->blocks, bench::mill, options);
+    const auto planned = plan_blocks(program.blocks(), bench::mill, options);
     if (!planned) return state.SkipWithError("the program has no plan");
     seconds = planned->duration();
   }
   state.counters["seconds"] = seconds;
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(program->blocks.size()));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(program.blocks().size()));
 }
 BENCHMARK(smooth_ball_fast)->Name("smooth/ball/fast")->Unit(benchmark::kMillisecond);
 
 // The same without the speed: which junctions, and how large their kernels are.
 void smooth_ball_sizes(benchmark::State& state) {
   const PlanOptions options{.tolerance = 0.01};
-  const auto program = read_blocks(gcode::TextLines(bench::ball()), bench::mill, options);
-  if (!program) return state.SkipWithError("the program does not read");
-  const std::span<const bench::Block> blocks(program->blocks);
+  const auto program = read_text(bench::ball(), bench::mill, options);
+  if (program.failed()) return state.SkipWithError("the program does not read");
+  const std::span<const bench::Block> blocks(program.blocks());
   for (auto _ : state)
     benchmark::DoNotOptimize(plan::smoothing(blocks, bench::mill, plan::smoothing_rules<double>(options)));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));

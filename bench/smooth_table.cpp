@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -21,7 +20,6 @@
 #include <vector>
 
 #include "cncplan/core/fixed_memory.hpp"
-#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
 
@@ -122,10 +120,9 @@ std::optional<std::vector<Block>> blocks_of(const Case& c, const Mill& machine, 
     }
     return blocks;
   }
-  std::ifstream stream(folder + "/" + c.file, std::ios::binary);
-  const auto program = read_blocks(gcode::StreamLines(stream), machine, PlanOptions{});
-  if (!program || !stream.eof()) return std::nullopt;
-  for (Block block : program->blocks) {
+  const auto program = read_file(folder + "/" + c.file, machine);
+  if (program.failed()) return std::nullopt;
+  for (Block block : program.blocks()) {
     if (!(block.path.length() > 0)) continue;
     block.exact_stop = block.exact_path = false;
     block.pause = 0;

@@ -4,7 +4,6 @@
 // the plan and that of the level an `Executor` has, and then the way to rest from holds at several instants.
 #include <cstdio>
 
-#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
@@ -13,12 +12,12 @@ int main() {
   const char* text = "G21 G90 F1800\nG1 X20\nY20\nX25 Y22\nG3 X30 Y10 R12\nG1 X0 Y0\n";
   const cncplan::Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
   const cncplan::PlanOptions options{.tolerance = 0.01};
-  const auto program = cncplan::read_blocks(cncplan::gcode::TextLines(text), mill, options);
-  if (!program) return std::fprintf(stderr, "%s\n", to_text(program.error()).c_str()), 2;
-  auto best = cncplan::plan_smooth(program->blocks, with_reserve(mill, 0.05), options);
-  const auto fast = cncplan::plan_blocks(program->blocks, mill, options);
+  const auto program = cncplan::read_text(text, mill, options);
+  if (program.failed()) return std::fprintf(stderr, "%s\n", to_text(*program.first_error()).c_str()), 2;
+  auto best = cncplan::plan_smooth(program.blocks(), with_reserve(mill, 0.05), options);
+  const auto fast = cncplan::plan_blocks(program.blocks(), mill, options);
   if (!best || !fast) return 2;
-  best->set_words(timed_words(*program, *best));
+  best->set_words(timed_words(program, *best));
   std::printf("best with a reserve %.3f s, fast %.3f s\n\n", best->duration(), fast->duration());
 
   std::printf("%10s %12s %14s %12s %12s\n", "hold at s", "speed mm/s", "rest after s", "X mm", "Y mm");

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "cncplan/core/fixed_memory.hpp"
-#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
 
@@ -23,8 +22,8 @@ int main() {
   using Mill = cncplan::Machine<3>;
   const Mill mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
   const cncplan::PlanOptions options{.tolerance = 0.01};
-  const auto program = cncplan::read_blocks(cncplan::gcode::TextLines(text), mill, options);
-  if (!program) return std::fprintf(stderr, "%s\n", to_text(program.error()).c_str()), 2;
+  const auto program = cncplan::read_text(text, mill, options);
+  if (program.failed()) return std::fprintf(stderr, "%s\n", to_text(*program.first_error()).c_str()), 2;
 
   static std::byte buffer[8 << 20];
   cncplan::FixedMemory memory(buffer);
@@ -39,7 +38,7 @@ int main() {
     time += part.duration();
     std::printf("%10.3f %8d %12.3f %14.3f\n", time, end.line, end.velocity.norm(), end.acceleration.norm());
   };
-  for (const auto& block : program->blocks) {
+  for (const auto& block : program.blocks()) {
     if (const auto ok = stream.push(block); !ok)
       return std::fprintf(stderr, "%s\n", to_text(ok.error()).c_str()), 2;
     take();

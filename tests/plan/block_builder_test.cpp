@@ -15,9 +15,9 @@ namespace {
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
 std::vector<ProgramBlock<Machine<3>>> blocks(std::string_view text) {
-  auto program = read_blocks(gcode::TextLines(text), mill, {});
-  REQUIRE(program);
-  return program->blocks;
+  auto program = read_text(text, mill);
+  REQUIRE_FALSE(program.failed());
+  return std::move(program).take_blocks();
 }
 
 ProgramBlock<Machine<3>> block(const gcode::Motion& motion) {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "cncplan/core/state.hpp"
-#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
@@ -22,9 +21,9 @@ namespace {
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
 auto planned(const std::string& text, const Machine<3>& machine) {
-  const auto program = read_blocks(gcode::TextLines(text), machine, {});
-  REQUIRE(program);
-  auto trajectory = plan_smooth(program->blocks, machine, {.tolerance = 0.01}, SmoothLevel::good);
+  const auto program = read_text(text, machine);
+  REQUIRE_FALSE(program.failed());
+  auto trajectory = plan_smooth(program.blocks(), machine, {.tolerance = 0.01}, SmoothLevel::good);
   REQUIRE(trajectory);
   return *std::move(trajectory);
 }

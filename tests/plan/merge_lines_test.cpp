@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/merge_lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
@@ -28,9 +27,9 @@ const PlanOptions within{.tolerance = tolerance};
 
 template <MachineModel M>
 std::vector<ProgramBlock<M>> read(const std::string& text, const M& machine) {
-  const auto program = read_blocks(gcode::TextLines(text), machine, within);
-  REQUIRE(program);
-  return program->blocks;
+  auto program = read_text(text, machine, within);
+  REQUIRE_FALSE(program.failed());
+  return std::move(program).take_blocks();
 }
 
 template <MachineModel M>

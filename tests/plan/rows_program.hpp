@@ -22,9 +22,9 @@ inline const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .j
 inline const PlanOptions within{.tolerance = 0.01};
 
 inline MillBlocks blocks_of(const std::string& text, const Machine<3>& machine = mill) {
-  auto program = read_blocks(gcode::TextLines(text), machine, within);
-  REQUIRE(program);
-  return std::move(program->blocks);
+  auto program = read_text(text, machine, within);
+  REQUIRE_FALSE(program.failed());
+  return std::move(program).take_blocks();
 }
 
 /// Rows to and fro, joined by half circles: short lines that are seldom straight.

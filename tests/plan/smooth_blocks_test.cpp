@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -30,9 +29,9 @@ const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 1
 
 std::vector<ProgramBlock<Machine<3>>> blocks_of(const std::string& text, const Machine<3>& machine = mill,
                                                 const PlanOptions& options = {}) {
-  auto program = read_blocks(gcode::TextLines(text), machine, options);
-  REQUIRE(program);
-  return std::move(program->blocks);
+  auto program = read_text(text, machine, options);
+  REQUIRE_FALSE(program.failed());
+  return std::move(program).take_blocks();
 }
 
 template <class T>
@@ -300,19 +299,19 @@ TEST_CASE("good and best: a real program takes no longer than a prototype did", 
     WARN("SKIPPED: CNCPLAN_SHARED is not set");
     return;
   }
-  std::ifstream stream(*shared + "/data/ngc/51MeanderAve.ngc", std::ios::binary);
-  auto program = read_blocks(gcode::StreamLines(stream), mill, PlanOptions{});
-  REQUIRE(program);
-  std::erase_if(program->blocks, [](const auto& block) { return !(block.path.length() > 0); });
-  for (auto& block : program->blocks) {
+  auto program = read_file(*shared + "/data/ngc/51MeanderAve.ngc", mill);
+  REQUIRE_FALSE(program.failed());
+  auto blocks = std::move(program).take_blocks();
+  std::erase_if(blocks, [](const auto& block) { return !(block.path.length() > 0); });
+  for (auto& block : blocks) {
     block.exact_stop = block.exact_path = false;
     block.pause = block.merge = 0;
     block.tolerance.reset();
   }
-  const auto best = plan_smooth(program->blocks, mill, {.tolerance = 0.01});
+  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
   REQUIRE(best);
   CHECK(best->duration() < 218.4);
-  const auto good = plan_smooth(program->blocks, mill, {.tolerance = 0.01}, SmoothLevel::good);
+  const auto good = plan_smooth(blocks, mill, {.tolerance = 0.01}, SmoothLevel::good);
   REQUIRE(good);
   CHECK(good->duration() < 220.07 * 1.005);  // the prototype's before its second round
   CHECK(good->duration() > best->duration());

@@ -23,11 +23,11 @@ constexpr double period = 1e-3;
 
 template <int N = 3>
 auto planned(const std::string& text, const Machine<N>& machine, SmoothLevel level = SmoothLevel::good) {
-  const auto program = read_blocks(gcode::TextLines(text), machine, {});
-  REQUIRE(program);
-  auto trajectory = plan_smooth(program->blocks, machine, {.tolerance = 0.01}, level);
+  const auto program = read_text(text, machine);
+  REQUIRE_FALSE(program.failed());
+  auto trajectory = plan_smooth(program.blocks(), machine, {.tolerance = 0.01}, level);
   REQUIRE(trajectory);
-  trajectory->set_words(timed_words(*program, *trajectory));
+  trajectory->set_words(timed_words(program, *trajectory));
   return *std::move(trajectory);
 }
 
@@ -229,10 +229,9 @@ TEST_CASE("trajectory executor: a level that an executor has, and axes that turn
   machine.axes[3].velocity = 2;
   machine.axes[3].acceleration = 20;
   machine.axes[3].jerk = 200;
-  const auto program =
-      read_blocks(gcode::TextLines("F1800 G1 X20 A30\nY5 A0\nA90\nG2 X30 I5\n"), machine, {});
-  REQUIRE(program);
-  const auto trajectory = plan_blocks(program->blocks, machine, {.tolerance = 0.01});
+  const auto program = read_text("F1800 G1 X20 A30\nY5 A0\nA90\nG2 X30 I5\n", machine);
+  REQUIRE_FALSE(program.failed());
+  const auto trajectory = plan_blocks(program.blocks(), machine, {.tolerance = 0.01});
   REQUIRE(trajectory);
   TrajectoryExecutor executor(*trajectory, machine);
   int ticks = 0;

@@ -107,9 +107,9 @@ void examine_plan(const T& motion, const Case& c, const Blocks& blocks, Errors& 
 // `held`: blocks that are held at once; 0: the whole program.
 bool examine(const Case& c, Level level, std::size_t held, Errors& errors) {
   const PlanOptions options{.tolerance = c.tolerance};
-  const auto program = read_blocks(gcode::TextLines(c.program), c.machine, options);
-  if (!program) return false;
-  const Blocks& blocks = program->blocks;
+  const auto program = read_text(c.program, c.machine, options);
+  if (program.failed()) return false;
+  const Blocks blocks(program.blocks().begin(), program.blocks().end());
   const auto ms_a_block = [&](std::clock_t start) {
     return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC /
            static_cast<double>(blocks.size());

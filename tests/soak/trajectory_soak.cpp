@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,7 @@ Case draw(std::uint64_t seed, double seconds) {
 }
 
 template <class T>
-void examine(const T& trajectory, const std::vector<ProgramBlock<Mill>>& blocks, const Case& c,
+void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, const Case& c,
              Errors& errors) {
   std::vector<double> ends;  // mm of the program up to the end of each block
   for (const auto& block : blocks) ends.push_back((ends.empty() ? 0 : ends.back()) + block.path.length());
@@ -169,12 +170,12 @@ void examine(const T& trajectory, const std::vector<ProgramBlock<Mill>>& blocks,
 bool examine(const Case& c, Errors& errors) {
   const PlanOptions options{.tolerance = c.program.tolerance};
   const Mill planned_for = with_reserve(c.program.machine, c.reserve);
-  const auto program = read_blocks(gcode::TextLines(c.program.program), planned_for, options);
-  if (!program) return false;
-  auto trajectory = plan_smooth(program->blocks, planned_for, options, c.level);
+  const auto program = read_text(c.program.program, planned_for, options);
+  if (program.failed()) return false;
+  auto trajectory = plan_smooth(program.blocks(), planned_for, options, c.level);
   if (!trajectory) return false;
-  trajectory->set_words(timed_words(*program, *trajectory));
-  examine(*trajectory, program->blocks, c, errors);
+  trajectory->set_words(timed_words(program, *trajectory));
+  examine(*trajectory, program.blocks(), c, errors);
   return true;
 }
 

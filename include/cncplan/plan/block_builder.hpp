@@ -123,6 +123,9 @@ class BlockBuilder {
 
   /// Where the axes are before the first motion.
   void start_at(const gcode::Position& place) { end_ = coordinates_of(place); }
+  void start_at(const VectorN<Scalar, program_coordinates<M>>& place) { end_ = place; }
+  /// Where the last motion ended, in the program's coordinates.
+  [[nodiscard]] const VectorN<Scalar, program_coordinates<M>>& end() const { return end_; }
 
   /// A stop of so many seconds where the last motion ended.
   [[nodiscard]] Block rest(int line = 0, double seconds = 0.0) const {

@@ -74,16 +74,18 @@ template <MachineModel M, Path P>
   return {};
 }
 
-/// Nothing, or the first axis that moves where the tool stands still, and neither the program nor an axis
-/// that moves says how fast, or no such axis how quickly the speed may change.
+/// Nothing, or that neither the program nor a limit says how fast a block may be, or how quickly its speed
+/// may change. Where the tool stands still the first axis that moves is named.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<void> limited(const B& block, const M& machine) {
   using S = typename M::Scalar;
   if (!(block.path.length() > S(0))) return {};
   const LengthOf counted = length_of(block.path, machine);
-  if (counted == LengthOf::tool) return {};
+  const bool tool = counted == LengthOf::tool;
+  bool speed = std::isfinite(wanted_speed(block, machine, counted));
+  bool change = tool && (std::isfinite(machine.limits.acceleration) || std::isfinite(machine.limits.jerk));
+  if (speed && change) return {};
   const auto bounds = block.path.bounds(S(0), block.path.length());
-  bool speed = std::isfinite(wanted_speed(block, machine, counted)), change = false;
   std::string_view first;
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
@@ -93,7 +95,9 @@ template <MachineModel M, BlockModel B>
     change = change || std::isfinite(least_acceleration(axis)) || std::isfinite(axis.jerk);
   }
   if (speed && change) return {};
-  return tl::unexpected(Error{ErrorCode::unlimited, first, 0.0, 0.0});
+  if (!tool) return tl::unexpected(Error{ErrorCode::unlimited, first, 0.0, 0.0});
+  return refusal(ErrorCode::not_finite, speed ? "acceleration and jerk limit" : "velocity limit",
+                 std::numeric_limits<S>::infinity());
 }
 
 /// Nothing, or that a length or a pause is not finite, or a pause negative.

@@ -108,17 +108,19 @@ template <std::ranges::contiguous_range R, MachineModel M>
   return plan::plan_own_blocks(plan::own_blocks(std::forward<R>(blocks), memory), machine, options);
 }
 
-/// The same with a policy of one's own for joints (`JunctionPolicy`); the tolerances of the options do not
-/// act.
-template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy>
+/// The same on the exact path, with a policy of one's own for joints (`JunctionPolicy`) and a law for changes
+/// of speed.
+template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
+          plan::RampLaw<typename M::Scalar> Law = plan::SevenPhase>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
-                                                                            const Policy& policy) {
+                                                                            const Policy& policy,
+                                                                            const Law& law = {}) {
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const plan::JointRules<S, Policy> rules{policy, S(-1), S(-1)};
   return plan::trajectory(plan::own_blocks(std::forward<R>(blocks), std::pmr::get_default_resource()),
-                          machine, rules, plan::SevenPhase{});
+                          machine, rules, law);
 }
 
 }  // namespace cncplan

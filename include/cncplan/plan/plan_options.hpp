@@ -1,6 +1,7 @@
 // How a program is to be planned (set-up).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -23,6 +24,14 @@ struct PlanOptions {
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
   path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be
   gcode::FindFile subprograms{};            ///< files of subprograms; those in the program's folder if empty
+  bool flat{};  ///< parameters, expressions, O-words and calls are errors, as for `BlockReader`
 };
+
+/// Where a program starts, as its reader has it.
+[[nodiscard]] inline gcode::Position start_position(const PlanOptions& options) {
+  gcode::Position start{};
+  std::copy_n(options.start.begin(), std::min(options.start.size(), start.size()), start.begin());
+  return start;
+}
 
 }  // namespace cncplan

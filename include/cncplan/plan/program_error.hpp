@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "cncplan/core/error_text.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
@@ -19,8 +20,9 @@ struct ProgramError {
   [[nodiscard]] const Error& error() const { return about.error; }
 };
 
-/// "part.ngc:12:5: error: axis X: 310 is above the limit 300", or as much of that as is known.
-[[nodiscard]] inline std::string to_text(const ProgramError& error) {
+/// "part.ngc:12:5: error: axis X: 310 is above the limit 300", or as much of that as is known; or with
+/// another word for its weight.
+[[nodiscard]] inline std::string to_text(const ProgramError& error, std::string_view weight = "error") {
   std::string place = error.file;
   if (error.about.line > 0) {
     if (!place.empty()) place += ':';
@@ -28,9 +30,9 @@ struct ProgramError {
   } else if (error.block) {
     place += (place.empty() ? "block " : ": block ") + std::to_string(*error.block);
   }
+  if (!place.empty()) place += ": ";
   const bool of_text = error.about.line > 0 && !error.block;
-  return place + (place.empty() ? "error: " : ": error: ") +
-         (of_text ? gcode::to_text(error.about) : to_text(error.error()));
+  return place.append(weight) + ": " + (of_text ? gcode::to_text(error.about) : to_text(error.error()));
 }
 
 }  // namespace cncplan

@@ -1,0 +1,205 @@
+#include "cncplan/plan/program.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cncplan/junction/exact_stop.hpp"
+#include "cncplan/plan/plan_program.hpp"
+#include "support/catch.hpp"
+#include "support/program_run.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+
+std::vector<std::string> problems(const ProgramRecord& program) {
+  std::vector<std::string> result;
+  for (const Problem& problem : program.problems()) result.push_back(to_text(problem));
+  return result;
+}
+
+std::string error_of(const auto& planned) { return planned ? "no error" : to_text(planned.error()); }
+
+}  // namespace
+
+TEST_CASE("all problems of a program are told, each at its place", "[program]") {
+  Machine<4> machine{.limits = mill.limits};
+  machine.axes[0].high = 100;
+  const auto program = read_text(
+      "G21 F600\n"
+      "G1 X5 Y\n"        // a word
+      "Y0\n"             //
+      "X120\n"           // travel
+      "G2 X10 Y10 R1\n"  // an arc
+      "G1 X5 A90\n"      //
+      "A0\n"             // no limits
+      "G69\n"            // without effect
+      "o1 if [1/0]\n"    // the language
+      "o1 endif\n"       //
+      "X1 X2\n"          // a word
+      "X[1+2] (behind)\n",
+      machine);
+  const auto told = problems(program);
+  INFO(Catch::StringMaker<std::vector<std::string>>::convert(told));
+  REQUIRE(told.size() == 7);
+  CHECK(told[0] == "2:7: error: Y has no number");
+  CHECK(told[1] == "4:1: error: axis X: 120 is above the limit 100");
+  CHECK(told[2].starts_with("5:12: error: "));
+  CHECK(told[3] == "7:1: error: axis A: moves alone, without limits of its own");
+  CHECK(told[4] == "8:1: warning: G69 is ignored");
+  CHECK(told[5].starts_with("9:9: error: "));
+  CHECK(told[6] == "11:4: error: X: word given twice");
+  for (const Problem& problem : program.problems())
+    CHECK(problem.is_error() == (to_text(problem).find("warning") == std::string::npos));
+  CHECK(program.failed());
+  CHECK(program.first_error() == &program.problems()[0]);
+  CHECK(program.lines() == 12);
+  CHECK(program.blocks().back().line == 12);
+  CHECK(error_of(plan_program(program, machine)) == told[0]);
+}
+
+TEST_CASE("a program without errors is not failed, whatever its warnings", "[program]") {
+  const auto program = read_text("G69\nG1 X5 F600\n", mill);
+  CHECK(problems(program) == std::vector<std::string>{"1:1: warning: G69 is ignored"});
+  CHECK_FALSE(program.failed());
+  CHECK(program.first_error() == nullptr);
+  const auto empty = read_text("", mill, {.start = {1, 2, 3}});
+  REQUIRE(empty.blocks().size() == 1);
+  CHECK(empty.blocks()[0].path.start() == Vector3(1, 2, 3));
+  CHECK_FALSE(empty.failed());
+}
+
+TEST_CASE("a machine that no program suits is a problem of the program", "[program]") {
+  Machine<3> bad = mill;
+  bad.limits.jerk = -1;
+  const auto program = read_text("G1 X5 F600\nY\n", bad);
+  REQUIRE(program.problems().size() == 2);
+  CHECK(to_text(program.problems()[0]) == "error: jerk limit: -1 must be greater than zero");
+  Machine<3> small = mill;
+  small.axes[0].high = 50;
+  for (const char* text : {"", "G4 P1\n", "G1 Y1 F600\n"}) {
+    const auto outside = read_text(text, small, {.start = {60}});
+    REQUIRE(outside.problems().size() == 1);
+    CHECK(to_text(outside.problems()[0]).find("axis X: 60 is above the limit 50") != std::string::npos);
+  }
+}
+
+TEST_CASE("words, tools, offsets and lines are the program's", "[program]") {
+  gcode::Dialect dialect = dialect_of(mill);
+  dialect.work_offsets[1] = {100, 10, 1};
+  dialect.tools = {{.number = 2, .length = 7}, {.number = 5}};
+  const auto program = read_text("M3 S1000\nT2 M6\nG0 X1\nG55 X2\nM8\nG43 Z0\nT5 M6\nT2 M6\nG1 X3 F60\nM30\n",
+                                 mill, {.dialect = dialect});
+  CHECK(problems(program).empty());
+  std::string words;
+  for (const ProgramWord& word : program.words()) {
+    words += word.word.letter + std::to_string(static_cast<int>(word.word.number)) + '@' +
+             std::to_string(word.block) + ' ';
+    CHECK(program.files()[word.file].empty());
+  }
+  // The blocks: 0 T2, 1 M6, 2 X1, 3 X2, 4 Z0, 5 T5, 6 M6, 7 T2, 8 M6, 9 X3, 10 M30.
+  CHECK(words == "S1000@0 M3@0 T2@0 M6@1 M8@4 T5@5 M6@6 T2@7 M6@8 M30@10 ");
+  CHECK(program.blocks().size() == 11);
+  CHECK(std::vector(program.tools().begin(), program.tools().end()) == std::vector{2, 5});
+  CHECK(program.offset_of(2) == gcode::Position{});
+  CHECK(program.offset_of(3) == gcode::Position{100, 10, 1});
+  CHECK(program.offset_of(4) == gcode::Position{100, 10, 8});
+  CHECK(program.offset_of(10) == gcode::Position{100, 10, 8});
+  CHECK(program.lines() == 10);
+}
+
+TEST_CASE("what comes from another file names it", "[program]") {
+  const test::TemporaryFolder folder;
+  folder.write("part.ngc", "G1 F600 X1\no<side> call [4]\nX20\n");
+  folder.write("side.ngc", "o<side> sub\nM8 X#1\nX1 X2\no<side> endsub\n");
+  const auto program = read_file(folder / "part.ngc", mill);
+  const std::string part = (folder / "part.ngc").string(), side = (folder / "side.ngc").string();
+  REQUIRE(program.problems().size() == 1);
+  CHECK(to_text(program.problems()[0]) == side + ":3:4: error: X: word given twice");
+  REQUIRE(program.blocks().size() == 3);
+  CHECK(program.file_of(0) == part);
+  CHECK(program.file_of(1) == side);
+  CHECK(program.file_of(2) == part);
+  REQUIRE(program.words().size() == 1);
+  CHECK(program.files()[program.words()[0].file] == side);
+}
+
+TEST_CASE("a file that cannot be read is a program with that problem", "[program]") {
+  const auto folder = std::filesystem::temp_directory_path();
+  for (const auto& path :
+       {folder / "cncplan_no_such_file.nc", folder, std::filesystem::path("/proc/self/mem")}) {
+    const auto program = read_file(path, mill);
+    REQUIRE(program.problems().size() == 1);
+    CHECK(program.failed());
+    CHECK(program.problems()[0].about.error.code == ErrorCode::unreadable);
+    CHECK(to_text(program.problems()[0]).starts_with(path.string() + ": error: file"));
+    CHECK(program.blocks().empty());
+    CHECK_FALSE(plan_program(program, mill));
+  }
+}
+
+TEST_CASE("read flat, a program has no parameters and no O-words", "[program]") {
+  const std::string text = "G21 F600\n#1=5\nG1 X#1\no1 repeat [2]\nG91 Y1\no1 endrepeat\nM98 P100\nX3\n";
+  const auto flat = read_text(text, mill, {.flat = true});
+  CHECK(problems(flat) == std::vector<std::string>{"2:1: error: variable # is not supported",
+                                                   "3:5: error: variable # is not supported",
+                                                   "4:1: error: O-word is not supported",
+                                                   "6:1: error: O-word is not supported",
+                                                   "7:1: error: M98 finds no subprogram here"});
+  const auto run = read_text(text, mill);
+  CHECK(problems(run) == std::vector<std::string>{"7:1: error: M98 finds no subprogram here"});
+  CHECK(run.blocks().size() == 4);
+  const std::string plain = "G21 F600\nG1 X5\nG2 X10 I2.5\nG4 P1\nM2\n";
+  const auto one = read_text(plain, mill), other = read_text(plain, mill, {.flat = true});
+  CHECK(std::ranges::equal(one.blocks(), other.blocks()));
+}
+
+TEST_CASE("a program is planned as often as one likes, from the start it was read with", "[program]") {
+  const std::string text = "G21 F600\nG64 P0.1\nM3 G1 X50\nY50\nG4 P0.5\nX0\n";
+  const auto program = read_text(text, mill, {.start = {1, 2, 3}});
+  CHECK(problems(program).empty());  // whether P acts is for the plan to say
+  CHECK(error_of(plan_program(program, mill)) == "error: start: 0 is not as the program was read with");
+  CHECK(error_of(plan_program(program, mill, {.start = {1, 2, 3.5}})) ==
+        "error: start: 3.5 is not as the program was read with");
+  for (const double tolerance : {0.0, 0.02}) {
+    const PlanOptions options{.tolerance = tolerance, .start = {1, 2, 3}};
+    const auto planned = plan_program(program, mill, options);
+    const auto at_once = plan_text(text, mill, options);
+    REQUIRE(planned);
+    REQUIRE(at_once);
+    CHECK(planned->duration() == at_once->duration());
+    CHECK(planned->at(0).position == Vector3(1, 2, 3));
+    REQUIRE(planned->words().size() == 1);
+    CHECK(planned->words()[0].time == at_once->words()[0].time);
+    REQUIRE(planned->warnings().size() == (tolerance > 0 ? 0U : 1U));
+    if (tolerance == 0) CHECK(planned->warnings()[0] == "2:5: warning: tolerance of G64 is ignored");
+  }
+  // Other limits are as good; what they do not allow is an error with its place.
+  Machine<3> small = mill;
+  small.axes[1].high = 20;
+  CHECK(error_of(plan_program(program, small, {.start = {1, 2, 3}})) ==
+        "4:1: error: axis Y: 50 is above the limit 20");
+}
+
+// Rest to rest at each corner: L/v + v/a + a/j for each move that reaches its feed and full acceleration.
+TEST_CASE("a program is planned with a policy and a law of one's own", "[program]") {
+  const Machine<3> machine{.limits = {.velocity = 30, .acceleration = 100, .jerk = 1000}};
+  const auto program = read_text("G1 X50 F1200\nX100\nY50\n", machine);
+  const double move = 50.0 / 20 + 20.0 / 100 + 0.1;
+  const auto seven = plan_program(program, machine, junction::ExactStop{});
+  REQUIRE(seven);
+  CHECK(seven->duration() == Approx(3 * move));
+  const auto five = plan_program(program, machine, junction::ExactStop{}, plan::FivePhase{});
+  REQUIRE(five);
+  CHECK(five->duration() > 3 * move * 1.0001);  // no phase of constant acceleration
+  const auto given_away = plan_program(read_text("G1 X50 F1200\n", machine), machine);
+  REQUIRE(given_away);
+  CHECK(given_away->duration() == Approx(move));
+}
