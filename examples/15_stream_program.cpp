@@ -18,6 +18,7 @@ int main(int count, char** arguments) {
                             .rapid_rate = 50};
   BlockReader reader(mill);
   const auto executor = std::make_unique<Executor<Machine<3>, 64>>(mill);
+  executor->program_stop(false);  // nobody is there to resume it at M0
   int line = 0;
   const auto tick = [&] {
     const SetPoint<3> now = executor->tick(0.001);
@@ -26,17 +27,20 @@ int main(int count, char** arguments) {
     std::printf("%9.3f s  line %5d  %9.4f %9.4f %9.4f mm  %7.3f mm/s\n", now.time, now.line, now.position[0],
                 now.position[1], now.position[2], now.along.velocity);
   };
+  const auto run = [&](const auto& blocks) {
+    for (const auto& block : blocks)
+      while (!executor->push(block)) tick();  // false: full
+  };
 
   std::string text;
   while (!reader.finished() && std::getline(file, text)) {
-    auto blocks = reader.read_line(text);
-    for (;; blocks = reader.go_on()) {  // a canned cycle may have more blocks than fit into a list
-      if (!blocks) return std::fprintf(stderr, "%s:%s\n", arguments[1], to_text(blocks.error()).c_str()), 2;
-      for (const auto& block : *blocks)
-        while (!executor->push(block)) tick();
-      if (!reader.busy()) break;
-    }
+    const auto blocks = reader.read_line(text);
+    if (!blocks) return std::fprintf(stderr, "%s:%s\n", arguments[1], to_text(blocks.error()).c_str()), 2;
+    run(*blocks);
   }
+  const auto last = reader.end_of_program();  // what cutter compensation holds back
+  if (!last) return std::fprintf(stderr, "%s:%s\n", arguments[1], to_text(last.error()).c_str()), 2;
+  run(*last);
   executor->end_of_program();
   while (!executor->finished()) tick();
   if (const auto error = executor->error()) return std::fprintf(stderr, "%s\n", to_text(*error).c_str()), 2;

@@ -33,17 +33,32 @@ void tick() {
   ++ticks;
 }
 
+// Without the heap, which texts of errors need.
+int tell(const gcode::Diagnostic& fault) {
+  const std::string_view field = fault.error.field, sentence = message(fault.error.code);
+  std::fprintf(stderr, "%d:%d: error: %.*s: %.*s\n", fault.line, fault.column, static_cast<int>(field.size()),
+               field.data(), static_cast<int>(sentence.size()), sentence.data());
+  return 2;
+}
+
+void run(const BlockReader<Machine<3>>::Blocks& blocks) {
+  for (const auto& block : blocks)
+    while (!executor.push(block)) tick();  // waits for room, while the machine runs
+}
+
 }  // namespace
 
 int main() {
   for (const std::string_view line : lines) {
     const auto blocks = reader.read_line(line);
-    if (!blocks) return 2;
-    for (const auto& block : *blocks)
-      while (!executor.push(block)) tick();  // waits for room, while the machine runs
+    if (!blocks) return tell(blocks.error().about);
+    run(*blocks);
   }
+  const auto last = reader.end_of_program();  // what cutter compensation holds back
+  if (!last) return tell(last.error().about);
+  run(*last);
   executor.end_of_program();
   while (!executor.finished()) tick();
+  if (const auto error = executor.error()) return tell(error->about);
   std::printf("done after %d ms\n", ticks);
-  return executor.error() ? 1 : 0;
 }

@@ -112,10 +112,14 @@ int main() {
   if (!executor.restart(0, point.position)) return 1;
 
   BlockReader reader(machine);
+  const auto fault = [](const ProgramError& error) {
+    return std::fprintf(stderr, "%s\n", to_text(error).c_str()), 2;
+  };
   for (const char* line : {"G1 X20 Y10 F1800", "X80 Y40", "X0"}) {
     const auto blocks = reader.read_line(line);
-    if (!blocks) return 1;
-    for (const auto& block : *blocks) executor.push(block);
+    if (!blocks) return fault(blocks.error());
+    for (const auto& block : *blocks)
+      while (!executor.push(block)) point = tick();  // false: full
   }
   executor.end_of_program();
   bool tripped = false;
@@ -127,6 +131,7 @@ int main() {
     }
     point = tick();
   }
+  if (const auto error = executor.error()) return fault(*error);
   const auto kept = [&] {
     return (point.position - plant.backend.position() - off).cwiseAbs().maxCoeff() * 400;
   };

@@ -55,6 +55,7 @@
 #include "cncplan/gcode/language/numbered_call.hpp"
 #include "cncplan/gcode/language/parameters.hpp"
 #include "cncplan/gcode/language/program_lines.hpp"
+#include "cncplan/gcode/line_reader.hpp"
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/gcode/modal.hpp"
 #include "cncplan/gcode/motion.hpp"

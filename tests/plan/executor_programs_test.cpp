@@ -39,13 +39,10 @@ TEST_CASE("programs of others take as long as their plans", "[executor]") {
     int ticks = 0;
     const auto tick = [&] { return ++ticks, executor->tick(period); };
     for (std::string line; std::getline(file, line);) {
-      auto blocks = reader.read_line(line);
-      for (; blocks; blocks = reader.go_on()) {
-        for (const auto& block : *blocks)
-          while (!executor->push(block)) tick();
-        if (!reader.busy()) break;
-      }
+      const auto blocks = reader.read_line(line);
       REQUIRE(blocks);
+      for (const auto& block : *blocks)
+        while (!executor->push(block)) tick();
     }
     executor->end_of_program();
     while (!executor->finished()) tick();

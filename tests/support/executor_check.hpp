@@ -309,13 +309,13 @@ std::vector<ProgramBlock<M>> blocks_of(const std::vector<std::string>& lines, co
   BlockReader<M> reader(machine, options);
   std::vector<ProgramBlock<M>> blocks;
   for (const std::string& line : lines) {
-    auto read = reader.read_line(line);
-    for (; read; read = reader.go_on()) {
-      for (const auto& block : *read) blocks.push_back(block);
-      if (!reader.busy()) break;
-    }
+    const auto read = reader.read_line(line);
     if (!read) std::printf("%s: %s\n", line.c_str(), to_text(read.error()).c_str());
+    if (!read) continue;
+    for (const auto& block : *read) blocks.push_back(block);
   }
+  if (const auto last = reader.end_of_program())
+    for (const auto& block : *last) blocks.push_back(block);
   return blocks;
 }
 

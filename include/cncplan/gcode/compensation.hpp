@@ -108,6 +108,10 @@ class Compensation {
 
   template <class Emit>
   Expected<void, Diagnostic> hold(const Item& item, Emit& emit) {
+    if (std::holds_alternative<Warning>(item)) {  // about the text: it waits for no motion
+      emit(item);
+      return {};
+    }
     const auto* stop = std::get_if<Stop>(&item);
     if (stop != nullptr && (stop->code == 2 || stop->code == 30)) finish(emit);
     if (!last_) {
