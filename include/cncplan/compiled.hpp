@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "cncplan/core/compiled.hpp"
+#include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
@@ -26,11 +27,19 @@
   PREFIX template class Trajectory<MACHINE, plan::SmoothBlockOf<BLOCK>>; \
   PREFIX template class StepEdges<Trajectory<MACHINE, plan::SmoothBlockOf<BLOCK>>>;
 
-/// Programs from texts and files.
-#define CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                                                   \
-  PREFIX template Expected<Trajectory<MACHINE, ProgramBlock<MACHINE>>, ProgramError> plan_text( \
-      std::string_view, const MACHINE&, const PlanOptions&);                                    \
-  PREFIX template Expected<Trajectory<MACHINE, ProgramBlock<MACHINE>>, ProgramError> plan_file( \
+/// Reading and planning programs.
+#define CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                                                       \
+  PREFIX template class BlockReader<MACHINE>;                                                       \
+  PREFIX template Program<MACHINE> read_text(std::string_view, const MACHINE&, const PlanOptions&); \
+  PREFIX template Program<MACHINE> read_file(const std::filesystem::path&, const MACHINE&,          \
+                                             const PlanOptions&);                                   \
+  PREFIX template Expected<Trajectory<MACHINE, ProgramBlock<MACHINE>>, ProgramError> plan_program(  \
+      const Program<MACHINE>&, const MACHINE&, const PlanOptions&);                                 \
+  PREFIX template Expected<Trajectory<MACHINE, ProgramBlock<MACHINE>>, ProgramError> plan_program(  \
+      Program<MACHINE>&&, const MACHINE&, const PlanOptions&);                                      \
+  PREFIX template Expected<Trajectory<MACHINE, ProgramBlock<MACHINE>>, ProgramError> plan_text(     \
+      std::string_view, const MACHINE&, const PlanOptions&);                                        \
+  PREFIX template Expected<Trajectory<MACHINE, ProgramBlock<MACHINE>>, ProgramError> plan_file(     \
       const std::filesystem::path&, const MACHINE&, const PlanOptions&);
 
 #ifdef CNCPLAN_COMPILED
