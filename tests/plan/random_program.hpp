@@ -35,7 +35,7 @@ inline std::vector<plan::BlockCaps> random_program(Random& random, LimitSpread s
     cap = next(cap, 1e-3, 1);
     if (random.uniform(0, 1) < feed_changes) limits.velocity = top.velocity * random.log_uniform(0.02, 1);
     if (spread != LimitSpread::none && random.integer(0, 3) == 0) {
-      const double most = spread == LimitSpread::slight ? plan::shared_limits_ratio : 6.0;
+      const double most = spread == LimitSpread::slight ? plan::shared_limits_ratio<double> : 6.0;
       limits.acceleration = top.acceleration / random.uniform(1, most);
       limits.jerk = top.jerk / random.uniform(1, most);
     }

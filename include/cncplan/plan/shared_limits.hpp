@@ -12,8 +12,10 @@ namespace cncplan::plan {
 /// A span keeps the lowest acceleration and jerk limits of its blocks. Where they differ by more than this, a
 /// steady waypoint divides them. A steady waypoint in a ramp over short blocks costs more than lower limits
 /// do; on a block with room for a whole ramp it costs nothing.
-inline constexpr double shared_limits_ratio = 2.5;
-inline constexpr double shared_limits_ratio_of_long_blocks = 1.3;
+template <std::floating_point S>
+inline constexpr S shared_limits_ratio = S(2.5);
+template <std::floating_point S>
+inline constexpr S shared_limits_ratio_of_long_blocks = S(1.3);
 
 /// mm, at least what a ramp between rest and the velocity limit takes; 0 where there are no other limits.
 template <std::floating_point S>
@@ -41,7 +43,7 @@ class BasicSharedLimits {
     low_ = {S(0), std::min(low_.acceleration, limits.acceleration), std::min(low_.jerk, limits.jerk)};
     high_ = {S(0), std::max(high_.acceleration, limits.acceleration), std::max(high_.jerk, limits.jerk)};
     long_ = long_ || has_room_for_ramp(limits, length);
-    const S ratio = static_cast<S>(long_ ? shared_limits_ratio_of_long_blocks : shared_limits_ratio);
+    const S ratio = long_ ? shared_limits_ratio_of_long_blocks<S> : shared_limits_ratio<S>;
     return !(high_.acceleration > ratio * low_.acceleration || high_.jerk > ratio * low_.jerk);
   }
 

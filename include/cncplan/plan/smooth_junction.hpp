@@ -116,7 +116,8 @@ template <MachineModel M>
 /// `speed` what both blocks allow.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] FixedList<smooth::BasicSizing<typename M::Scalar, M::axis_count>, 2> jumps_between(
-    const B& before, const B& behind, double at, typename M::Scalar speed, const M& machine) {
+    const B& before, const B& behind, LongLength<typename M::Scalar> at, typename M::Scalar speed,
+    const M& machine) {
   using S = typename M::Scalar;
   using Sizing = smooth::BasicSizing<S, M::axis_count>;
   constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/core/long_length.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/smooth_junction.hpp"
 #include "cncplan/smooth/kernel_sizes.hpp"
@@ -23,7 +24,7 @@ struct BasicSmoothing {
   struct OfBlock {
     std::size_t first{};  ///< of the corrections
     std::size_t count{};
-    double start{};  ///< mm from the start of the program, as the corrections are counted
+    LongLength<S> start{};  ///< mm from the start of the program, as the corrections are counted
     Passing passing = Passing::policy;
   };
 
@@ -69,7 +70,7 @@ class Smoother {
 
   [[nodiscard]] Result run() {
     result_.blocks.resize(blocks_.size());
-    double place = 0;
+    LongLength<S> place{};
     bool rests = true;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const B& block = blocks_[i];
@@ -84,7 +85,7 @@ class Smoother {
         }
         last_ = i;
         rests = false;
-        place += static_cast<double>(block.path.length());
+        place += block.path.length();
       }
       rests = rests || block.exact_stop || block.pause > S(0);
     }
@@ -112,7 +113,7 @@ class Smoother {
   }
 
   // Corrections of the part that ends here, and which of its blocks each acts on.
-  void finish(double end) {
+  void finish(LongLength<S> end) {
     if (!sizings_.empty()) {
       set_rooms(end);
       smooth::fit_sizes(std::span(sizings_), axes_);
@@ -129,19 +130,18 @@ class Smoother {
     moving_.clear();
   }
 
-  [[nodiscard]] double start_of(std::size_t moving, double end) const {
+  [[nodiscard]] LongLength<S> start_of(std::size_t moving, LongLength<S> end) const {
     return moving < moving_.size() ? result_.blocks[moving_[moving]].start : end;
   }
 
   // Room to the rests on both sides and to the farthest neighbours; the lowest tolerance next to each.
-  void set_rooms(double end) {
+  void set_rooms(LongLength<S> end) {
     for (std::size_t i = 0; i < sizings_.size(); ++i) {
       auto& sizing = sizings_[i];
       const std::size_t at = junctions_[i];  // the block behind
       const std::size_t left = at > smooth::most_neighbours ? at - smooth::most_neighbours : 0;
       const std::size_t right = std::min(at + smooth::most_neighbours, moving_.size());
-      sizing.room =
-          static_cast<S>(std::min(sizing.at - start_of(left, end), start_of(right, end) - sizing.at));
+      sizing.room = std::min(sizing.at - start_of(left, end), start_of(right, end) - sizing.at);
       std::size_t from = left, to = right;
       for (std::size_t k = i; k-- > 0 && from == left && junctions_[k] > left;)
         if (junctions_[k] < at) from = junctions_[k];
@@ -163,8 +163,8 @@ class Smoother {
 
   void reach_blocks(std::size_t correction, std::size_t junction) {
     const auto& own = result_.corrections[correction];
-    const auto support = static_cast<double>(own.support());
-    const double from = own.at - support, to = own.at + support;
+    const S support = own.support();
+    const LongLength<S> from = own.at - support, to = own.at + support;
     const auto use = [&](std::size_t i) {
       auto& block = result_.blocks[i];
       if (block.count == 0) block.first = correction;

@@ -3,6 +3,7 @@
 
 #include <concepts>
 
+#include "cncplan/core/long_length.hpp"
 #include "cncplan/core/vector.hpp"
 #include "cncplan/smooth/kernel.hpp"
 
@@ -18,9 +19,8 @@ template <std::floating_point S, int N>
 struct BasicCorrection {
   using Vector = VectorN<S, N>;
 
-  double at{};  ///< mm of the program to the junction, from wherever the paths' starts are counted; a program
-                ///< is longer than a float can tell places apart
-  S size{};     ///< mm, > 0
+  LongLength<S> at{};  ///< mm of the program to the junction, from wherever the paths' starts are counted
+  S size{};            ///< mm, > 0
   Jump jump{};
   Vector step = Vector::Zero();  ///< the derivative behind the junction less the one before it
 

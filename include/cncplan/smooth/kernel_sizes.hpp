@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cncplan/core/in_space.hpp"
+#include "cncplan/core/long_length.hpp"
 #include "cncplan/core/vector.hpp"
 #include "cncplan/smooth/kernel.hpp"
 
@@ -27,7 +28,7 @@ struct BasicAxisTolerances {
 /// What the size of one correction has to keep to, and the size.
 template <std::floating_point S, int N>
 struct BasicSizing {
-  double at{};  ///< mm, as in `BasicCorrection`
+  LongLength<S> at{};  ///< mm, as in `BasicCorrection`
   Jump jump{};
   VectorN<S, N> step = VectorN<S, N>::Zero();  ///< the jump, per mm where curvature jumps
   S wanted{};                                  ///< mm: where the motion needs no larger one
@@ -83,10 +84,10 @@ template <std::floating_point S, int N>
 template <std::floating_point S, int N>
 [[nodiscard]] S distance_at(std::span<const BasicSizing<S, N>> all, std::size_t i, std::size_t j) {
   const BasicSizing<S, N>& own = all[i];
-  double place = all[j].at;
+  LongLength<S> place = all[j].at;
   if (own.jump == Jump::curvature)
     for (std::size_t k = j; k != i && place == all[j].at;) place = all[k < i ? ++k : --k].at;
-  return std::min(static_cast<S>(std::abs(own.at - place)) / own.widest, reach<S>(own.jump));
+  return std::min(std::abs(own.at - place) / own.widest, reach<S>(own.jump));
 }
 
 }  // namespace detail

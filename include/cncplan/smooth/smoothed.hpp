@@ -13,6 +13,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/in_space.hpp"
+#include "cncplan/core/long_length.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/smooth/correction.hpp"
 
@@ -34,10 +35,10 @@ class Smoothed {
   using ToolAxes = std::array<int, 3>;
 
   Smoothed() = default;
-  Smoothed(const P& path, std::span<const Correction> corrections, double start,
+  Smoothed(const P& path, std::span<const Correction> corrections, LongLength<Scalar> start,
            const ToolAxes& tool = {0, 1, 2})
       : path_(&path), corrections_(corrections), start_(start), tool_(tool) {}
-  Smoothed(const P&&, std::span<const Correction>, double, const ToolAxes& = {}) = delete;
+  Smoothed(const P&&, std::span<const Correction>, LongLength<Scalar>, const ToolAxes& = {}) = delete;
 
   /// As programmed.
   [[nodiscard]] const P& programmed() const { return *path_; }
@@ -154,7 +155,7 @@ class Smoothed {
   using Enclosed = std::array<Range, 4>;  // by the order of the derivative; the first is not used
 
   // From the path's start to the junction.
-  [[nodiscard]] Scalar from_start(const Correction& c) const { return static_cast<Scalar>(c.at - start_); }
+  [[nodiscard]] Scalar from_start(const Correction& c) const { return c.at - start_; }
   // Whether the path lies before the junction.
   [[nodiscard]] bool before(const Correction& c) const { return length() / Scalar(2) < from_start(c); }
 
@@ -272,7 +273,7 @@ class Smoothed {
 
   const P* path_ = nullptr;
   std::span<const Correction> corrections_{};
-  double start_{};
+  LongLength<Scalar> start_{};
   ToolAxes tool_{0, 1, 2};
 };
 
