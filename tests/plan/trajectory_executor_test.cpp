@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
+#include "cncplan/plan/smooth_stream.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 
@@ -52,7 +54,7 @@ TEST_CASE("trajectory executor: without requests it gives the set points of the 
           "[trajectory-executor]") {
   for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
     const auto trajectory = planned(corners, mill, level);
-    TrajectoryExecutor executor(trajectory, mill);
+    TrajectoryExecutor executor(trajectory, mill, {.longest_hold = 10});
     int k = 0;
     while (!executor.finished()) {
       const auto point = executor.tick(period);
@@ -284,4 +286,127 @@ TEST_CASE("a machine with a reserve", "[trajectory-executor]") {
   CHECK(lower.axes[1].acceleration == 300);
   CHECK(lower.axes[1].acceleration_down == 225);
   CHECK(lower.axes[0].jerk == machine.axes[0].jerk);
+}
+
+TEST_CASE("trajectory executor: a part of a longer motion is refused", "[trajectory-executor]") {
+  SmoothStream<Machine<3>, ProgramBlock<Machine<3>>> stream(mill, {.tolerance = 0.01}, SmoothLevel::good, 40);
+  const auto program = read_blocks(gcode::TextLines("F1800 G91 " +
+                                                    [] {
+                                                      std::string lines;
+                                                      for (int i = 0; i < 150; ++i)
+                                                        lines += i % 2 == 0 ? "G1 X1\n" : "G1 X1 Y0.2\n";
+                                                      return lines;
+                                                    }()),
+                                   mill, {});
+  REQUIRE(program);
+  using Part = decltype(stream)::Part;
+  std::vector<Part> parts;
+  const auto take = [&] {
+    while (stream.ready()) parts.push_back(stream.take());
+  };
+  for (const auto& block : program->blocks) {
+    REQUIRE(stream.push(block));
+    take();
+  }
+  REQUIRE(stream.finish());
+  take();
+  REQUIRE(parts.size() > 2);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    CAPTURE(i);
+    const auto first = parts[i].at(0.0), last = parts[i].at(parts[i].duration());
+    const bool whole = first.velocity.norm() == 0 && last.velocity.norm() < 1e-6;
+    TrajectoryExecutor executor(parts[i], mill);
+    CHECK(executor.error().has_value() == !whole);
+    if (whole) continue;
+    CHECK(executor.error()->error().code == ErrorCode::above_limit);
+    CHECK(executor.error()->error().value ==
+          Approx((first.velocity.norm() > 0 ? first : last).velocity.norm())
+              .epsilon(0.01));  // the tool in a bend
+    CHECK(executor.finished());
+    executor.resume();
+    for (int k = 0; k < 50; ++k) CHECK(executor.tick(period).position == first.position);
+    CHECK(executor.tick(period).velocity.norm() == 0);
+  }
+}
+
+TEST_CASE(
+    "trajectory executor: a trajectory that cannot be held in time is refused, and says how long it takes",
+    "[trajectory-executor]") {
+  const char* const circles = "F1800 G2 I1 P12\n";
+  const auto to_the_limit = planned(circles, mill, SmoothLevel::best);
+  TrajectoryExecutor refused(to_the_limit, mill);
+  REQUIRE(refused.error());
+  CHECK(refused.error()->error().code == ErrorCode::above_limit);
+  CHECK(refused.error()->error().bound == 1);
+  CHECK(refused.error()->error().value == refused.worst_hold());
+  CHECK(refused.worst_hold() > 1);
+  CHECK(refused.finished());
+  run(refused, 0.1);
+  CHECK(refused.tick(period).position == to_the_limit.at(0.0).position);
+
+  const auto hold = [](const auto& trajectory, double longest) {
+    double worst = 0;
+    for (double at = 0.05; at < trajectory.duration() - 0.05; at += 0.31) {
+      TrajectoryExecutor executor(trajectory, mill, {.longest_hold = longest});
+      REQUIRE_FALSE(executor.error());
+      run(executor, at);
+      executor.feed_hold();
+      const double time = ticks_to_rest(executor, period);
+      CHECK(time <= executor.worst_hold() + longest / 4);
+      worst = std::max(worst, time);
+    }
+    return worst;
+  };
+  TrajectoryExecutor allowed(to_the_limit, mill, {.longest_hold = 60});
+  CHECK_FALSE(allowed.error());
+  const double longest = hold(to_the_limit, 60);
+  CHECK(longest > 1);
+  CHECK(allowed.worst_hold() > longest - 15);
+
+  const auto reserved = planned(circles, with_reserve(mill, 0.05), SmoothLevel::best);
+  TrajectoryExecutor executor(reserved, mill);
+  CHECK_FALSE(executor.error());
+  CHECK(executor.worst_hold() < 0.6);
+  CHECK(hold(reserved, 1) < 0.5);
+}
+
+TEST_CASE("trajectory executor: what is no time ends the run within the limits", "[trajectory-executor]") {
+  const auto trajectory = planned(corners, with_reserve(mill, 0.05));
+  for (const double bad : {std::nan(""), -1.0, -1e-3, std::numeric_limits<double>::infinity()})
+    for (const bool again : {false, true}) {
+      CAPTURE(bad, again);
+      TrajectoryExecutor executor(trajectory, mill);
+      run(executor, 0.4);
+      CHECK_FALSE(executor.error());
+      auto before = executor.tick(period);
+      int ticks = 0;
+      do {
+        const auto now = executor.tick(ticks == 0 || again ? bad : period);
+        CHECK(now.time == Approx(before.time + period));
+        CHECK((now.velocity - before.velocity).norm() <= 1000 * period);
+        CHECK((now.acceleration - before.acceleration).norm() <= 10000 * period * (1 + 1e-6));
+        before = now;
+      } while (!executor.finished() && ++ticks < 1000);
+      CHECK(executor.finished());
+      CHECK(before.velocity.norm() == 0);
+      REQUIRE(executor.error());
+      CHECK(executor.error()->error().code ==
+            (std::isfinite(bad) ? ErrorCode::negative : ErrorCode::not_finite));
+    }
+}
+
+TEST_CASE("trajectory executor: a machine that is none is refused", "[trajectory-executor]") {
+  const auto trajectory = planned(corners, mill);
+  for (double Limits::*limit : {&Limits::velocity, &Limits::acceleration, &Limits::jerk}) {
+    Machine<3> machine = mill;
+    machine.limits.*limit = -1;
+    TrajectoryExecutor executor(trajectory, machine);
+    REQUIRE(executor.error());
+    CHECK(executor.error()->error().code == ErrorCode::not_positive);
+    CHECK(executor.finished());
+  }
+  TrajectoryExecutor by_reserve(trajectory, with_reserve(mill, 2));
+  CHECK(by_reserve.error());
+  TrajectoryExecutor by_bound(trajectory, mill, {.longest_hold = 0});
+  CHECK(by_bound.error());
 }

@@ -8,6 +8,7 @@
 
 #include "cncplan/core/error_text.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
+#include "cncplan/plan/run_error.hpp"
 
 namespace cncplan {
 
@@ -19,6 +20,8 @@ struct ProgramError {
 
   [[nodiscard]] const Error& error() const { return about.error; }
 };
+
+inline RunError::operator ProgramError() const { return {about}; }
 
 /// "part.ngc:12:5: error: axis X: 310 is above the limit 300", or as much of that as is known; or with
 /// another word for its weight.

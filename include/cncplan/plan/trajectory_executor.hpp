@@ -6,11 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/plan/clock_proof.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan/run_error.hpp"
 #include "cncplan/plan/trajectory.hpp"
 #include "cncplan/state/velocity_change.hpp"
 
@@ -32,6 +35,14 @@ template <MachineModel M>
   return machine;
 }
 
+/// What a `TrajectoryExecutor` asks of a trajectory.
+template <std::floating_point S>
+struct BasicTrajectoryExecutorOptions {
+  S longest_hold = S(1);  ///< s, > 0: the longest that a hold may take from a request to rest
+};
+
+using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
+
 /// Drives a trajectory by a clock: the axes are at all times where the trajectory has them when its clock
 /// shows that time. A request changes the clock's rate, from 1, the planned speed, towards 0, a hold, or -1,
 /// all the way back. So curve and place on it are those of the plan, whatever level of smoothing it has.
@@ -39,8 +50,13 @@ template <MachineModel M>
 /// Limits of acceleration and jerk, of the tool and of each axis, hold at every instant: a change of the rate
 /// is begun only once it is proven over all of its way (`plan::ClockProof`). Each tick looks for such a
 /// change, fast ones first, and for a faster one while one goes on. Where none is proven, the clock goes on
-/// as it does, which keeps the limits because the trajectory does. A trajectory that uses up the jerk limit
-/// on long bends may be held only behind them: plan with a reserve (`with_reserve`; a twentieth is plenty).
+/// as it does, which keeps the limits because the trajectory does.
+///
+/// A trajectory that uses up the jerk limit on long bends could be held only behind them. So holds are tried
+/// when the executor is made, from instants a quarter of `longest_hold` apart. If one of them takes longer
+/// than that, the trajectory is refused: it does not begin, and `error` says how long a hold takes. Plan with
+/// a reserve then (`with_reserve`; a twentieth is plenty), or allow for longer holds. Refused as well is one
+/// that does not begin and end at rest, as a part of a `SmoothStream`, and a machine that `validate` refuses.
 ///
 /// Unlike in `Executor`, a lower override slows all of the motion, its ramps too, and the program is there as
 /// a whole. The trajectory must outlive it. Nothing is allocated once it is made.
@@ -50,19 +66,26 @@ class TrajectoryExecutor {
  public:
   using Scalar = typename M::Scalar;
   using SetPoint = typename Trajectory<M, B>::SetPoint;
+  using Options = BasicTrajectoryExecutorOptions<Scalar>;
 
   /// With the limits that changes of the rate keep: the machine that was planned for, or, with a reserve, one
   /// of higher limits.
-  TrajectoryExecutor(const Trajectory<M, B>& trajectory, const M& machine)
+  TrajectoryExecutor(const Trajectory<M, B>& trajectory, const M& machine, const Options& options = {})
       : trajectory_(&trajectory), proof_(trajectory, machine), rests_(rests_of(trajectory)) {
-    stand_at(0, false);
     words_.assign(trajectory.words().begin(), trajectory.words().end());
     for (std::size_t i = 0; i < trajectory.program().size(); ++i)
       if (const gcode::Word& word = trajectory.program()[i].word; word.letter != '\0')
         words_.push_back({word, static_cast<double>(trajectory.start_time(i))});
     std::ranges::stable_sort(words_, {}, &TimedWord::time);
+    if (const auto ok = accept(machine, options.longest_hold); !ok) fail(ok.error());
+    stand_at(0, false);
   }
-  TrajectoryExecutor(Trajectory<M, B>&&, const M&) = delete;
+  TrajectoryExecutor(Trajectory<M, B>&&, const M&, const Options& = {}) = delete;
+
+  /// Why the trajectory does not run, or why it was stopped; nothing where all is well.
+  [[nodiscard]] std::optional<RunError> error() const { return error_; }
+  /// s: the longest of the holds that were tried when this was made.
+  [[nodiscard]] Scalar worst_hold() const { return worst_hold_; }
 
   // Requests. They act at the next tick.
 
@@ -103,8 +126,10 @@ class TrajectoryExecutor {
     return {now.position, now.velocity, now.acceleration, second};
   }
 
-  /// Moves on by `period` seconds, > 0.
-  SetPoint tick(Scalar period) {
+  /// Moves on by `period` seconds, >= 0. One that is below 0, or no number, is an error: the axes come to
+  /// rest as by `stop`, in periods like the last one that was a time.
+  SetPoint tick(Scalar given) {
+    const Scalar period = accepted(given);
     time_.add(period);
     reached_.clear();
     Scalar left = period;
@@ -125,8 +150,80 @@ class TrajectoryExecutor {
 
   static constexpr int work_in_tick = 1000;  // intervals of proofs
   static constexpr int levels = 32;          // of changes of the rate, each slower than the one before
+  static constexpr int no_level = levels + 1;
   static constexpr Scalar growth = Scalar(1.2599210498948732);  // 2^(1/3)
   static constexpr Scalar least_portion = Scalar(0.1);
+  static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+
+  void fail(const Error& error) {
+    if (!error_) error_ = RunError{{error, 0, 0, {}}};
+    stop();
+  }
+
+  // Nothing, or why the trajectory does not begin.
+  Expected<void> accept(const M& machine, Scalar longest_hold) {
+    if (auto ok = validate(machine); !ok) return ok;
+    if (!(longest_hold > Scalar(0))) return refusal(ErrorCode::not_positive, "longest hold", longest_hold);
+    const auto phases = trajectory_->phases();
+    if (phases.empty()) return {};
+    const auto at_rest = [](const BasicPhase<Scalar>& phase, Scalar speed) {  // but for rounding
+      const Scalar change = std::abs(phase.acceleration) * phase.duration + std::abs(phase.velocity);
+      return std::abs(speed) <= Scalar(1e-3) * change;
+    };
+    const BasicPhase<Scalar>& first = phases.front().phase;
+    const BasicPhase<Scalar>& last = phases.back().phase;
+    if (first.velocity != Scalar(0))
+      return refusal(ErrorCode::above_limit, "speed at the start of the trajectory", first.velocity);
+    if (const Scalar end = last.at(last.duration).velocity; !at_rest(last, end))
+      return refusal(ErrorCode::above_limit, "speed at the end of the trajectory", end);
+    return try_holds(longest_hold);
+  }
+
+  // Holds from instants that are so far apart that any other one waits a quarter of the longest at most.
+  Expected<void> try_holds(Scalar longest) {
+    for (std::size_t rest = 0; rest + 1 < rests_.size(); ++rest) {
+      const Scalar step = longest / Scalar(4), from = rests_[rest].to;
+      const auto count = static_cast<int>(std::ceil((rests_[rest + 1].from - from) / step));
+      for (int i = 0; i < count; ++i) {
+        worst_hold_ =
+            std::max(worst_hold_, time_to_hold(rest, from + static_cast<Scalar>(i) * step, longest));
+        if (worst_hold_ > longest)
+          return refusal(ErrorCode::above_limit, "s of a hold", worst_hold_, longest);
+      }
+    }
+    return {};
+  }
+
+  // s that a hold takes which is asked for where the clock shows a time behind a rest: that of a change that
+  // is proven at once, or by what ticks do.
+  Scalar time_to_hold(std::size_t rest, Scalar shown, Scalar longest) {
+    standing_ = false;
+    rest_ = rest;
+    run_at({shown, Scalar(1), Scalar(0)});
+    asked_ = Scalar(0);
+    int work = levels * work_in_tick;
+    if (const auto motion = find_change(ramp_.start(), Scalar(0), false, infinity, work))
+      return std::min(motion->duration(), rests_[rest + 1].from - shown);
+    search_from(Scalar(1));
+    held_ = true;
+    Scalar time{};
+    while (!rests()) {
+      const Scalar tick = time < longest ? Scalar(1e-3) : longest / Scalar(100);
+      Scalar left = tick;
+      move(left);
+      time += tick - left;
+    }
+    held_ = false;
+    return time;
+  }
+
+  // The period of a tick. Where it is none the run ends.
+  Scalar accepted(Scalar period) {
+    if (period >= Scalar(0) && std::isfinite(period)) return last_period_ = period;
+    const bool number = std::isfinite(period);
+    fail(refusal(number ? ErrorCode::negative : ErrorCode::not_finite, "period", period).value());
+    return last_period_;
+  }
 
   // The trajectory stands from one of its times to another.
   struct Rest {
@@ -210,7 +307,7 @@ class TrajectoryExecutor {
     const AxisState& end = ramp_.end();
     if (heads_back() ? shown >= end.position : shown <= end.position)
       if (const auto at = ramp_.time_at(shown)) return *at;
-    if (end.velocity == Scalar(0)) return std::numeric_limits<Scalar>::infinity();
+    if (end.velocity == Scalar(0)) return infinity;
     return ramp_.duration() + (shown - end.position) / end.velocity;
   }
 
@@ -225,33 +322,47 @@ class TrajectoryExecutor {
     if (goal != asked_) search_from(Scalar(1));
     asked_ = goal;
     const bool back = now.velocity < Scalar(0) || (now.velocity == Scalar(0) && goal < Scalar(0));
-    const Scalar until = back ? rests_[rest_].to : rests_[rest_ + 1].from;
-    const Scalar sooner = goal == goal_ ? Scalar(0.99) * (ramp_.duration() - elapsed_)
-                                        : std::numeric_limits<Scalar>::infinity();
+    const Scalar sooner = goal == goal_ ? Scalar(0.99) * (ramp_.duration() - elapsed_) : infinity;
     const Scalar to = now.velocity + portion_ * (goal - now.velocity);
-    const BasicAxisLimits<Scalar> fastest = fastest_change(now.position);
     int work = work_in_tick;
+    const auto motion = find_change(now, to, back, sooner, work);
+    if (motion) {
+      ramp_ = *motion;
+      elapsed_ = Scalar(0);
+      goal_ = to;
+    }
+    if (motion || level_ == no_level) return search_from(Scalar(1));
+    if (level_ < levels) return;  // more in the next tick
+    search_from(changes || portion_ < least_portion ? Scalar(1) : portion_ / Scalar(2));
+  }
+
+  // The next change of the rate that is proven, from where the search stands: fast ones first. Nothing where
+  // there is none, where all that are left take as long as `sooner` (the level is `no_level` then), or where
+  // there is no work left: what is too much for all of it is passed over.
+  [[nodiscard]] std::optional<Motion> find_change(const AxisState& now, Scalar to, bool back, Scalar sooner,
+                                                  int& work) {
+    const Scalar until = back ? rests_[rest_].to : rests_[rest_ + 1].from;
+    const BasicAxisLimits<Scalar> fastest = fastest_change(now.position);
+    const int all_work = work;
     for (; level_ < levels; ++level_) {
       const Scalar slower = std::pow(growth, static_cast<Scalar>(level_));
       BasicAxisLimits<Scalar> limits = fastest;
       limits.acceleration_up = limits.acceleration_down = fastest.acceleration_up / slower;
       limits.jerk /= slower;
       const Motion motion = Change(now, to, limits).fastest();
-      if (!(motion.duration() < sooner)) return search_from(Scalar(1));
-      if (!one_way(motion, back)) continue;
-      const bool whole_tick = work == work_in_tick;
-      if (proof_.holds(motion, back, until, work)) {
-        ramp_ = motion;
-        elapsed_ = Scalar(0);
-        goal_ = to;
-        return search_from(Scalar(1));
+      if (!(motion.duration() < sooner)) {
+        level_ = no_level;
+        return std::nullopt;
       }
-      if (work < 0) {  // more in the next tick; what is too much for one is passed over
-        level_ += whole_tick ? 1 : 0;
-        return;
+      if (!one_way(motion, back)) continue;
+      const bool whole = work == all_work;
+      if (proof_.holds(motion, back, until, work)) return motion;
+      if (work < 0) {
+        level_ += whole ? 1 : 0;
+        return std::nullopt;
       }
     }
-    search_from(changes || portion_ < least_portion ? Scalar(1) : portion_ / Scalar(2));
+    return std::nullopt;
   }
   void search_from(Scalar portion) {
     portion_ = portion;
@@ -315,6 +426,9 @@ class TrajectoryExecutor {
   std::vector<TimedWord> words_;
   std::size_t told_ = 0;
   ReachedWords reached_;
+  std::optional<RunError> error_;
+  Scalar worst_hold_{};
+  Scalar last_period_{};  // s
   plan::BasicElapsed<Scalar> time_;
   bool held_{}, stopped_{}, backwards_{}, optional_stop_{};
   bool program_stop_ = true;
