@@ -26,14 +26,23 @@ double line_length(const std::vector<B>& blocks, std::size_t first) {
   return length;
 }
 
+// All that a part's end takes, and no more than a step for each block that is held back.
+template <class Ahead>
+void finish(Ahead& ahead) {
+  std::size_t steps = 0;
+  for (; ahead.ends(); ++steps) ahead.work();
+  CHECK(steps <= 4 * smooth::most_neighbours + 2);
+}
+
 // How far the paths of a machine's blocks are apart, and where the first joint is that is passed otherwise.
 template <MachineModel M>
 void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, double tolerance) {
   const plan::SmoothingRules<double> rules{tolerance, 1e-3, false};
   const auto whole = plan::smoothing(std::span(blocks), machine, rules);
+  const auto memory =
+      std::make_unique<plan::SmoothingRoom<M, ProgramBlock<M>, room, smooth::most_neighbours>>();
   const auto ahead =
-      std::make_unique<plan::SmoothingAhead<M, ProgramBlock<M>, room, smooth::most_neighbours>>(rules,
-                                                                                                machine);
+      std::make_unique<plan::SmoothingAhead<M, ProgramBlock<M>>>(rules, machine, memory->memory());
   const auto tool = tool_axes(machine);
   std::size_t told = 0;
   const auto look = [&] {
@@ -55,7 +64,8 @@ void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, doubl
   };
   std::int64_t held = 0;  // the most blocks that move and wait
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    ahead->push(blocks[i], machine, line_length(blocks, i));
+    while (!ahead->push(blocks[i], machine, line_length(blocks, i))) ahead->work();
+    finish(*ahead);
     look();
     std::int64_t moving = 0;
     for (std::size_t k = told; k <= i; ++k) moving += blocks[k].path.length() > 0 ? 1 : 0;
@@ -63,6 +73,7 @@ void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, doubl
   }
   CHECK(held <= static_cast<std::int64_t>(4 * smooth::most_neighbours + 2));
   ahead->end_part();
+  finish(*ahead);
   CHECK(ahead->known() == static_cast<std::int64_t>(blocks.size()));
   look();
 }
@@ -85,9 +96,11 @@ TEST_CASE("blocks one by one are smoothed as the whole program is", "[executor]"
 TEST_CASE("a block is known once those are there that can act on it, or none will", "[executor]") {
   constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
   const auto blocks = test::blocks_of({"F600", "G1 X1", "Y1", "X2", "G4 P0.1", "Y2", "X3"}, mill);
-  plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> ahead({0.1, 1e-3, false}, mill);
+  plan::SmoothingRoom<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> memory;
+  plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>> ahead({0.1, 1e-3, false}, mill, memory.memory());
   const auto after = [&](std::size_t i) {
-    ahead.push(blocks[i], mill, blocks[i].path.length());
+    CHECK(ahead.push(blocks[i], mill, blocks[i].path.length()));
+    finish(ahead);
     return ahead.known();
   };
   CHECK(after(0) == 0);
@@ -97,6 +110,8 @@ TEST_CASE("a block is known once those are there that can act on it, or none wil
   CHECK(after(4) == 4);
   CHECK(after(5) == 4);
   ahead.end_part();
+  CHECK(ahead.known() == 4);
+  finish(ahead);
   CHECK(ahead.known() == 6);
   CHECK(ahead.passing(4) == plan::Passing::stop);
   CHECK(ahead.passing(5) == plan::Passing::smooth);

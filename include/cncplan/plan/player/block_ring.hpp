@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +9,8 @@
 #include <utility>
 
 #include "cncplan/plan/caps.hpp"
+#include "cncplan/plan/player/ring_places.hpp"
+#include "cncplan/plan/player/shared_count.hpp"
 
 namespace cncplan::plan {
 
@@ -56,25 +57,25 @@ class BlockRing {
  public:
   using Block = BasicPlayedBlock<S>;
 
-  explicit BlockRing(std::span<Block> memory) : memory_(memory) {}
+  explicit BlockRing(std::span<Block> memory) : memory_(memory), places_(memory.size()) {}
 
   /// For the thread that pushes: false, and nothing done, when there is no room.
   bool push(const Block& block) {
-    const std::int64_t number = pushed_.load(std::memory_order_relaxed);
-    if (number - released_.load(std::memory_order_acquire) >= capacity()) return false;
+    const std::int64_t number = pushed_.load();
+    if (number - released_.load() >= capacity()) return false;
     memory_[write_] = block;
     write_ = write_ + 1 < memory_.size() ? write_ + 1 : 0;
-    pushed_.store(number + 1, std::memory_order_release);
+    pushed_.store(number + 1);
     return true;
   }
 
   /// How many blocks there have been, for either thread.
-  [[nodiscard]] std::int64_t pushed() const { return pushed_.load(std::memory_order_acquire); }
+  [[nodiscard]] std::int64_t pushed() const { return pushed_.load(); }
 
   // For the thread that looks.
   /// Takes notice of what was pushed; whether there is anything new.
   bool take() {
-    const std::int64_t end = pushed_.load(std::memory_order_acquire);
+    const std::int64_t end = pushed_.load();
     return std::exchange(end_, end) != end;
   }
   /// Lets the blocks before a number go; whether there were any.
@@ -82,37 +83,34 @@ class BlockRing {
     const std::int64_t oldest = std::min(number, end_);
     if (oldest <= oldest_) return false;
     oldest_ = oldest;
-    if (oldest_ - first_ >= capacity()) first_ += capacity();
-    released_.store(oldest, std::memory_order_release);
+    places_.advance(oldest);
+    released_.store(oldest);
     return true;
   }
   [[nodiscard]] std::int64_t oldest() const { return oldest_; }
   [[nodiscard]] std::int64_t end() const { return end_; }
-  [[nodiscard]] std::int64_t capacity() const { return static_cast<std::int64_t>(memory_.size()); }
+  [[nodiscard]] std::int64_t capacity() const { return places_.size(); }
   [[nodiscard]] bool holds(std::int64_t number) const { return number >= oldest_ && number < end_; }
   [[nodiscard]] S length(std::int64_t number) const { return (*this)[number].caps.length; }
-  [[nodiscard]] const Block& operator[](std::int64_t number) const {
-    const std::int64_t place = number - first_;  // a division would take longer than all else in a tick
-    return memory_[static_cast<std::size_t>(place < capacity() ? place : place - capacity())];
-  }
+  [[nodiscard]] const Block& operator[](std::int64_t number) const { return memory_[places_(number)]; }
 
   /// Forgets all blocks; the next one has this number. Not while anything is pushed.
   void restart(std::int64_t number) {
-    first_ = oldest_ = end_ = number;
+    places_.restart(number);
+    oldest_ = end_ = number;
     write_ = 0;
-    released_.store(number, std::memory_order_release);
-    pushed_.store(number, std::memory_order_release);
+    released_.store(number);
+    pushed_.store(number);
   }
 
  private:
   std::span<Block> memory_;
+  RingPlaces places_;
   std::size_t write_ = 0;  // where the next block goes
-  std::int64_t first_ =
-      0;  // the number of a block at the start of the memory, the last that is not above the oldest
   std::int64_t oldest_ = 0;
   std::int64_t end_ = 0;
-  std::atomic<std::int64_t> pushed_{0};
-  std::atomic<std::int64_t> released_{0};
+  SharedCount pushed_;
+  SharedCount released_;
 };
 
 }  // namespace cncplan::plan

@@ -69,6 +69,8 @@ class BasicPlans {
   [[nodiscard]] bool above() const { return above_; }
   /// Whether there are blocks that it does not know.
   [[nodiscard]] bool lacks_blocks() const { return lacks_blocks_; }
+  /// Whether it ends where the blocks do, and there are no others.
+  [[nodiscard]] bool ends_for_want_of_blocks() const { return open_ && !lacks_blocks_; }
   /// Whether it ends where the motion has to rest.
   [[nodiscard]] bool ends_at_stop() const { return !lacks_blocks_ && !open_; }
   /// Whether blocks that it does not know could better the span behind a steady waypoint.

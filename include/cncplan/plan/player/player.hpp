@@ -183,6 +183,11 @@ class BasicPlayer {
     const bool nothing_ahead = path_.direction > 0 && at_.block >= path_.ring.pushed();
     return idle_ && !(waits() > S(0)) && (path_.asked.held || path_.asked.stopped || nothing_ahead);
   }
+  /// Whether it begins to slow down within so many seconds, or has begun, as there are no more blocks to run.
+  [[nodiscard]] bool starves(S seconds) const {
+    return !idle_ && !running_settled_ && path_.direction > 0 && plans_.ends_for_want_of_blocks() &&
+           path_.ring.pushed() == path_.ring.end() && running_.to_turn() <= seconds;
+  }
   /// Where it is, at rest or in motion.
   [[nodiscard]] BasicPlayed<S> place() {
     look();

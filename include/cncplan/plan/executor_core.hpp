@@ -1,0 +1,501 @@
+// What an executor does, whatever its capacity: it works in memory that is not its own.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "cncplan/core/function_ref.hpp"
+#include "cncplan/plan/player/axis_part.hpp"
+#include "cncplan/plan/player/cell_feed.hpp"
+#include "cncplan/plan/player/elapsed.hpp"
+#include "cncplan/plan/player/jog.hpp"
+#include "cncplan/plan/player/player.hpp"
+#include "cncplan/plan/player/shared_count.hpp"
+#include "cncplan/plan/run_error.hpp"
+#include "cncplan/plan/set_point.hpp"
+
+namespace cncplan {
+
+/// What holds for all that an executor runs.
+template <std::floating_point S>
+struct BasicExecutorOptions {
+  /// mm, >= 0: how far the tool may leave the programmed path, so that it moves without a jump of velocity or
+  /// acceleration; 0: the exact path
+  S tolerance = S(0.01);
+  S rotary_tolerance = S(8.726646259971648e-4);  ///< rad, > 0: the same for rotary axes; 0.05 degrees
+  /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
+  S junction_deviation = S(0.01);
+  bool exact_between_rapids_and_feeds{};  ///< keeps the joints of rapids with feed moves exact
+  /// s at rest for which blocks are held back for the ones that follow them; and s without a new block, while
+  /// there is room for one, after which they are let go before the motion slows down for want of blocks
+  S longest_wait = S(0.05);
+  S quick_stop_share = S(1);  ///< 1 to 1000: how many times its limits of acceleration and jerk the tool and
+                              ///< each axis may use in a quick stop; what drives and mechanics bear beyond
+                              ///< the limits that machining has
+  bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+};
+
+using ExecutorOptions = BasicExecutorOptions<double>;
+
+namespace plan {
+
+/// What an executor works in. Look-ahead reaches over `look_ahead` cells.
+template <MachineModel M, BlockModel B>
+struct ExecutorMemory {
+  std::size_t look_ahead{};
+  BasicPlayerMemory<typename M::Scalar> player;
+  typename CellFeed<M, B>::Memory feed;
+};
+
+/// An `Executor` without its memory: compiled once for a machine and its blocks, whatever the capacity. What
+/// it does is said there.
+template <MachineModel M, BlockModel B>
+class ExecutorCore {
+ public:
+  using Scalar = typename M::Scalar;
+  using MachineType = M;
+  using Block = B;
+  using SetPoint = BasicSetPoint<Scalar, M::axis_count>;
+  using Vector = typename SetPoint::Vector;
+  using Options = BasicExecutorOptions<Scalar>;
+  /// The axes over a part of a tick, by time.
+  using Part = AxisPart<M, B>;
+  using Core = ExecutorCore;
+
+  /// A machine that `validate` refuses is told by `error`.
+  ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options);
+  ExecutorCore(const ExecutorCore&) = delete;
+  ExecutorCore& operator=(const ExecutorCore&) = delete;
+
+  [[nodiscard]] const M& machine() const { return machine_; }
+
+  // Blocks.
+
+  /// Takes the next block of the program. False where there is no room: try again behind the next tick. A
+  /// block that cannot be planned ends the motion where it begins: `error` says why. Behind an error blocks
+  /// are taken and dropped. It does the work for one block; where more is to be done, ticks or `plan` do
+  /// that.
+  bool push(const B& block);
+  /// How many blocks have been taken.
+  [[nodiscard]] std::int64_t pushed() const { return feed_.pushed(); }
+  /// Nothing will follow: marks the end. Ticks, or `plan`, do the work for it.
+  void end_of_program() {
+    feed_.end_part();
+    end_.store(feed_.pushed());
+    ended_.store(true, std::memory_order_release);
+  }
+  /// Smooths blocks, cuts them into cells and finds their limits, in so many steps at most: cells, and blocks
+  /// that are smoothed; whether there is more to be done now or later. `push` and, without `background`,
+  /// `tick` do this by themselves.
+  bool plan(std::size_t most_steps = std::numeric_limits<std::size_t>::max()) {
+    return feed_.cut(most_steps, [this](const Cell& cell) { return player_.push(cell); });
+  }
+
+  /// Whether the program is over: all blocks have been run and nothing will follow, or it was stopped, or
+  /// came to rest before a block that cannot be planned.
+  [[nodiscard]] bool finished() const;
+  /// Why the program ended before its end, with line and column where a block is at fault; nothing where all
+  /// is well.
+  [[nodiscard]] std::optional<RunError> error() const;
+
+  // Requests. They act at the next tick.
+
+  /// Comes to rest as soon as the limits allow, a jog too; `resume` goes on from there, and behind every
+  /// other rest.
+  void feed_hold() {
+    player_.hold();
+    end_jog(Scalar(1));
+  }
+  void resume() {
+    player_.resume();
+    if (away_) returns_ = true;
+  }
+  /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is what is no number. Values outside are cut.
+  void feed_override(Scalar share) { player_.feed_override(share); }
+  /// Share of the rapid rate, 0 to 1.
+  void rapid_override(Scalar share) { player_.rapid_override(share); }
+  /// Comes to rest as `feed_hold` does, and the program ends there.
+  void stop() {
+    player_.stop();
+    end_jog(Scalar(1));
+  }
+  /// Comes to rest as `feed_hold` does, with `quick_stop_share` times the limits of acceleration and jerk.
+  void quick_stop() {
+    player_.quick_stop(quick_stop_share_);
+    end_jog(quick_stop_share_);
+  }
+  /// Runs back along the path, as far as blocks are kept, or forwards again. It comes to rest in between.
+  void reverse(bool wanted) { player_.backwards(wanted); }
+  /// Rests behind every block until it is resumed.
+  void single_step(bool wanted) { player_.single_step(wanted); }
+  /// Rests at M1 until it is resumed.
+  void optional_stop(bool wanted) { player_.optional_stop(wanted); }
+  /// Rests at M0 and M60 until it is resumed, which it does unless it is switched off. Then they stop the
+  /// motion, and it goes on.
+  void program_stop(bool wanted) { player_.program_stop(wanted); }
+  /// Rests before the first block of a line until it is resumed. 0: none.
+  void pause_at(int line) { player_.pause_at(line); }
+
+  // Jogs, while no program moves the axes: it is held, stopped or over, or there is none. A program goes on
+  // once the axes are back on its path.
+
+  /// The axes come to velocities, which they keep until another request or the end of their travel. Each
+  /// keeps its limits; those of the tool do not act. Errors: those of `validate` for the machine, and of
+  /// `reach_velocity`; unfinished, with the line, while a program moves the axes.
+  Expected<void> jog(const Vector& velocities);
+  /// The axes go to positions. Errors: those of `move_to`, and as for `jog`.
+  Expected<void> jog_to(const Vector& positions);
+  /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
+  Expected<void> return_to_path();
+
+  /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
+  /// block of a line (0: nothing is), and the motion begins where that block passes the place at which the
+  /// axes stand; where it does not pass within 1e-6, the error is discontinuous. Within a tolerance the block
+  /// is merged and smoothed with those that follow only: the axes go to it first, where it passes within
+  /// twice the tolerance. False, and nothing done, where the machine moves.
+  bool restart(int line, const Vector& position);
+
+  // Time.
+
+  /// Moves on by `period` seconds, >= 0. One that is below 0, or no number, is an error: the axes come to
+  /// rest as by `stop`, in periods like the last one that was a time.
+  SetPoint tick(Scalar period) { return advance(period, nullptr); }
+
+  /// The same, and tells what the axes do over the tick, part by part; rests are none.
+  template <std::invocable<const Part&> Visit>
+  SetPoint tick(Scalar period, Visit&& visit) {
+    const Tell tell(visit);
+    return advance(period, &tell);
+  }
+
+  /// Seconds that all ticks add up to.
+  [[nodiscard]] Scalar time() const { return time_.since(Scalar(0)); }
+  /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
+  [[nodiscard]] Scalar until_change() const { return player_.until_change(); }
+  /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
+  [[nodiscard]] Scalar rested() const { return player_.rested(); }
+
+ private:
+  using Cell = BasicPlayedBlock<Scalar>;
+  using Tell = FunctionRef<void(const Part&)>;
+  static constexpr std::size_t steps_in_tick = 3, steps_in_push = 8;
+  static constexpr int ticks_to_go_on = 16;  // in which blocks that are let go are there to be run
+
+  void stand_at(const Vector& position) {
+    last_.position = position;
+    last_.velocity = last_.acceleration = last_.jerk = Vector::Zero();
+    tell_tool_of_axes();
+  }
+
+  // Nothing has moved the axes yet: they stand where the program begins, once somebody has told.
+  void stand_at_start() {
+    placed_ = feed_.pushed() > 0;
+    if (!placed_) return;
+    last_.position = feed_.start().position;
+    last_.tool = feed_.start().tool;
+  }
+
+  // Away from a path, the tool's place is that of its axes; behind a map nobody knows it.
+  void tell_tool_of_axes() {
+    if constexpr (MappedModel<M>)
+      last_.tool.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+    else
+      last_.tool = in_space(last_.position, tool_);
+  }
+
+  Expected<void> begin_jog() {
+    if (auto ok = validate(machine_); !ok) return ok;
+    if (!placed_) stand_at_start();
+    if (away_ || player_.rests()) return {};
+    return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
+  }
+  Expected<void> jogged(const Expected<void>& done, bool returns) {
+    away_ = away_ || done.has_value();
+    placed_ = placed_ || away_;
+    if (done) returns_ = returns, goes_back_ = false;
+    return done;
+  }
+  void end_jog(Scalar share) {
+    jog_.to_rest(machine_, share);
+    goes_back_ = false;
+  }
+
+  // The axes are to go to a path that is not there yet: no block moves, or those that do are held back.
+  void wait_for_path(Scalar period, std::int64_t ready) {
+    tell_words(ready - 1);
+    waited_ += period;
+    if (waited_ >= longest_wait_) feed_.let_go();
+  }
+
+  // The block of the oldest cell; where there is none, any.
+  [[nodiscard]] std::int64_t oldest_kept() const {
+    return player_.oldest() == player_.end() ? std::numeric_limits<std::int64_t>::max()
+                                             : player_[player_.oldest()].block;
+  }
+
+  Scalar accepted(Scalar period);
+  void let_go_where_none_come(Scalar period);
+  SetPoint advance(Scalar period, const Tell* tell);
+  bool find_path();
+  BasicPlayed<Scalar> play(Scalar period, const Tell* tell);
+  SetPoint tick_of_jog(Scalar period, const Tell* tell);
+  void evaluate(const Cell& cell, const BasicPlayed<Scalar>& now);
+  void release();
+  void tell_words(std::int64_t reached);
+
+  M machine_;
+  std::array<int, 3> tool_;
+  std::int64_t capacity_;
+  Scalar quick_stop_share_;
+  bool background_;
+  Scalar longest_wait_;
+  CellFeed<M, B> feed_;
+  BasicPlayer<Scalar> player_;
+  BasicElapsed<Scalar> time_;
+  Jog<M> jog_;
+  Vector path_place_ = Vector::Zero();  // where the program goes on
+  bool has_run_ = false;                // there is such a place, whatever blocks are kept
+  bool placed_ = false;                 // it is known where the axes stand
+  bool away_ = false;                   // the axes are not on the path
+  bool returns_ = false;                // and are to go back to it
+  bool goes_back_ = false;              // the jog leads there
+  Scalar waited_{};                     // s for which there has been no path to go to
+  Scalar quiet_{};                      // s for which no block has come, though there was room
+  std::int64_t seen_ = 0;               // blocks pushed before the last tick
+  SetPoint last_{};
+  std::int64_t told_ = 0;  // blocks whose words have been told
+  Scalar last_period_{};   // s
+  Error fault_{};          // of a period
+  std::atomic<bool> failed_{false};
+  SharedCount end_;  // blocks of the program, where nothing follows
+  std::atomic<bool> ended_{false};
+};
+
+template <MachineModel M, BlockModel B>
+ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options)
+    : machine_(machine),
+      tool_(tool_axes(machine)),
+      capacity_(static_cast<std::int64_t>(memory.look_ahead)),
+      quick_stop_share_(brake_share(options.quick_stop_share)),
+      background_(options.background),
+      longest_wait_(options.longest_wait),
+      feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
+            {options.tolerance, options.rotary_tolerance, options.exact_between_rapids_and_feeds},
+            memory.feed),
+      player_(memory.player, capacity_) {
+  player_.program_stop(true);
+}
+
+template <MachineModel M, BlockModel B>
+bool ExecutorCore<M, B>::push(const B& block) {
+  if (failed_.load(std::memory_order_acquire)) return true;
+  const bool taken = feed_.push(block);
+  if (taken) ended_.store(false, std::memory_order_relaxed);
+  plan(steps_in_push);
+  return taken;
+}
+
+template <MachineModel M, BlockModel B>
+bool ExecutorCore<M, B>::finished() const {
+  if (player_.stopped()) return !jog_.moves();
+  if (!player_.finished() || (away_ && (has_run_ || player_.oldest() != player_.end()))) return false;
+  if (feed_.failed()) return true;
+  if (!ended_.load(std::memory_order_acquire)) return false;
+  const std::int64_t end = end_.load();
+  return told_ >= end && feed_.ready() >= end;
+}
+
+template <MachineModel M, BlockModel B>
+std::optional<RunError> ExecutorCore<M, B>::error() const {
+  if (feed_.failed()) return RunError{feed_.fault()};
+  if (failed_.load(std::memory_order_acquire)) return RunError{{fault_, 0, 0, {}}};
+  return std::nullopt;
+}
+
+template <MachineModel M, BlockModel B>
+Expected<void> ExecutorCore<M, B>::jog(const Vector& velocities) {
+  if (auto ok = begin_jog(); !ok) return ok;
+  return jogged(jog_.to_velocities(last_.position, velocities, machine_), false);
+}
+
+template <MachineModel M, BlockModel B>
+Expected<void> ExecutorCore<M, B>::jog_to(const Vector& positions) {
+  if (auto ok = begin_jog(); !ok) return ok;
+  return jogged(jog_.to_positions(last_.position, positions, machine_), false);
+}
+
+template <MachineModel M, BlockModel B>
+Expected<void> ExecutorCore<M, B>::return_to_path() {
+  if (!away_ || !find_path()) return {};
+  const auto done = jogged(jog_.to_positions(last_.position, path_place_, machine_), returns_);
+  goes_back_ = done.has_value();
+  return done;
+}
+
+template <MachineModel M, BlockModel B>
+bool ExecutorCore<M, B>::restart(int line, const Vector& position) {
+  if (jog_.moves() || !player_.skip_to(0)) return false;
+  feed_.restart(line, position);
+  away_ = returns_ = feed_.smooths();
+  has_run_ = false;
+  placed_ = true;
+  waited_ = quiet_ = Scalar(0);
+  seen_ = told_ = 0;
+  failed_ = ended_ = false;
+  stand_at(position);
+  last_.along = {};
+  last_.block = 0;
+  return true;
+}
+
+// The period of a tick. Where it is none the run ends.
+template <MachineModel M, BlockModel B>
+typename M::Scalar ExecutorCore<M, B>::accepted(Scalar period) {
+  if (period >= Scalar(0) && std::isfinite(period)) return last_period_ = period;
+  if (!failed_.load(std::memory_order_relaxed)) {
+    const bool number = std::isfinite(period);
+    fault_ = refusal(number ? ErrorCode::negative : ErrorCode::not_finite, "period", period).value();
+    failed_.store(true, std::memory_order_release);
+    stop();
+  }
+  return last_period_;
+}
+
+// Blocks that wait for others go on without them where these do not come: at rest, and before the motion
+// slows down for want of blocks. Where there is no room they could not come.
+template <MachineModel M, BlockModel B>
+void ExecutorCore<M, B>::let_go_where_none_come(Scalar period) {
+  const std::int64_t pushed = feed_.pushed();
+  quiet_ = pushed != seen_ || feed_.full() ? Scalar(0) : quiet_ + period;
+  seen_ = pushed;
+  const bool waits = player_.finished() && player_.rested() >= longest_wait_;
+  if (waits || (quiet_ >= longest_wait_ && player_.starves(Scalar(ticks_to_go_on) * period))) feed_.let_go();
+}
+
+template <MachineModel M, BlockModel B>
+auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
+  const Scalar period = accepted(given);
+  let_go_where_none_come(period);
+  if (!background_) plan(steps_in_tick);
+  const std::int64_t ready = feed_.ready();
+  time_.add(period);
+  last_.time = time();
+  last_.words.clear();
+  if (!placed_) stand_at_start();
+  if (away_) {
+    if (returns_ && !find_path())
+      wait_for_path(period, ready);
+    else
+      waited_ = Scalar(0);
+    release();
+    return tick_of_jog(period, tell);
+  }
+  const BasicPlayed<Scalar> now = play(period, tell);
+  std::int64_t reached = -1;
+  if (now.block >= 0) {
+    const Cell& cell = player_[now.block];
+    reached = cell.block;
+    evaluate(cell, now);
+  }
+  if (player_.finished()) reached = std::max(reached, ready - 1);
+  tell_words(reached);
+  release();
+  return last_;
+}
+
+// Where the program goes on: on the blocks that it has, or where it was left if those have been let go. False
+// while it has none and has not run.
+template <MachineModel M, BlockModel B>
+bool ExecutorCore<M, B>::find_path() {
+  const BasicPlayed<Scalar> now = player_.place();
+  if (now.block < 0) return has_run_;
+  const Cell& cell = player_[now.block];
+  const auto path = feed_.path(cell.block);
+  path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
+  return true;
+}
+
+template <MachineModel M, BlockModel B>
+BasicPlayed<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Tell* tell) {
+  if (tell == nullptr) return player_.tick(period);
+  return player_.tick(period, [&](const BasicPlayedPart<Scalar>& part) {
+    const Cell& cell = player_[part.block];
+    (*tell)(Part(feed_.path(cell.block), part.phase, cell.from + part.along, part.direction));
+  });
+}
+
+template <MachineModel M, BlockModel B>
+auto ExecutorCore<M, B>::tick_of_jog(Scalar period, const Tell* tell) -> SetPoint {
+  const bool goes_on = returns_ && !player_.held() && !player_.stopped();
+  if (goes_on && !(jog_.moves() && goes_back_) && !return_to_path()) returns_ = false;
+  if (jog_.moves()) {
+    const bool rests = jog_.advance(period);
+    const AxisMotion<Vector> axes = jog_.at(Scalar(0));
+    last_.position = axes.position;
+    last_.velocity = axes.velocity;
+    last_.acceleration = axes.acceleration;
+    last_.jerk = axes.jerk;
+    tell_tool_of_axes();
+    if (tell != nullptr) (*tell)(Part(jog_, period));
+    if (rests) stand_at(axes.position);
+  }
+  constexpr Scalar rounding = std::max(Scalar(1e-9), 64 * std::numeric_limits<Scalar>::epsilon());
+  if (!jog_.moves() && find_path() &&
+      (last_.position - path_place_).cwiseAbs().maxCoeff() <=
+          rounding * (1 + path_place_.cwiseAbs().maxCoeff()))
+    away_ = returns_ = false;
+  return last_;
+}
+
+template <MachineModel M, BlockModel B>
+void ExecutorCore<M, B>::evaluate(const Cell& cell, const BasicPlayed<Scalar>& now) {
+  const B& block = feed_[cell.block];
+  const auto path = feed_.path(cell.block);
+  const Scalar s = std::clamp(cell.from + now.along, Scalar(0), path.length());
+  const AxisMotion<Vector> axes =
+      motion(path.point_at(s), BasicState<Scalar>{s, now.velocity, now.acceleration, now.jerk});
+  last_.block = static_cast<std::size_t>(cell.block);
+  last_.line = block.line;
+  last_.position = axes.position;
+  last_.velocity = axes.velocity;
+  last_.acceleration = axes.acceleration;
+  last_.jerk = axes.jerk;
+  if constexpr (MappedModel<M>)
+    last_.tool = tool_point(block.path, s, tool_).position;
+  else
+    last_.tool = in_space(axes.position, tool_);
+  last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
+  path_place_ = axes.position;
+  has_run_ = true;
+}
+
+// Lets blocks go that are too far behind: those ahead are to have their share of the room, whatever blocks
+// without a cell lie between.
+template <MachineModel M, BlockModel B>
+void ExecutorCore<M, B>::release() {
+  const std::int64_t furthest = std::max(static_cast<std::int64_t>(last_.block), told_ - 1) - capacity_;
+  while (oldest_kept() < furthest && player_.forget_oldest()) {
+  }
+  feed_.release(std::min(told_, oldest_kept()));
+}
+
+// Words of blocks up to one; what the set point has no room for comes with the next one.
+template <MachineModel M, BlockModel B>
+void ExecutorCore<M, B>::tell_words(std::int64_t reached) {
+  for (; told_ <= reached; ++told_) {
+    const gcode::Word& word = feed_[told_].word;
+    if (word.letter != '\0' && !last_.words.push_back(word)) return;
+  }
+}
+
+}  // namespace plan
+
+}  // namespace cncplan
