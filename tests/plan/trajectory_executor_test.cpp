@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/gcode/lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
@@ -290,21 +289,16 @@ TEST_CASE("a machine with a reserve", "[trajectory-executor]") {
 
 TEST_CASE("trajectory executor: a part of a longer motion is refused", "[trajectory-executor]") {
   SmoothStream<Machine<3>, ProgramBlock<Machine<3>>> stream(mill, {.tolerance = 0.01}, SmoothLevel::good, 40);
-  const auto program = read_blocks(gcode::TextLines("F1800 G91 " +
-                                                    [] {
-                                                      std::string lines;
-                                                      for (int i = 0; i < 150; ++i)
-                                                        lines += i % 2 == 0 ? "G1 X1\n" : "G1 X1 Y0.2\n";
-                                                      return lines;
-                                                    }()),
-                                   mill, {});
-  REQUIRE(program);
+  std::string lines = "F1800 G91\n";
+  for (int i = 0; i < 150; ++i) lines += i % 2 == 0 ? "G1 X1\n" : "G1 X1 Y0.2\n";
+  const auto program = read_text(lines, mill);
+  REQUIRE_FALSE(program.failed());
   using Part = decltype(stream)::Part;
   std::vector<Part> parts;
   const auto take = [&] {
     while (stream.ready()) parts.push_back(stream.take());
   };
-  for (const auto& block : program->blocks) {
+  for (const auto& block : program.blocks()) {
     REQUIRE(stream.push(block));
     take();
   }
