@@ -64,8 +64,10 @@ void Problems::add(const gcode::Diagnostic& diagnostic) {
 
 void Problems::add(const gcode::Motion& motion, const Error& error) {
   const std::string text = gcode::to_text(gcode::Diagnostic{error, motion.line, motion.column, {}});
+  // Of one kind whatever the radii are; their amounts stand behind the sentence.
+  const std::string kind = text.substr(0, text.size() - amount_text(error).size());
   const bool mismatch = error.code == ErrorCode::radius_mismatch;
-  add({motion.line, motion.column, text, mismatch ? text + radii_text(motion) : text});
+  add({motion.line, motion.column, kind, mismatch ? kind + radii_text(motion) : text});
 }
 
 void Problems::refuse() const {

@@ -96,9 +96,18 @@ TEST_CASE("parameters by number, by name, and one through the other") {
 }
 
 TEST_CASE("values that are none") {
-  CHECK(error("[1/0]") == "3: / is not a finite number");
+  CHECK(error("[1/0]") == "3: / divides by zero");
+  CHECK(error("[0/0]") == "3: / divides by zero");
+  CHECK(error("[1 mod 0]") == "4: MOD divides by zero");
+  CHECK(error("[1+2/[3-3]]") == "5: / divides by zero");
+  CHECK(error("#foo") == "2: name of a parameter without < > is not supported");
+  CHECK(error("[1+#foo[2]]") == "5: name of a parameter without < > is not supported");
+  CHECK(error("#_x") == "2: name of a parameter without < > is not supported");
+  CHECK(error("exists[#foo]") == "9: name of a parameter without < > is not supported");
+  CHECK(error("#abs[-1]") == "none");
+  CHECK(error("[10**400]") == "4: result of ** is not a finite number");
   CHECK(error("sqrt[-1]") == "1: value is not a finite number");
-  CHECK(error("[-8**0.5]") == "4: ** is not a finite number");
+  CHECK(error("[-8**0.5]") == "4: result of ** is not a finite number");
   CHECK(error("[1+]") == "4: value has no number: ']' follows");
   CHECK(error("[1+2") == "5: ]: a required word is missing");
   CHECK(error("[1 2]") == "4: ]: a required word is missing");

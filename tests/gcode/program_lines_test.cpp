@@ -174,13 +174,13 @@ TEST_CASE("loops and calls that move nothing end soon") {
 TEST_CASE("a call that is refused leaves no subprogram open") {
   CHECK(problems("o1 sub\nG0 X1\no1 endsub\no1 call\no1 call\nX[1/0]\no1 endsub\n", 1) ==
         "5:1: error: number of times that the program goes back is above the limit 1\n"
-        "6:4: error: / is not a finite number\n"  // once: the endsub goes back to no call
+        "6:4: error: / divides by zero\n"  // once: the endsub goes back to no call
         "7:1: error: O-word belongs to nothing that is open\n");
 }
 
 TEST_CASE("all problems of a program with parameters are told, at their columns") {
   CHECK(problems("G0 X[1/0]\nX1\nX[#1] Q1\no1 endif\nG1 X#<a> F1\nG1 X2 F100\nY[1] E\n") ==
-        "1:7: error: / is not a finite number\n3:7: error: Q is used by nothing on this line\n"
+        "1:7: error: / divides by zero\n3:7: error: Q is used by nothing on this line\n"
         "4:1: error: O-word belongs to nothing that is open\n5:5: error: named parameter is not defined\n"
         "7:6: error: E has no number\n");
 }

@@ -64,7 +64,6 @@ enum class ErrorCode : std::uint8_t {
   no_such_tool,
   no_tool_table,
   division_by_zero,
-  loses_pitch,
   not_as_read,
   count_,  // number of codes
 };
@@ -122,7 +121,6 @@ enum class ErrorCode : std::uint8_t {
       "names a tool that the table does not have",
       "names a tool, and there is no tool table: its length and diameter are 0",
       "divides by zero",
-      "is faster than the axes follow: the thread would lose its pitch",
       "is not as the program was read with",
   };
   const auto row = static_cast<std::size_t>(code);

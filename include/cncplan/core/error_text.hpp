@@ -20,6 +20,22 @@ namespace cncplan {
   return std::string(digits.data(), end);
 }
 
+/// What the sentences about radii leave open: how large they are and may be, to six digits; else "".
+[[nodiscard]] inline std::string amount_text(const Error& error) {
+  const auto rounded = [](double number) {
+    std::array<char, 32> digits;
+    char* const end =
+        std::to_chars(digits.data(), digits.data() + digits.size(), number, std::chars_format::general, 6)
+            .ptr;
+    return std::string(digits.data(), end);
+  };
+  if (error.code == ErrorCode::radius_mismatch)
+    return " by " + rounded(error.value) + ", at most " + rounded(error.bound) + " is allowed";
+  if (error.code == ErrorCode::chord_exceeds_diameter)
+    return ": " + rounded(error.value) + ", at least " + rounded(error.bound) + " is needed";
+  return "";
+}
+
 /// "end speed: 30 cannot be reached within the length (12.5)": field, value, what is wrong, and the bound
 /// where there is one.
 [[nodiscard]] inline std::string to_text(const Error& error) {
@@ -36,11 +52,9 @@ namespace cncplan {
     case ErrorCode::below_limit:
       return text + ' ' + number_text(error.bound);
     case ErrorCode::end_speed_unreachable:
-    case ErrorCode::radius_mismatch:
-    case ErrorCode::chord_exceeds_diameter:
       return text + " (" + number_text(error.bound) + ')';
     default:
-      return text;
+      return text + amount_text(error);
   }
 }
 

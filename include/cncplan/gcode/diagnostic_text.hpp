@@ -44,6 +44,7 @@ inline std::string word_text(const Error& error) {
   text += sentence;
   if (error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit)
     text += ' ' + number_text(error.bound);
+  text += amount_text(error);
   if (error.code == ErrorCode::missing_number && error.value != 0.0)
     text += ": " + detail::character_text(error.value) + " follows";
   if (!diagnostic.other.empty())

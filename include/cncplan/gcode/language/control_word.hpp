@@ -88,6 +88,8 @@ struct ControlWord {
   expression.skip_blanks();
   if (expression.peek() == '<') {
     word.label = expression.name();
+  } else if (expression.is_name()) {
+    expression.fail(ErrorCode::not_supported, "label without < >", expression.column());
   } else {
     const double number = expression.whole_value();
     word.label = std::to_string(static_cast<long long>(number));

@@ -1,6 +1,7 @@
 // Values in the text: numbers, parameters, expressions in brackets and functions (set-up).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -35,20 +36,23 @@ struct Operation {
   std::string_view name;
   int precedence{};  ///< a higher one is carried out first; those of one precedence from left to right
   double (*apply)(double, double){};
+  std::string_view result{};  ///< what an error calls its result
+  bool divides = false;
 };
 
 // A longer name stands before its beginning.
 inline constexpr std::array operations{
-    Operation{"**", 5, [](double a, double b) { return std::pow(a, b); }},
-    Operation{"*", 4, [](double a, double b) { return a * b; }},
-    Operation{"/", 4, [](double a, double b) { return a / b; }},
+    Operation{"**", 5, [](double a, double b) { return std::pow(a, b); }, "result of **"},
+    Operation{"*", 4, [](double a, double b) { return a * b; }, "result of *"},
+    Operation{"/", 4, [](double a, double b) { return a / b; }, "result of /", true},
     Operation{"MOD", 4,
               [](double a, double b) {
                 const double rest = std::fmod(a, b);
                 return rest < 0.0 ? rest + std::abs(b) : rest;
-              }},
-    Operation{"+", 3, [](double a, double b) { return a + b; }},
-    Operation{"-", 3, [](double a, double b) { return a - b; }},
+              },
+              "result of MOD", true},
+    Operation{"+", 3, [](double a, double b) { return a + b; }, "result of +"},
+    Operation{"-", 3, [](double a, double b) { return a - b; }, "result of -"},
     Operation{"EQ", 2, [](double a, double b) { return std::abs(a - b) < equal_within ? 1.0 : 0.0; }},
     Operation{"NE", 2, [](double a, double b) { return std::abs(a - b) < equal_within ? 0.0 : 1.0; }},
     Operation{"GT", 2, [](double a, double b) { return a > b ? 1.0 : 0.0; }},
@@ -152,6 +156,10 @@ class Expression {
     ++at_;
     skip_blanks();
     if (peek() == '<') return name();
+    if (is_name()) {
+      fail(ErrorCode::not_supported, "name of a parameter without < >", column());
+      return 0.0;
+    }
     return nested([this] { return whole_value(); });
   }
 
@@ -190,6 +198,15 @@ class Expression {
   }
 
   [[nodiscard]] int column() const { return static_cast<int>(at_) + 1; }
+
+  /// Whether letters come next that begin no function.
+  [[nodiscard]] bool is_name() const {
+    if (peek() != '_' && (peek() < 'A' || peek() > 'Z')) return false;
+    Expression ahead = *this;
+    if (ahead.take("ATAN") || ahead.take("EXISTS")) return false;
+    return std::none_of(detail::functions.begin(), detail::functions.end(),
+                        [&ahead](const detail::Function& function) { return ahead.take(function.name); });
+  }
 
   /// The first error stays.
   void fail(ErrorCode code, std::string_view field, int column, double value = 0.0, double bound = 0.0) {
@@ -252,8 +269,10 @@ class Expression {
         return left;
       }
       const double right = operand();
+      const int column = static_cast<int>(before) + 1;
+      if (found->divides && right == 0.0) fail(ErrorCode::division_by_zero, found->name, column, left);
       left = found->apply(left, right);
-      if (!std::isfinite(left)) fail(ErrorCode::not_finite, found->name, static_cast<int>(before) + 1, left);
+      if (!std::isfinite(left)) fail(ErrorCode::not_finite, found->result, column, left);
     }
     return 0.0;
   }
