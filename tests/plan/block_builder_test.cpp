@@ -106,3 +106,24 @@ TEST_CASE("making blocks does not touch the heap") {
         }) == 0);
   CHECK(made == 20);
 }
+
+TEST_CASE("a thread that the axes cannot follow is refused") {
+  Machine<3> lathe{.limits = {.velocity = 100, .acceleration = 1000, .jerk = 10000}};
+  lathe.axes[2].velocity = 30;
+  lathe.axes[2].velocity_down = 20;
+  const auto error = [&](std::string_view text) {
+    const auto program = read_blocks(gcode::TextLines(text), lathe, {});
+    return program ? std::string() : to_text(program.error());
+  };
+  // K 2 mm at S 2000: 66.7 mm/s.
+  CHECK(error("S2000 M3\nG0 Z20\nG33 Z30 K2\n") == "3:5: error: speed of a thread is above the limit 30");
+  CHECK(error("S2000 M3\nG0 Z20\nG33 Z10 K2\n") == "3:5: error: speed of a thread is above the limit 20");
+  CHECK(error("S890 M3\nG0 Z20\nG33 Z30 K2\n").empty());
+  CHECK(error("S590 M3\nG0 Z20\nG33 Z10 K2\n").empty());
+  CHECK(error("S2000 M3\nG0 Z20\nG33 X10 K2\n").empty());
+  CHECK(error("S4000 M3\nG0 Z20\nG33 X10 K2\n") == "3:5: error: speed of a thread is above the limit 100");
+  CHECK(error("S850 M3\nG0 Z20\nG33.1 Z30 K2\n") == "3:7: error: speed of a thread is above the limit 20");
+  CHECK(error("S2000 M3\nG18 G0 X20 Z20\nG76 P2 Z0 I-1 J.1 K1 R1 Q0 H0 E0 L0\n") ==
+        "3:8: error: speed of a thread is above the limit 20");
+  CHECK(error("S2000 M3\nG0 Z20\nG95 G1 Z30 F2\n").empty());  // a feed may be less
+}

@@ -56,6 +56,7 @@ struct Motion {
   Vector3 center = Vector3::Zero();  ///< arc_center: X Y Z in mm; the plane's third coordinate is the start's
   std::array<SplineControl, 2> controls{};  ///< spline: those between start and end, whose weights are 1
   bool probe{};                             ///< G38.2 to G38.5: the end is where it goes without contact
+  bool synchronised{};                      ///< a thread's or a tap's: the feed is a pitch at S, and no less
   int extra_turns{};                        ///< whole turns more than the arc itself: P - 1
   double tool_radius{};  ///< mm, under cutter compensation; > 0: the tool is to the left, < 0: right
   /// mm/s, degrees/s where only rotary axes move, 1/s under inverse time; none for rapids and before the

@@ -439,6 +439,7 @@ class Reader {
     Motion motion = motion_to(end);
     motion.kind = code_of_motion == code(0) ? MotionKind::rapid : MotionKind::line;
     motion.probe = is_probe(code_of_motion);
+    motion.synchronised = pitch > 0.0;
     if (motion.probe) probed_ = end;
     if (motion.kind == MotionKind::line)
       motion.feed = pitch > 0.0 ? feed_of_turn(motion, pitch) : feed(motion);

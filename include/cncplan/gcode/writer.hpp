@@ -53,7 +53,8 @@ template <std::invocable<double> Read>
 /// Emits millimetres (degrees for rotary axes), absolute end points and absolute centres (G21 G90 G90.1),
 /// only the words that change, and the shortest digits that read back to the same bits. An offset is written
 /// as G43.1, which names it whole whatever it was made of; after a change of it the start of the next motion
-/// may differ by a rounding. Warnings are not written, nor are line numbers.
+/// may differ by a rounding. A thread is written as lines at its feed. Warnings are not written, nor are line
+/// numbers.
 ///
 ///     gcode::Writer writer(dialect);
 ///     for (const gcode::Item& item : items) writer.write(item, std::ostreambuf_iterator<char>(stream));

@@ -106,7 +106,8 @@ class BlockBuilder {
 
   /// The block of an item; none for a word or a warning, or for a stop before anything. Errors, at their
   /// place: those of arcs and of `path::spline`; not_supported for one of them on a machine whose first axes
-  /// are not X Y Z; unreachable for a motion of an axis that the machine lacks.
+  /// are not X Y Z; unreachable for a motion of an axis that the machine lacks; above_limit for a thread that
+  /// the axes cannot follow at the spindle's speed.
   [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> take(const gcode::Item& item) {
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
       auto made = block(*motion);
@@ -199,7 +200,28 @@ class BlockBuilder {
         result.path = path::StraightInJoints<std::remove_cvref_t<decltype(M::map)>>(
             machine_.map, programmed->start(), programmed->end());
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
+    if (motion.synchronised)
+      if (const Scalar fastest = fastest_along(*programmed); result.feed > fastest)
+        return tl::unexpected(Error{ErrorCode::above_limit, "speed of a thread",
+                                    static_cast<double>(result.feed), static_cast<double>(fastest)});
     return result;
+  }
+
+  // The speed along a line that the tool's limits and those of the axes allow.
+  [[nodiscard]] Scalar fastest_along(const Programmed& line) const {
+    Scalar fastest = machine_.limits.velocity;
+    if (machine_.feed_limit > Scalar(0)) fastest = std::min(fastest, machine_.feed_limit);
+    if constexpr (!MappedModel<M>) {
+      const Coordinates way = line.end() - line.start();
+      for (std::size_t i = 0; i < coordinates; ++i) {
+        const Scalar step = way[static_cast<Eigen::Index>(i)];
+        const auto& axis = machine_.axes[i];
+        const Scalar limit =
+            step < Scalar(0) && axis.velocity_down > Scalar(0) ? axis.velocity_down : axis.velocity;
+        if (step != Scalar(0)) fastest = std::min(fastest, limit * line.length() / std::abs(step));
+      }
+    }
+    return fastest;
   }
 
   // mm/s, or rad/s where the tool stands still: F counts degrees there.
