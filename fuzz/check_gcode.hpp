@@ -52,6 +52,7 @@ inline const std::array<gcode::Dialect, 3>& dialects() {
 inline gcode::Motion placeless(gcode::Motion motion) {
   motion.line = motion.column = 0;
   motion.tool_radius = 0.0;  // a programmed path is written as it is
+  motion.synchronised = false;
   return motion;
 }
 
@@ -109,7 +110,7 @@ inline void check_language(std::string_view text, const gcode::Dialect& dialect)
       },
       [&](const gcode::Diagnostic& problem) {
         require(problem.line >= 0 && problem.column >= 1, "an error of the language has its place");
-        require(problem.column <= static_cast<int>(gcode::max_line_length) + 1, "and that is within a line");
+        require(problem.column <= static_cast<int>(text.size()) + 1, "and that is within a line");
         require(!gcode::to_text(problem).empty(), "and a sentence");
         return ++steps < patience;
       });

@@ -181,3 +181,20 @@ TEST_CASE("controls differ in what a dwell counts and where a cycle goes back to
   writer.finish(std::back_inserter(text));
   CHECK(test::read(text, dialect).all<gcode::Dwell>()[0].seconds == 0.123);
 }
+
+TEST_CASE("G70 and G71 are units in Mach3's dialect alone") {
+  const Dialect mach3 = gcode::with({}, *gcode::find_control("mach3"));
+  const auto ends = [&](const std::string& text) {
+    std::vector<double> x;
+    const auto reading = test::read(text, mach3);
+    CHECK(reading.error == "");
+    for (const auto& motion : reading.motions()) x.push_back(motion.end[0]);
+    return x;
+  };
+  CHECK(ends("G70 G0 X1\nG71 X2\nG70\nX3\nG21 X4\nG20 X1") == std::vector<double>{25.4, 2, 76.2, 4, 25.4});
+  CHECK(test::read("G70 G21", mach3).error == "1:5: G21: words exclude each other (G20)");
+  for (const char* control : {"linuxcnc", "grbl", "fanuc", "marlin"})
+    for (const char* code : {"G70", "G71"})
+      CHECK(test::read(code, gcode::with({}, *gcode::find_control(control))).error ==
+            "1:1: " + std::string(code) + " is not supported");
+}

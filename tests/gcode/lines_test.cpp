@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cncplan/gcode/language/program_lines.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
 #include "gcode/support.hpp"
 #include "support/catch.hpp"
@@ -82,6 +83,63 @@ TEST_CASE("a line that the buffer cannot take is one line, too long for the read
   CHECK(lines[1].size() > gcode::max_line_length);
   CHECK(lines[2] == "b");
   CHECK(of_stream(monster).size() == 1);
+}
+
+TEST_CASE("a comment is as long as it likes, in a text and in a stream") {
+  const auto ends = [](auto&& lines, gcode::Reader&& reader) {
+    std::vector<double> x;
+    const auto done = gcode::read_program(lines, reader, [&](const gcode::Item& item) {
+      if (const auto* motion = std::get_if<gcode::Motion>(&item)) x.push_back(motion->end[0]);
+    });
+    if (!done) x.push_back(-1000.0 - done.error().line);
+    return x;
+  };
+  for (const std::size_t length : {1000UL, 1025UL, 70000UL, 300000UL})
+    for (const std::string mark : {"(", ";", "(a "})
+      for (const std::string end : {"\n", "\r\n", "\r"}) {
+        CAPTURE(length, mark, end.size());
+        const bool round = mark[0] == '(';
+        const std::string comment = mark + std::string(length, 'x') + (round ? ")" : "");
+        const std::string text = "G0 X1" + end + comment + end + "X2" + comment + (round ? "Y3" : "") + end +
+                                 "X3" + end + "#1=4" + comment + end + "X#1" + comment + end +
+                                 "o1 repeat [2] " + comment + end + "G91 X1" + comment + end +
+                                 "o1 endrepeat" + end + "X9" + comment;
+        const std::vector<double> expected{1, 2, 3, 4, 5, 6, 15};
+        gcode::Reader reader;
+        gcode::TextLines text_lines(text);
+        gcode::ProgramLines program(text_lines, reader);
+        std::vector<double> x;
+        CHECK(gcode::read_program(program, reader, [&](const gcode::Item& item) {
+          if (const auto* motion = std::get_if<gcode::Motion>(&item)) x.push_back(motion->end[0]);
+        }));
+        CHECK(x == expected);
+        std::istringstream stream(text);
+        gcode::StreamLines stream_lines(stream);
+        gcode::Reader again;
+        gcode::ProgramLines streamed(stream_lines, again);
+        x.clear();
+        CHECK(gcode::read_program(streamed, again, [&](const gcode::Item& item) {
+          if (const auto* motion = std::get_if<gcode::Motion>(&item)) x.push_back(motion->end[0]);
+        }));
+        CHECK(x == expected);
+        CHECK(ends(gcode::TextLines("G0 X1" + comment + end + "X2"), gcode::Reader()) ==
+              std::vector<double>{1, 2});
+      }
+  // Columns of a text stay those of the line.
+  gcode::Reader reader;
+  gcode::Item item;
+  const auto error = reader.read_line("G0 X1 (" + std::string(100000, 'x') + ") Q5", &item);
+  REQUIRE_FALSE(error);
+  CHECK(error.error().column == 100010);
+}
+
+TEST_CASE("many comments on a line take time in proportion") {
+  std::string line;
+  while (line.size() < 1000000) line += "(()";
+  gcode::Reader reader;
+  gcode::Item item;
+  CHECK_FALSE(
+      reader.read_line(line, &item));  // the end of the test is the check: quadratic, it takes minutes
 }
 
 TEST_CASE("a long program takes no memory") {

@@ -209,7 +209,7 @@ class Block {
     const char axis = problem.error.field.front();
     if (std::string_view("XYZABCUVW").find(axis) == std::string_view::npos || has(axis)) return false;
     numbers_[index(axis)] = 0.0;
-    columns_[index(axis)] = static_cast<std::uint16_t>(problem.column);
+    columns_[index(axis)] = problem.column;
     letters_ |= bit(axis);
     bare_ |= bit(axis);
     return true;
@@ -256,7 +256,7 @@ class Block {
           Diagnostic{{ErrorCode::not_supported, "O-word", word.number, 0.0}, 0, word.column});
     const std::size_t i = index(word.letter);
     numbers_[i] = word.number;
-    columns_[i] = static_cast<std::uint16_t>(word.column);
+    columns_[i] = word.column;
     if (has(word.letter)) return tl::unexpected(error(ErrorCode::duplicate_word, word.letter));
     letters_ |= bit(word.letter);
     return {};
@@ -293,7 +293,7 @@ class Block {
     }
     codes_seen_ |= 1U << static_cast<unsigned>(group);
     codes_[static_cast<std::size_t>(group)] = code;
-    code_columns_[static_cast<std::size_t>(group)] = static_cast<std::uint16_t>(word.column);
+    code_columns_[static_cast<std::size_t>(group)] = word.column;
     return {};
   }
 
@@ -340,9 +340,9 @@ class Block {
   Letters bare_{};
   Letters lost_{};
   std::array<double, word_letters.size()> numbers_{};
-  std::array<std::uint16_t, word_letters.size()> columns_{};
+  std::array<int, word_letters.size()> columns_{};
   std::array<Code, group_count> codes_{};
-  std::array<std::uint16_t, group_count> code_columns_{};
+  std::array<int, group_count> code_columns_{};
   std::array<Passed, max_passed> passed_{};
 };
 

@@ -94,7 +94,7 @@ class Reader {
   /// Takes over what can be understood of a line in error, for the lines behind it: its modes, its end point,
   /// the end of the program. Motions that begin at a place that is not known for sure do not come out.
   void recover(std::string_view text) {
-    if (!readable_ || text.size() > max_line_length) return;
+    if (!readable_ || is_too_long(text)) return;
     block_.salvage(text, 0, dialect_, alphabet_);
     block_.lose(unclear_words(block_, modal_, alphabet_));
     splines_.forget();
@@ -138,11 +138,11 @@ class Reader {
     while (text.ends_with('\r')) text.remove_suffix(1);
     std::size_t from = text.find_first_not_of(" \t");
     if (from == std::string_view::npos || text[from] == ';') return out;  // a comment of any length
-    if (text.size() > max_line_length)
+    if (const std::size_t end = end_of_longest(text); end != std::string_view::npos)
       return tl::unexpected(
           Diagnostic{{ErrorCode::line_too_long, "line", static_cast<double>(text.size()), max_line_length},
                      0,
-                     static_cast<int>(max_line_length) + 1});
+                     static_cast<int>(end) + 1});
     if (text[from] == '%') return read_percent(text, from + 1, std::move(out));
     if (text[from] == '/') {
       if (dialect_.block_delete) return out;

@@ -15,17 +15,42 @@
 
 namespace cncplan::gcode {
 
+/// How deep comments may stand within each other: with it the time to find their ends is linear in the line.
+inline constexpr int max_comment_depth = 16;
+
 /// Index behind the comment that begins at `at`; npos if it is not closed. A comment within it belongs to it,
-/// where what closes both stands before a `;`: otherwise the first `)` ends it.
+/// where what closes both stands before a `;`: otherwise, and below `max_comment_depth`, the first `)` ends
+/// it.
 [[nodiscard]] inline std::size_t comment_end(std::string_view line, std::size_t at) {
   const std::size_t first = line.find(')', at);
   if (first == std::string_view::npos) return first;
   if (line.substr(at + 1, first - at).find('(') == std::string_view::npos) return first + 1;
   for (int open = 0; at < line.size() && (at < first || line[at] != ';'); ++at) {
-    if (line[at] == '(') ++open;
+    if (line[at] == '(' && ++open > max_comment_depth) break;
     if (line[at] == ')' && --open == 0) return at + 1;
   }
   return first + 1;
+}
+
+/// Index of the first byte that a line, its comments apart, has more than `max_line_length`; npos for none.
+[[nodiscard]] inline std::size_t end_of_longest(std::string_view line) {
+  if (line.size() <= max_line_length) return std::string_view::npos;
+  std::size_t room = max_line_length;
+  for (std::size_t at = 0; at < line.size() && line[at] != ';';) {
+    if (line[at] == '(') {
+      at = comment_end(line, at);  // not closed, it is an error of its own
+    } else if (room-- == 0) {
+      return at;
+    } else {
+      ++at;
+    }
+  }
+  return std::string_view::npos;
+}
+
+/// Whether the reader refuses a line for its length.
+[[nodiscard]] inline bool is_too_long(std::string_view line) {
+  return end_of_longest(line) != std::string_view::npos;
 }
 
 /// Walks over the words of one line. Blanks and comments, `( )` and `;`, fall away wherever they stand

@@ -8,12 +8,15 @@
 #include <string_view>
 
 #include "cncplan/gcode/lines.hpp"
+#include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {
 
-/// The lines of a stream, as `TextLines` has them, read in pieces into a buffer of fixed size. A line that
-/// does not fit is cut there: it is longer than the reader accepts anyway, and the reader says so.
+/// The lines of a stream, as `TextLines` has them, read in pieces into a buffer of fixed size. Of a comment
+/// that does not fit the text is left out, so that columns behind it are too small, and a comment within it
+/// is not seen. A line that does not fit for its words is cut: it is longer than the reader accepts anyway,
+/// and the reader says so.
 class StreamLines {
  public:
   explicit StreamLines(std::istream& stream) : stream_(stream), start_(stream.tellg()) {}
@@ -25,7 +28,8 @@ class StreamLines {
     for (;;) {
       const std::string_view text(buffer_.data() + begin_, end_ - begin_);
       const std::string_view line = text.substr(0, detail::find_line_end(text));
-      if (text.size() < line.size() + longest_line_end && !stream_at_end_ && text.size() < buffer_.size()) {
+      const bool open = text.size() < line.size() + longest_line_end && !stream_at_end_;
+      if (open && (text.size() < buffer_.size() || (line.size() == text.size() && leave_comment_out()))) {
         refill();
         continue;
       }
@@ -57,6 +61,21 @@ class StreamLines {
   }
 
  private:
+  /// Of the comment that is open at the end of a full buffer leaves what begins it; false where none is.
+  bool leave_comment_out() {
+    const std::string_view text(buffer_.data(), buffer_.size());
+    std::size_t at = text.find_first_of("(;");
+    while (at != std::string_view::npos && text[at] == '(') {
+      const std::size_t behind = comment_end(text, at);
+      if (behind == std::string_view::npos) break;
+      at = text.find_first_of("(;", behind);
+    }
+    if (at == std::string_view::npos || at + 1 == text.size()) return false;
+    begin_ = text.size() - (at + 1);
+    std::memmove(buffer_.data() + begin_, buffer_.data(), at + 1);
+    return true;
+  }
+
   void refill() {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     before_ += begin_;

@@ -67,7 +67,7 @@ struct Word {
   friend bool operator==(const Word&, const Word&) = default;
 };
 
-/// Longest line read, in bytes without its end.
+/// Longest line read, in bytes without its end and its comments.
 inline constexpr std::size_t max_line_length = 1024;
 
 /// Largest magnitude of a number in the text: far beyond any machine, and far enough from overflow that no

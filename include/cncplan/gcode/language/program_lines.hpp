@@ -63,7 +63,7 @@ class ProgramLines {
       const auto line = read_line();
       flat_ = nullptr;
       if (!line) return end_of_text();
-      if (is_flat(*line) || line->size() > max_line_length) return line;
+      if (is_flat(*line) || is_too_long(*line)) return line;
       const auto result = run(*line);
       if (result) return result;
     }
@@ -325,7 +325,7 @@ class ProgramLines {
     while (const auto line = read_line()) {
       bool deleted = false;
       const std::size_t at = find_control_word(*line, deleted);
-      if (at == std::string_view::npos || line->size() > max_line_length) continue;
+      if (at == std::string_view::npos || is_too_long(*line)) continue;
       if (deleted && reader_.dialect().block_delete) continue;
       Expression expression(*line, at, parameters_);
       ControlWord word = read_control_word(expression);
@@ -533,7 +533,7 @@ class ProgramLines {
     while (const auto line = read_line()) {
       bool deleted = false;
       const std::size_t at = find_control_word(*line, deleted);
-      if (at == std::string_view::npos || line->size() > max_line_length) continue;
+      if (at == std::string_view::npos || is_too_long(*line)) continue;
       if (const auto number = numbered_label(*line)) numbered_.try_emplace(*number, place_);
       Expression expression(*line, at, parameters_);
       const ControlWord word = read_control_word(expression);
