@@ -145,10 +145,9 @@ template <std::floating_point S, int N>
   }
   // A start that keeps the limits: where it does not yet, it becomes slower, in the end everywhere.
   for (int round = 0; round < 12; ++round) {
-    gentle_law(sought, std::span<const S>(levels).subspan(ends.given), plan.start, plan.end, along,
-               memory.plateaus, law.subspan(ends.given));
-    const S leaves = BasicDeparture<S>(plan.start, along).length(),
-            comes = BasicDeparture<S>(plan.end, along).length();
+    const auto [leaves, comes] =
+        gentle_law(sought, std::span<const S>(levels).subspan(ends.given), plan.start, plan.end, along,
+                   memory.plateaus, law.subspan(ends.given));
     bool start_too_fast = false, end_too_fast = false;
     S worst = S(0), at = S(0);
     for (std::size_t i = ends.given; i < inner; ++i) {

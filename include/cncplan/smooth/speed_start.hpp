@@ -91,30 +91,45 @@ class Plateaus {
     } else {
       all_[size_++] = next;
     }
-    // The last but one knows both of its neighbours.
-    while (size_ >= 3 && settle(size_ - 2)) {
+    // The last but one knows both of its neighbours. One that became lower may be so for that on its left.
+    for (std::size_t i = size_ - 1; size_ >= 3 && i-- > 1;) {
+      const Fit fit = settle(i);
+      if (fit == Fit::as_it_is) break;
+      if (fit == Fit::joined) i = std::min(i + 1, size_ - 1);
     }
   }
   [[nodiscard]] std::span<const BasicPlateau<S>> all() const { return all_.first(size_); }
 
  private:
-  // Lowers plateau `i` to a neighbour's level if its ramps do not fit, and joins the two. Whether it did.
-  bool settle(std::size_t i) {
+  enum class Fit { as_it_is, lowered, joined };
+
+  // Lowers plateau `i` to where its ramps fit; where little is left above a neighbour's level, to that, and
+  // joins the two. So levels in a row differ by a factor, and lowering one concerns only a few.
+  Fit settle(std::size_t i) {
+    constexpr S least_step = S(1.2);
     BasicPlateau<S>& at = all_[i];
-    if (i == 0) return false;  // where rest has led to
     const bool left = all_[i - 1].speed_sq < at.speed_sq;
     const bool right = i + 1 < size_ && all_[i + 1].speed_sq < at.speed_sq;
-    if (!left && !right) return false;
-    S need = S(0), level = S(0);
-    if (left) {
-      need += BasicGentleRamp<S>(all_[i - 1].speed_sq, at.speed_sq, limits_).length();
-      level = all_[i - 1].speed_sq;
+    const auto ramps = [&](S speed_sq) {
+      S need = S(0);
+      if (left) need += BasicGentleRamp<S>(all_[i - 1].speed_sq, speed_sq, limits_).length();
+      if (right) need += BasicGentleRamp<S>(all_[i + 1].speed_sq, speed_sq, limits_).length();
+      return need;
+    };
+    const S room = at.to - at.from;
+    if (!(left || right) || ramps(at.speed_sq) <= room) return Fit::as_it_is;
+    S level = S(0);
+    if (left) level = all_[i - 1].speed_sq;
+    if (right) level = std::max(level, all_[i + 1].speed_sq);
+    if (at.speed_sq > least_step * level && ramps(least_step * level) <= room) {
+      S low = least_step * level, high = at.speed_sq;
+      while (high > S(1.01) * low) {
+        const S middle = std::sqrt(low * high);
+        (ramps(middle) <= room ? low : high) = middle;
+      }
+      at.speed_sq = low;
+      return Fit::lowered;
     }
-    if (right) {
-      need += BasicGentleRamp<S>(all_[i + 1].speed_sq, at.speed_sq, limits_).length();
-      level = std::max(level, all_[i + 1].speed_sq);
-    }
-    if (need <= at.to - at.from) return false;
     at.speed_sq = level;
     if (right && level == all_[i + 1].speed_sq) {
       all_[i].to = all_[i + 1].to;
@@ -124,7 +139,7 @@ class Plateaus {
       all_[i - 1].to = all_[i].to;
       erase(i);
     }
-    return true;
+    return Fit::joined;
   }
   void erase(std::size_t i) {
     for (std::size_t k = i + 1; k < size_; ++k) all_[k - 1] = all_[k];
@@ -138,49 +153,81 @@ class Plateaus {
 
 }  // namespace detail
 
-/// Motion has come to this b and b' at the law's first knot: it lets go of its acceleration and stays on a
-/// plateau.
-template <std::floating_point S>
-struct BasicDeparture {
-  S speed_sq{};
-  S slope{};
-  S bend{};
-
-  BasicDeparture(const BasicRestCell<S>& rest, const BasicLimits<S>& limits)
-      : speed_sq(rest.speed * rest.speed),
-        slope(S(2) * rest.acceleration),
-        bend(S(2) * BasicGentleRamp<S>::share * limits.jerk / std::sqrt(S(8) * speed_sq)) {}
-
-  [[nodiscard]] S length() const { return slope / bend; }
-  [[nodiscard]] S plateau() const { return speed_sq + slope * slope / (S(2) * bend); }
-  /// Where the tangents of b at two lengths from the knot meet: the coefficient of a cell between them. The
-  /// value of b there is another one, by the square of the cell's length, and where cells of other lengths
-  /// follow that would be a jerk.
-  [[nodiscard]] S between(S x0, S x1) const {
-    const S a = std::min(x0, length()), z = std::min(x1, length());
-    return speed_sq + slope * (a + z) / S(2) - bend * a * z / S(2);
+/// Motion has come to this b and b' at the law's first knot: it lets go of its acceleration over the next
+/// cells, to a plateau. `Shape(i)`: that of the cell with number i from there on.
+template <std::floating_point S, class Shape>
+class BasicDeparture {
+ public:
+  /// Over at most so many cells. It ends where a cell does: a cell with two bends would have a third one.
+  BasicDeparture(const BasicRestCell<S>& rest, const BasicLimits<S>& limits, std::size_t most,
+                 const Shape& shape)
+      : shape_(shape), speed_sq_(rest.speed * rest.speed), slope_(S(2) * rest.acceleration) {
+    const S bend = S(2) * BasicGentleRamp<S>::share * limits.jerk / std::sqrt(S(8) * speed_sq_);
+    while (cells_ < most && length_ * bend < slope_) length_ += shape(cells_++).length;
   }
+
+  [[nodiscard]] std::size_t cells() const { return cells_; }
+  [[nodiscard]] S length() const { return length_; }
+
+  /// Calls `set(i, b)` for the coefficients of its cells, and returns the last of them, that of the plateau.
+  /// They give b' at each knot what it is to be there: b itself would be off by what a skew makes of it, and
+  /// next to a short cell that would be a jerk.
+  template <class Set>
+  S write(Set&& set) const {
+    S b = speed_sq_, at = S(0);
+    for (std::size_t i = 0; i < cells_; ++i) {
+      const S between = shape_(i).to_middle() + (i > 0 ? shape_(i - 1).from_middle() : S(0));
+      b += slope_ * (S(1) - at / length_) * between;
+      at += shape_(i).length;
+      set(i, b);
+    }
+    return b;
+  }
+
+ private:
+  Shape shape_;
+  S speed_sq_{};
+  S slope_{};
+  S length_{};
+  std::size_t cells_ = 0;
+};
+
+/// How far motion takes to let go of its acceleration at both ends of a law.
+template <std::floating_point S>
+struct BasicGentleEnds {
+  S leaves{};
+  S comes{};
 };
 
 /// Coefficients of a law over `problem`'s cells, from `levels`, for each cell a b that it may keep
 /// throughout; between the states in which motion begins and, backwards in time, ends.
 template <std::floating_point S, int N>
-void gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> levels,
-                const BasicRestCell<S>& start, const BasicRestCell<S>& end, const BasicLimits<S>& limits,
-                std::span<BasicPlateau<S>> memory, std::span<S> law) {
+BasicGentleEnds<S> gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> levels,
+                              const BasicRestCell<S>& start, const BasicRestCell<S>& end,
+                              const BasicLimits<S>& limits, std::span<BasicPlateau<S>> memory,
+                              std::span<S> law) {
+  const std::size_t cells = problem.cells.size();
   S length = S(0);
   for (const auto& cell : problem.cells) length += cell.length;
-  const BasicDeparture<S> from(start, limits), to(end, limits);
+  const BasicDeparture from(start, limits, cells, [&](std::size_t i) { return problem.cells[i].shape(); });
+  const BasicDeparture to(end, limits, cells, [&](std::size_t i) {
+    const BasicCellShape<S> shape = problem.cells[cells - 1 - i].shape();
+    return BasicCellShape<S>{shape.length, -shape.skew};
+  });
+  law[0] = start.speed * start.speed;
+  law[cells + 1] = end.speed * end.speed;
+  const S comes = to.write([&](std::size_t i, S b) { law[cells - i] = b; });
+  const S leaves = from.write([&](std::size_t i, S b) { law[i + 1] = b; });
   detail::Plateaus<S> plateaus(memory, limits);
+  plateaus.push({leaves, S(0), from.length()});
   S at = S(0);
-  plateaus.push({from.plateau(), S(0), from.length()});
-  for (std::size_t cell = 0; cell < problem.cells.size(); ++cell) {
-    const S low = std::max(at, from.length());
+  const std::size_t last = std::max(cells - to.cells(), from.cells());
+  for (std::size_t cell = 0; cell < last; ++cell) {
+    const S low = at;
     at += problem.cells[cell].length;
-    const S high = std::min(at, length - to.length());
-    if (high > low) plateaus.push({levels[cell], low, high});
+    if (cell >= from.cells()) plateaus.push({levels[cell], low, at});
   }
-  plateaus.push({to.plateau(), length - to.length(), length});
+  plateaus.push({comes, at, length});
   const auto all = plateaus.all();
   std::size_t index = 0;
   const auto value = [&](S s) {
@@ -193,20 +240,12 @@ void gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<const S> level
       b = std::min(b, BasicGentleRamp<S>(all[index + 1].speed_sq, here.speed_sq, limits).at(here.to - s));
     return b;
   };
-  at = S(0);
-  const std::size_t cells = problem.cells.size();
-  law[0] = from.speed_sq;
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    // Where the coefficient stands.
-    const S start_of_cell = at, s = at + problem.cells[cell].shape().to_middle();
+  at = from.length();
+  for (std::size_t cell = from.cells(); cell < last; ++cell) {
+    law[cell + 1] = value(at + problem.cells[cell].shape().to_middle());  // where the coefficient stands
     at += problem.cells[cell].length;
-    law[cell + 1] = s < from.length()          ? from.between(start_of_cell, at)
-                    : s > length - to.length() ? to.between(length - at, length - start_of_cell)
-                                               : value(s);
   }
-  law[cells + 1] = to.speed_sq;
-  law[1] = from.speed_sq + from.slope * problem.cells.front().shape().to_middle();
-  law[cells] = to.speed_sq + to.slope * problem.cells.back().shape().from_middle();
+  return {from.length(), to.length()};
 }
 
 }  // namespace cncplan::smooth
