@@ -151,6 +151,26 @@ TEST_CASE("best: narrow bends at a high feed", "[smooth-blocks]") {
     }
 }
 
+TEST_CASE("good and best: a velocity that is not reached changes nothing", "[smooth-blocks]") {
+  // Ten mm from rest to rest, twice: at 30 mm/s the highest speed is 29.
+  Machine<3> machine{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 1000}};
+  const auto blocks = blocks_of("G1 X10 F60000\nY10\n", {.limits = {1000, 1000, 1000}});
+  for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
+    INFO("level " << (level == SmoothLevel::good ? "good" : "best"));
+    machine.limits.velocity = 30;
+    const auto reached = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+    REQUIRE(reached);
+    for (const double velocity : {40.0, 60.0, 80.0, 90.0, 100.0, 150.0, 200.0, 1000.0, 1e5}) {
+      INFO("velocity " << velocity);
+      machine.limits.velocity = velocity;
+      const auto planned = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+      REQUIRE(planned);
+      CHECK(planned->duration() <= reached->duration() * 1.002);
+      CHECK(cubics(*planned) > 0);
+    }
+  }
+}
+
 TEST_CASE("best: dense lines with noise come up to speed", "[smooth-blocks]") {
   // A braking way has hundreds of cells here: windows of 400 gave up to 0.763 s for 0.710. The exact plan,
   // which jumps at all corners, is about as fast as can be.
