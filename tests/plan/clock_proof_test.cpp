@@ -77,6 +77,42 @@ TEST_CASE("a motion by a clock has the derivatives of the function of the functi
   CHECK(by.jerk == Approx(6 * (2 * 4.0 / 6 - 2.5 * 2 * 0.5 * -1 + 7.0 / 6 * 0.125)));
 }
 
+TEST_CASE("clock: the third derivative of an arc changes by no more than its bound", "[clock]") {
+  // r (cos u, sin u), h u with u = s w and w = 1 / sqrt(r^2 + h^2), a long way through a turn.
+  const auto check = [](long double r, long double rise, double half) {
+    INFO("radius " << static_cast<double>(r) << ", rise of a turn " << static_cast<double>(rise) << ", half "
+                   << half);
+    const auto program = "G17 F600\nG0 X" + std::to_string(static_cast<double>(r)) + "\nG3 X" +
+                         std::to_string(static_cast<double>(r)) + " Y0 I" +
+                         std::to_string(-static_cast<double>(r)) + " J0 Z" +
+                         std::to_string(static_cast<double>(rise)) + "\n";
+    const auto blocks = read_blocks(gcode::TextLines(program), mill, {});
+    REQUIRE(blocks);
+    REQUIRE(blocks->blocks.size() == 2);
+    const auto* arc = blocks->blocks[1].path.arc();
+    REQUIRE(arc != nullptr);
+    const long double pi = std::acos(-1.0L), h = rise / (2 * pi), w = 1 / std::sqrt(r * r + h * h);
+    const double middle = arc->length() / 2;
+    const double bound = plan::detail::third_change(*arc, arc->bounds(middle - half, middle + half), half);
+    const long double u = static_cast<long double>(middle) * w, du = static_cast<long double>(half) * w;
+    const long double scale = r * w * w * w;
+    const auto change = [&](long double d) {
+      return scale *
+             std::max(std::abs(std::sin(u + d) - std::sin(u)), std::abs(std::cos(u + d) - std::cos(u)));
+    };
+    const auto most = static_cast<double>(std::max(change(du), change(-du)));
+    CHECK(most <= bound * (1 + 1e-12));
+    CHECK(bound <= 1.2 * most);  // near the middle of a turn the sine changes at its full rate
+  };
+  check(1, 20, 0.05);  // k^3 is eleven times too small
+  check(1, 0, 0.01);
+  Random random;
+  for (int i = 0; i < 300; ++i) {
+    const double r = random.log_uniform(0.1, 100), rise = random.uniform(0, 20) * r;
+    check(std::round(r * 1e6) / 1e6, std::round(rise * 1e6) / 1e6, random.uniform(1e-3, 0.1) * r);
+  }
+}
+
 TEST_CASE("clock: a hold on a line is proven just as far as the limits go", "[clock]") {
   const auto trajectory = planned("F1800 G1 X60\nY1\n", mill);
   const plan::ClockProof proof(trajectory, mill);

@@ -18,15 +18,23 @@ namespace cncplan::plan {
 namespace detail {
 
 /// The largest change of q''' from the middle of an interval of lengths to its ends, in any axis: none on
-/// lines and cubics; on an arc of curvature k the fourth derivative is k^3; else no more than twice what q'''
-/// is.
+/// lines and cubics; on a circle or helix of curvature k and torsion t the fourth derivative is k (k^2 +
+/// t^2), and the square of the third k^2 (k^2 + t^2); else no more than twice what q''' is.
 template <Path P, std::floating_point S, int N>
-[[nodiscard]] S third_change(const BasicPathBounds<S, N>& bounds, S half) {
+[[nodiscard]] S third_change(const P& path, const BasicPathBounds<S, N>& bounds, S half) {
   if constexpr (std::same_as<P, path::BasicLine<S, N>> || std::same_as<P, smooth::BasicCubic<S, N>>)
     return S(0);
   if constexpr (std::same_as<P, path::ArcOf<S, N>>) {
-    const S k = bounds.tool.second_across;
-    return half * k * k * k;
+    const auto circular = [&] {
+      if constexpr (requires { path.arc(); })
+        return path.arc().is_circular();
+      else
+        return path.is_circular();
+    };
+    const auto& tool = bounds.tool;
+    if (circular() && tool.second_across > S(0))
+      return half * (tool.third_along * tool.third_along + tool.third_across * tool.third_across) /
+             tool.second_across;
   }
   return S(2) * bounds.third.norm();
 }
@@ -140,7 +148,7 @@ class ClockProof {
                                bounds.second * (S(3) * product_off + way * std::abs(now.jerk)) +
                                bounds.third * (S(3) * velocity * velocity * velocity_off +
                                                S(3) * way * std::abs(now.velocity * now.acceleration)) +
-                               Vector::Constant(detail::third_change<P>(bounds, way) * cube);
+                               Vector::Constant(detail::third_change(path, bounds, way) * cube);
 
     bool proven = true;
     const auto fits = [&](S value, S spread, S limit) {
