@@ -146,7 +146,7 @@ int send(Host& host, const CanonMove& move) {
                      move.rotation > 0 ? move.rotation - 1 : move.rotation, move.feed * inch);
 }
 
-double distance(const Vector3& point, const Vector3& start, const CanonMove& move) {
+double distance(const Vector3& point, const Vector3& start, const CanonMove& move, double enough) {
   const Vector3 end = move.end.head<3>();
   if (move.rotation == 0) {
     const Vector3 way = end - start;
@@ -178,6 +178,8 @@ double distance(const Vector3& point, const Vector3& start, const CanonMove& mov
     on[move.plane] = start[move.plane] + share * (end[move.plane] - start[move.plane]);
     return (point - on).norm();
   };
+  for (const double angle : angles) nearest = std::min(nearest, distance_at(angle));
+  if (nearest <= enough) return nearest;
   // A helix is nearest beside that angle.
   for (const double angle : angles) {
     double low = std::max(angle - 0.2, 0.0), high = std::min(angle + 0.2, whole);

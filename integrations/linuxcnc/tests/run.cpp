@@ -92,7 +92,8 @@ double deviation(const Run& run, const std::vector<CanonMove>& moves) {
     for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(now - 3, 0);
          i < std::min<std::ptrdiff_t>(now + 4, static_cast<std::ptrdiff_t>(moves.size())); ++i) {
       const auto slot = static_cast<std::size_t>(i);
-      nearest = std::min(nearest, distance(sample.position.head<3>(), starts[slot], moves[slot]));
+      nearest = std::min(nearest, distance(sample.position.head<3>(), starts[slot], moves[slot], most));
+      if (nearest <= most) break;
     }
     most = std::max(most, nearest);
   }
