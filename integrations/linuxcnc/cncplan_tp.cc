@@ -64,6 +64,7 @@ int tpAddLine(TP_STRUCT* const tp, EmcPose end, int type, double velocity, doubl
   move.velocity = velocity;
   move.most_velocity = most_velocity;
   move.acceleration = acceleration;
+  CNCPLAN_TP_KEEP_JERK(move);
   move.enables = enables;
   move.waits_for_spindle = waits != 0;
   move.indexer = indexer;
@@ -83,6 +84,7 @@ int tpAddCircle(TP_STRUCT* const tp, EmcPose end, PmCartesian center, PmCartesia
   move.velocity = velocity;
   move.most_velocity = most_velocity;
   move.acceleration = acceleration;
+  CNCPLAN_TP_KEEP_JERK(move);
   move.enables = enables;
   move.waits_for_spindle = waits != 0;
   move.tag = tag;
@@ -98,6 +100,7 @@ int tpAddRigidTap(TP_STRUCT* const tp, EmcPose end, double velocity, double most
   move.velocity = velocity;
   move.most_velocity = most_velocity;
   move.acceleration = acceleration;
+  CNCPLAN_TP_KEEP_JERK(move);
   move.enables = enables;
   move.tag = tag;
   return planner.add(*tp, move);

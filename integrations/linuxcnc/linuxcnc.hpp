@@ -24,7 +24,9 @@ extern "C" {
 #ifdef CNCPLAN_TP_JERK
 #define CNCPLAN_TP_JERK_PARAMETER double ini_maxjerk,
 #define CNCPLAN_TP_JERK_ARGUMENT(jerk) (jerk),
+#define CNCPLAN_TP_KEEP_JERK(move) (move).jerk = ini_maxjerk
 #else
 #define CNCPLAN_TP_JERK_PARAMETER
 #define CNCPLAN_TP_JERK_ARGUMENT(jerk)
+#define CNCPLAN_TP_KEEP_JERK(move) static_cast<void>(move)
 #endif

@@ -23,7 +23,7 @@ struct Move {
   double velocity{};     ///< asked for
   double most_velocity{};
   double acceleration{};
-  double jerk{};  ///< 2.10
+  double jerk{};  ///< of LinuxCNC 2.10, for its own planner
   double tolerance{};
   double per_revolution{};  ///< of the spindle
   double length{};          ///< as the library counts it; mm, or rad
