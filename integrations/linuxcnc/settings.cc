@@ -34,21 +34,29 @@ void complain(const char* format, Values... values) {
   rtapi_print_msg(RTAPI_MSG_ERR, format, values...);
 }
 
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
+// LinuxCNC 2.10 takes the file's name, 2.9 an open file.
 class Ini {
  public:
-  explicit Ini(std::FILE* file) : file_(file) {}
+  explicit Ini(const char* name) : name_(name), file_(std::fopen(name, "r")) {}
+  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
 
-  [[nodiscard]] std::optional<std::string> text(const char* section, const char* name) const {
-    const char* const found = iniFind(file_, name, section);
+  [[nodiscard]] std::optional<std::string> text(const char* section, const char* entry) const {
+#ifdef CNCPLAN_TP_JERK
+    char found[1024];
+    if (iniFindString(name_, entry, section, found, sizeof found) != 0) return std::nullopt;
+    return found;
+#else
+    const char* const found = iniFind(file_.get(), entry, section);
     return found != nullptr ? std::optional<std::string>(found) : std::nullopt;
+#endif
   }
 
  private:
-  std::FILE* file_;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  [[maybe_unused]] const char* name_;
+  std::unique_ptr<std::FILE, Close> file_;
 };
 
 template <std::size_t count>
@@ -119,13 +127,12 @@ bool read_jerks(const Ini& ini, const Parameters& parameters, Settings& settings
 bool read_settings(const Parameters& parameters, Settings& settings) {
   settings = {};
   const char* const name = std::getenv("INI_FILE_NAME");
-  const std::unique_ptr<std::FILE, Close> file(name != nullptr ? std::fopen(name, "r") : nullptr);
-  if (!file) {
+  const Ini ini(name != nullptr ? name : "");
+  if (!ini.is_open()) {
     complain("cncplan_tp: error: the ini cannot be read (INI_FILE_NAME: %s)\n",
              name != nullptr ? name : "not set");
     return false;
   }
-  const Ini ini(file.get());
   const auto linear = unit(ini.text("TRAJ", "LINEAR_UNITS"), linear_units);
   const auto rotary = unit(ini.text("TRAJ", "ANGULAR_UNITS"), rotary_units);
   if (!linear || !rotary) {
