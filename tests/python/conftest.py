@@ -1,11 +1,15 @@
 """What the tests of the Python module share."""
 
 import os
+import tempfile
 from pathlib import Path
 
 import pytest
+from hypothesis.configuration import set_hypothesis_home_dir
 
 import cncplan
+
+set_hypothesis_home_dir(Path(tempfile.gettempdir()) / "cncplan-hypothesis")
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMITS = {"velocity": 30, "acceleration": 1000, "jerk": 10000}
