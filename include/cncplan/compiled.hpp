@@ -6,6 +6,7 @@
 
 #include "cncplan/core/compiled.hpp"
 #include "cncplan/plan/block_reader.hpp"
+#include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_blocks.hpp"
@@ -27,6 +28,9 @@
   PREFIX template class Trajectory<MACHINE, plan::SmoothBlockOf<BLOCK>>; \
   PREFIX template class StepEdges<Trajectory<MACHINE, plan::SmoothBlockOf<BLOCK>>>;
 
+/// Running blocks of a type, whatever the capacity of the executor.
+#define CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, BLOCK) PREFIX template class plan::ExecutorCore<MACHINE, BLOCK>;
+
 /// Reading and planning programs.
 #define CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                                                       \
   PREFIX template class BlockReader<MACHINE>;                                                       \
@@ -47,6 +51,8 @@ namespace cncplan {
 
 CNCPLAN_PLAN_BLOCKS(extern, Machine<3>, ProgramBlock<Machine<3>>)
 CNCPLAN_PLAN_BLOCKS(extern, Machine<3>, Block<3>)
+CNCPLAN_RUN_BLOCKS(extern, Machine<3>, ProgramBlock<Machine<3>>)
+CNCPLAN_RUN_BLOCKS(extern, Machine<3>, Block<3>)
 CNCPLAN_PLAN_SMOOTH(extern, Machine<3>, ProgramBlock<Machine<3>>)
 CNCPLAN_PLAN_SMOOTH(extern, Machine<3>, Block<3>)
 CNCPLAN_PLAN_PROGRAM(extern, Machine<3>)

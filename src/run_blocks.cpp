@@ -1,0 +1,9 @@
+// Running blocks as they come in.
+#include "cncplan/compiled.hpp"
+
+namespace cncplan {
+
+CNCPLAN_RUN_BLOCKS(, Machine<3>, ProgramBlock<Machine<3>>)
+CNCPLAN_RUN_BLOCKS(, Machine<3>, Block<3>)
+
+}  // namespace cncplan
