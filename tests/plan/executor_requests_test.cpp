@@ -68,8 +68,8 @@ TEST_CASE("a block that cannot be planned ends the motion before it, and is told
 TEST_CASE("a gap in the path, no feed and a bad machine are errors", "[executor]") {
   const auto code = [](const Machine<3>& machine, const Block<3>& block) {
     Runner executor(machine);
-    executor.push({.path = path::Line<3>({0, 0, 0}, {1, 0, 0})});
-    executor.push(block);
+    CHECK(executor.push({.path = path::Line<3>({0, 0, 0}, {1, 0, 0})}));
+    CHECK(executor.push(block));
     executor.end_of_program();
     while (!executor.finished()) executor.tick(period);
     REQUIRE(executor.error());
@@ -353,7 +353,7 @@ TEST_CASE("nothing is allocated once an executor and a reader are made", "[execu
     }
     if (!executor->jog_to({1, 1, 1})) break;
     for (int tick = 0; tick < 2000; ++tick) executor->tick(period);
-    executor->restart(0, {1, 1, 1});
+    if (!executor->restart(0, {1, 1, 1})) break;
   }
   CHECK(test::heap_allocations() == before);
 }

@@ -13,6 +13,7 @@
 #include <span>
 
 #include "cncplan/core/function_ref.hpp"
+#include "cncplan/plan/executor_state.hpp"
 #include "cncplan/plan/player/axis_part.hpp"
 #include "cncplan/plan/player/cell_feed.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
@@ -83,7 +84,7 @@ class ExecutorCore {
   /// block that cannot be planned ends the motion where it begins: `error` says why. Behind an error blocks
   /// are taken and dropped. It does the work for one block; where more is to be done, ticks or `plan` do
   /// that.
-  bool push(const B& block);
+  [[nodiscard]] bool push(const B& block);
   /// How many blocks have been taken.
   [[nodiscard]] std::int64_t pushed() const { return feed_.pushed(); }
   /// Nothing will follow: marks the end. Ticks, or `plan`, do the work for it.
@@ -105,6 +106,9 @@ class ExecutorCore {
   /// Why the program ended before its end, with line and column where a block is at fault; nothing where all
   /// is well.
   [[nodiscard]] std::optional<RunError> error() const;
+
+  /// What it is doing, as of the last tick.
+  [[nodiscard]] ExecutorState state() const;
 
   // Requests. They act at the next tick.
 
@@ -150,18 +154,18 @@ class ExecutorCore {
   /// The axes come to velocities, which they keep until another request or the end of their travel. Each
   /// keeps its limits; those of the tool do not act. Errors: those of `validate` for the machine, and of
   /// `reach_velocity`; unfinished, with the line, while a program moves the axes.
-  Expected<void> jog(const Vector& velocities);
+  [[nodiscard]] Expected<void> jog(const Vector& velocities);
   /// The axes go to positions. Errors: those of `move_to`, and as for `jog`.
-  Expected<void> jog_to(const Vector& positions);
+  [[nodiscard]] Expected<void> jog_to(const Vector& positions);
   /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
-  Expected<void> return_to_path();
+  [[nodiscard]] Expected<void> return_to_path();
 
   /// At rest: forgets all blocks, a stop and an error. What is pushed next is passed over up to the first
   /// block of a line (0: nothing is), and the motion begins where that block passes the place at which the
   /// axes stand; where it does not pass within 1e-6, the error is discontinuous. Within a tolerance the block
   /// is merged and smoothed with those that follow only: the axes go to it first, where it passes within
   /// twice the tolerance. False, and nothing done, where the machine moves.
-  bool restart(int line, const Vector& position);
+  [[nodiscard]] bool restart(int line, const Vector& position);
 
   // Time.
 
@@ -311,6 +315,18 @@ bool ExecutorCore<M, B>::finished() const {
   if (!ended_.load(std::memory_order_acquire)) return false;
   const std::int64_t end = end_.load();
   return told_ >= end && feed_.ready() >= end;
+}
+
+template <MachineModel M, BlockModel B>
+ExecutorState ExecutorCore<M, B>::state() const {
+  if (finished()) return error() ? ExecutorState::fault : ExecutorState::finished;
+  if (jog_.moves()) return ExecutorState::jogging;
+  if (away_) return ExecutorState::away;
+  if (!player_.stands()) return player_.asked_to_rest() ? ExecutorState::holding : ExecutorState::moving;
+  if (player_.dwells()) return ExecutorState::dwelling;
+  if (player_.at_program_stop()) return ExecutorState::stopped;
+  if (player_.asked_to_rest()) return ExecutorState::held;
+  return has_run_ && !player_.rests() ? ExecutorState::moving : ExecutorState::waiting;
 }
 
 template <MachineModel M, BlockModel B>

@@ -60,7 +60,10 @@ class BasicPlayer {
 
   /// Comes to rest as soon as the limits allow; `resume` goes on from there.
   void hold() { ask(path_.asked.held, true); }
-  void resume() { ask(path_.asked.held, false); }
+  void resume() {
+    program_holds_ = false;
+    ask(path_.asked.held, false);
+  }
   [[nodiscard]] bool held() const { return path_.asked.held; }
 
   /// Comes to rest as by a hold, and does not go on: the program ends there.
@@ -103,7 +106,7 @@ class BasicPlayer {
     if (!idle_ || block < 0) return false;
     path_.ring.restart(block);
     path_.asked.direction = path_.direction = 1;
-    path_.asked.stopped = false;
+    path_.asked.stopped = program_holds_ = false;
     path_.passed_pause = -1;
     at_ = {block, S(0)};
     wait_for(S(0));
@@ -192,6 +195,17 @@ class BasicPlayer {
   [[nodiscard]] BasicPlayed<S> place() {
     look();
     return played();
+  }
+  /// Whether it stands, at a dwell too.
+  [[nodiscard]] bool stands() const { return idle_; }
+  /// Whether it rests for a time of the program.
+  [[nodiscard]] bool dwells() const { return idle_ && waits() > S(0); }
+  /// Whether it rests where the program stops (M0, M1, M60), until it is resumed.
+  [[nodiscard]] bool at_program_stop() const { return idle_ && program_holds_ && path_.asked.held; }
+  /// Whether it is asked to be at rest, or to turn round.
+  [[nodiscard]] bool asked_to_rest() const {
+    const BasicRequests<S>& asked = path_.asked;
+    return asked.held || asked.stopped || !(asked.feed_share > S(0)) || asked.direction != path_.direction;
   }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return path_.asked.stopped && idle_; }
@@ -440,6 +454,7 @@ class BasicPlayer {
     BasicRequests<S>& asked = path_.asked;
     if (block != nullptr && path_.direction > 0) wait_for(block->caps.pause);
     if (block != nullptr ? path_.holds_behind(done) : asked.single_step) asked.held = true;
+    program_holds_ = block != nullptr && path_.program_holds_behind(done);
     pauses_here();
     rest();
   }
@@ -475,6 +490,7 @@ class BasicPlayer {
   bool running_above_ = false;    // the profile is made for more than the feed
   bool pending_ = false;          // a request has not been met yet
   bool running_settled_ = false;  // what comes cannot change where the profile ends
+  bool program_holds_ = false;    // M0, M1 or M60 does, until it is resumed
   bool idle_ = true;
 };
 
