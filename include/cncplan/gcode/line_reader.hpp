@@ -30,10 +30,11 @@ class LineReader {
   explicit LineReader(const Dialect& dialect = {}, const Position& start = {})
       : ahead_{Reader(dialect, start), {}}, here_{Reader(dialect, start), {}} {}
 
-  /// Hands all items of the next line to `check`, in order; `next` gives them again. Not before those of the
-  /// line before have been taken. A line in error is counted, and changes nothing else. Errors: those of
+  /// Hands all items of the next line to `check`, in order; `next` gives them again, up to the next call. A
+  /// line in error is counted, and changes nothing else. Errors: those of
   /// `Reader`, of `Compensation` and of `check`.
   [[nodiscard]] Expected<void, Diagnostic> read_line(std::string_view line, Check check) {
+    drain();
     const auto done = look_ahead(line, check);
     if (!done) {
       here_.reader.set_line(here_.reader.line() + 2);
@@ -47,6 +48,7 @@ class LineReader {
 
   /// The same for what is held back: nothing follows. Lines behind this are not read.
   [[nodiscard]] Expected<void, Diagnostic> end_of_program(Check check) {
+    drain();
     Expected<void, Diagnostic> done;
     ahead_.compensation.finish([&](const Item& item) { keep_first(done, check(item)); });
     if (done)
@@ -97,6 +99,11 @@ class LineReader {
   static bool passes(const State& state, const Item& item) {
     const auto* motion = std::get_if<Motion>(&item);
     return state.compensation.idle() && (motion == nullptr || motion->tool_radius == 0.0);
+  }
+
+  void drain() {
+    while (next() != nullptr) {
+    }
   }
 
   static void keep_first(Expected<void, Diagnostic>& done, Expected<void, Diagnostic>&& next) {

@@ -192,11 +192,7 @@ auto BlockReader<M>::make(const gcode::Item& item) -> Expected<Block, gcode::Dia
 /// From one block to the next; each has been made without an error before.
 template <MachineModel M>
 void BlockReader<M>::advance() {
-  if (--left_ == 0) {  // warnings that are left, and items that nobody asks for
-    while (lines_.next() != nullptr) {
-    }
-    return;
-  }
+  if (--left_ == 0) return;
   const gcode::Item* item = lines_.next();
   while (item != nullptr && std::holds_alternative<gcode::Warning>(*item)) item = lines_.next();
   if (item != nullptr)
