@@ -46,13 +46,14 @@ class LineReader {
     return done;
   }
 
-  /// The same for what is held back: nothing follows. Lines behind this are not read.
+  /// The same for what is held back: nothing follows. If lines follow all the same, the next motion under
+  /// compensation is a first one.
   [[nodiscard]] Expected<void, Diagnostic> end_of_program(Check check) {
     drain();
     Expected<void, Diagnostic> done;
     ahead_.compensation.finish([&](const Item& item) { keep_first(done, check(item)); });
     if (done)
-      ended_ = true;
+      here_.compensation.finish([this](const Item& item) { ready_.push_back(item); });
     else
       ahead_.compensation = here_.compensation;
     return done;
@@ -73,17 +74,15 @@ class LineReader {
       } else if (here_.reader.busy()) {
         item_ = items_.data();
         end_ = here_.reader.go_on(items_.data());
-      } else if (finished() && !here_.compensation.idle()) {
-        here_.compensation.finish([this](const Item& made) { ready_.push_back(made); });
-        if (ready_.empty()) return nullptr;
       } else {
-        return nullptr;
+        if (finished()) here_.compensation.finish([this](const Item& made) { ready_.push_back(made); });
+        if (ready_.empty()) return nullptr;
       }
     }
   }
 
-  /// Whether the program has ended, by its last line or by `end_of_program`.
-  [[nodiscard]] bool finished() const { return ended_ || ahead_.reader.finished(); }
+  /// Whether the program has ended by its last line (M2, M30, %): lines behind it are only counted.
+  [[nodiscard]] bool finished() const { return ahead_.reader.finished(); }
   /// Lines read.
   [[nodiscard]] int line() const { return ahead_.reader.line(); }
   /// How the program stands behind the last line.
@@ -111,10 +110,6 @@ class LineReader {
   }
 
   Expected<void, Diagnostic> look_ahead(std::string_view line, Check check) {
-    if (ended_) {
-      ahead_.reader.set_line(ahead_.reader.line() + 2);
-      return {};
-    }
     const auto end = ahead_.reader.read_line(line, items_.data());
     if (!end) return tl::unexpected(end.error());
     Expected<void, Diagnostic> done;
@@ -141,7 +136,6 @@ class LineReader {
   const Item* end_ = nullptr;
   FixedList<Item, max_held + 2> ready_;  // by compensation, of one item
   std::size_t given_ = 0;
-  bool ended_ = false;
 };
 
 }  // namespace cncplan::gcode

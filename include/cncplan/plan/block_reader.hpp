@@ -65,6 +65,7 @@ class BlockReader {
       Blocks blocks_;
     };
 
+    Blocks() = default;
     [[nodiscard]] Iterator begin() const { return Iterator(*this); }
     [[nodiscard]] std::default_sentinel_t end() const { return {}; }
     /// How many are left to be taken.
@@ -75,7 +76,6 @@ class BlockReader {
 
    private:
     friend class BlockReader;
-    Blocks() = default;
     explicit Blocks(BlockReader& reader) : reader_(&reader), call_(reader.call_) {}
 
     BlockReader* reader_ = nullptr;
@@ -96,13 +96,13 @@ class BlockReader {
   [[nodiscard]] Expected<Blocks, ProgramError> read_line(std::string_view line) {
     return take([&](auto check) { return lines_.read_line(line, check); });
   }
-  /// Nothing follows: what cutter compensation holds back. Lines behind this are not read. Errors as for
-  /// `read_line`.
+  /// Nothing follows: what cutter compensation holds back. If lines follow all the same, the next motion
+  /// under compensation is a first one. Errors as for `read_line`.
   [[nodiscard]] Expected<Blocks, ProgramError> end_of_program() {
     return take([&](auto check) { return lines_.end_of_program(check); });
   }
 
-  /// Whether the program has ended: by M2, M30 or % on the last line, or by `end_of_program`.
+  /// Whether the program has ended, by M2, M30 or %: lines behind it are only counted.
   [[nodiscard]] bool finished() const { return lines_.finished(); }
   /// Lines read.
   [[nodiscard]] int line() const { return lines_.line(); }

@@ -40,7 +40,6 @@ class ExecutorOfSize final : public AnyExecutor {
     auto blocks = reader_->read_line(line);
     if (!blocks) raise(blocks.error());
     pending_ = *blocks;
-    next_ = 0;
     ended_ = false;
     push_pending();
     return true;
@@ -52,13 +51,12 @@ class ExecutorOfSize final : public AnyExecutor {
   }
   void end_of_program() override {
     ended_ = true;
-    if (push_pending()) executor_.end_of_program();
+    finish();
   }
 
   AnySetPoint tick(double period) override {
     // What a line had no room for comes as soon as there is some.
-    if (next_ < pending_.size() || reader_->busy())
-      if (push_pending() && ended_) executor_.end_of_program();
+    if (!pending_.empty() && push_pending() && ended_) finish();
     const auto point = executor_.tick(period);
     const auto list = [this](const Vector& vector) {
       return std::vector<double>(vector.data(), vector.data() + axes_);
@@ -75,7 +73,7 @@ class ExecutorOfSize final : public AnyExecutor {
   }
 
   [[nodiscard]] bool finished() const override {
-    return executor_.finished() && (next_ == pending_.size() || executor_.error());
+    return executor_.finished() && (pending_.empty() || executor_.error());
   }
   [[nodiscard]] std::optional<ProgramError> error() const override { return executor_.error(); }
   [[nodiscard]] std::int64_t pushed() const override { return executor_.pushed(); }
@@ -101,7 +99,6 @@ class ExecutorOfSize final : public AnyExecutor {
     if (!executor_.restart(line, vector_of(position))) return false;
     reader_.emplace(executor_.machine(), read_);
     pending_ = {};
-    next_ = 0;
     ended_ = false;
     return true;
   }
@@ -109,15 +106,17 @@ class ExecutorOfSize final : public AnyExecutor {
  private:
   // Whether the blocks of the last line have all found room.
   bool push_pending() {
-    for (;;) {
-      for (; next_ < pending_.size(); ++next_)
-        if (!executor_.push(pending_[next_])) return false;
-      if (!reader_->busy()) return true;
-      auto more = reader_->go_on();
-      if (!more) raise(more.error());
-      pending_ = *more;
-      next_ = 0;
-    }
+    for (const auto& block : pending_)
+      if (!executor_.push(block)) return false;
+    return true;
+  }
+  // With what cutter compensation holds back; later where there is no room.
+  void finish() {
+    if (!push_pending()) return;
+    auto last = reader_->end_of_program();
+    if (!last) raise(last.error());
+    pending_ = *last;
+    if (push_pending()) executor_.end_of_program();
   }
 
   std::size_t axes_;
@@ -125,7 +124,6 @@ class ExecutorOfSize final : public AnyExecutor {
   std::optional<Reader> reader_;
   Runner executor_;
   Reader::Blocks pending_;  // of the last line
-  std::size_t next_ = 0;    // of them
   bool ended_ = false;
 };
 

@@ -1,8 +1,11 @@
 // From a program's text, or from blocks made by hand, to a trajectory, for machines of AXES axes.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
+#include <string>
 
+#include "cncplan/gcode/stream_lines.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/plan/block_checks.hpp"
@@ -155,16 +158,16 @@ template <>
 TrajectoryPointer plan_program<AXES>(const AnyMachine& given, std::istream& text, const PlanOptions& options,
                                      Level level, const std::string& file) {
   const auto machine = machine_of<AXES>(given);
-  auto program = read_blocks(gcode::StreamLines(text), machine, with_dialect(options, given), file);
-  if (!program) raise(program.error());
+  const std::string whole(std::istreambuf_iterator<char>(text), {});
+  Program<Machine<AXES>> program(whole, machine, with_dialect(options, given), file);
+  if (const Problem* error = program.first_error()) raise(ProgramError(*error));
   auto memory = std::make_unique<InterruptibleMemory>();
-  auto planned = plan<AXES>(level, std::move(program->blocks), machine, options, memory.get());
+  auto planned = plan<AXES>(level, std::move(program).take_blocks(), machine, options, memory.get());
   if (!planned) {
     const auto at = planned.error().block;
-    refuse(planned.error(), at ? program->file_of(*at) : file);
+    refuse(planned.error(), at ? program.file_of(*at) : file);
   }
-  planned->set_words(timed_words(*program, *planned));
-  planned->set_warnings(std::move(program->warnings));
+  cncplan::plan::tell(*planned, program, options.tolerance > 0);
   return any_trajectory<AXES>(std::move(memory), std::move(*planned));
 }
 
