@@ -218,6 +218,7 @@
 #include "cncplan/published/center_selection.hpp"
 #include "cncplan/published/constant_speed.hpp"
 #include "cncplan/published/junction_table.hpp"
+#include "cncplan/published/plan_program.hpp"
 #include "cncplan/published/planar_length.hpp"
 #include "cncplan/published/pulse_distribution.hpp"
 #include "cncplan/published/stepped.hpp"
