@@ -112,8 +112,8 @@ TEST_CASE("a thread that the axes cannot follow is refused") {
   lathe.axes[2].velocity = 30;
   lathe.axes[2].velocity_down = 20;
   const auto error = [&](std::string_view text) {
-    const auto program = read_blocks(gcode::TextLines(text), lathe, {});
-    return program ? std::string() : to_text(program.error());
+    const auto program = read_text(text, lathe);
+    return program.failed() ? to_text(*program.first_error()) : std::string();
   };
   // K 2 mm at S 2000: 66.7 mm/s.
   CHECK(error("S2000 M3\nG0 Z20\nG33 Z30 K2\n") == "3:5: error: speed of a thread is above the limit 30");

@@ -86,10 +86,10 @@ TEST_CASE("clock: the third derivative of an arc changes by no more than its bou
                          std::to_string(static_cast<double>(r)) + " Y0 I" +
                          std::to_string(-static_cast<double>(r)) + " J0 Z" +
                          std::to_string(static_cast<double>(rise)) + "\n";
-    const auto blocks = read_blocks(gcode::TextLines(program), mill, {});
-    REQUIRE(blocks);
-    REQUIRE(blocks->blocks.size() == 2);
-    const auto* arc = blocks->blocks[1].path.arc();
+    const auto read = read_text(program, mill);
+    REQUIRE_FALSE(read.failed());
+    REQUIRE(read.blocks().size() == 2);
+    const auto* arc = read.blocks()[1].path.arc();
     REQUIRE(arc != nullptr);
     const long double pi = std::acos(-1.0L), h = rise / (2 * pi), w = 1 / std::sqrt(r * r + h * h);
     const double middle = arc->length() / 2;

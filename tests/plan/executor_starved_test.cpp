@@ -132,7 +132,9 @@ TEST_CASE("who pushes does not do the work of what was held back", "[executor]")
   };
   const auto push = [](Block<3> block, bool stops) {
     block.exact_stop = stops;
-    return [=](Mill& executor) { executor.push(block); };
+    return [=](Mill& executor) {
+      if (!executor.push(block)) FAIL("no room");
+    };
   };
   const double one = least_time(filled(100), push(blocks[100], false));
   const double stop = least_time(filled(100), push(blocks[100], true));
