@@ -223,6 +223,14 @@ TEST_CASE("a line is right as a whole, or changes nothing", "[reader]") {
   CHECK(next[0].path.end() == Vector3(50, 0, 3));
   CHECK(next[0].feed == 10);
   CHECK(next[0].line == 5);
+  // Nor does it take memory.
+  Reader quiet(mill);
+  CHECK(test::heap_allocations_of([&] {
+          for (const char* line :
+               {"G10 L1 P3 R2", "G1 X5..", "G1 X101 F100", "G2 X1 Y1 I5", "G10 L1 P4 R2 X#1"})
+            if (const auto read = quiet.read_line(line); read && !read->empty()) return;
+        }) == 0);
+  CHECK(quiet.line() == 5);
   // Under compensation, too: the corner has no room for the tool.
   take(reader, "G41.1 D6 G1 X60 Y0");
   take(reader, "X80");
