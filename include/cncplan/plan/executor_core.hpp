@@ -390,10 +390,16 @@ typename M::Scalar ExecutorCore<M, B>::accepted(Scalar period) {
 template <MachineModel M, BlockModel B>
 void ExecutorCore<M, B>::let_go_where_none_come(Scalar period) {
   const std::int64_t pushed = feed_.pushed();
-  quiet_ = pushed != seen_ || feed_.full() ? Scalar(0) : quiet_ + period;
+  quiet_ = pushed == seen_ ? quiet_ + period : Scalar(0);
   seen_ = pushed;
-  const bool waits = player_.finished() && player_.rested() >= longest_wait_;
-  if (waits || (quiet_ >= longest_wait_ && player_.starves(Scalar(ticks_to_go_on) * period))) feed_.let_go();
+  if (player_.rested() >= longest_wait_) {
+    if (player_.finished()) feed_.let_go();
+  } else if (quiet_ >= longest_wait_ && player_.starves(Scalar(ticks_to_go_on) * period)) {
+    if (feed_.full())
+      quiet_ = Scalar(0);
+    else
+      feed_.let_go();
+  }
 }
 
 template <MachineModel M, BlockModel B>
