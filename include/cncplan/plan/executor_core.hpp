@@ -218,8 +218,13 @@ class ExecutorCore {
   Expected<void> begin_jog() {
     if (auto ok = validate(machine_); !ok) return ok;
     if (!placed_) stand_at_start();
-    if (away_ || player_.rests()) return {};
+    if (away_ || (player_.rests() && !begins())) return {};
     return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
+  }
+  // Whether a program is there whose first blocks ticks, or `plan`, have yet to cut.
+  [[nodiscard]] bool begins() const {
+    return ended_.load(std::memory_order_acquire) && feed_.ready() < end_.load() && !feed_.failed() &&
+           !player_.held() && !player_.stopped();
   }
   Expected<void> jogged(const Expected<void>& done, bool returns) {
     away_ = away_ || done.has_value();
