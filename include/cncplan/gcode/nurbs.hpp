@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/core/compiler.hpp"
 #include "cncplan/gcode/motion.hpp"
 #include "cncplan/gcode/spline_pieces.hpp"
@@ -16,11 +17,7 @@ namespace cncplan::gcode {
 class Nurbs {
  public:
   /// `order`: 2 to `max_nurbs_order`.
-  void begin(int order) {
-    *this = Nurbs();
-    order_ = order;
-    open_ = true;
-  }
+  void begin(int order);
   void end() { open_ = false; }
 
   [[nodiscard]] bool open() const { return open_; }
@@ -36,15 +33,7 @@ class Nurbs {
   void add(const SplineControl& control) { control_[at(controls_++)] = control; }
 
   /// Takes the next knot; the curve that it completes, between two different knots.
-  std::optional<BezierCurve> add_knot(double value) {
-    knot_[at(knots_++)] = value;
-    const int span = knots_ - order_;  // from its knot to the next
-    if (span < order_ - 1 || span >= controls_ || !(knot(span) < knot(span + 1))) return std::nullopt;
-    BezierCurve bezier;
-    bezier.degree = order_ - 1;
-    for (int i = 0; i <= bezier.degree; ++i) bezier.at(i) = blossom(span, i);
-    return bezier;
-  }
+  std::optional<BezierCurve> add_knot(double value);
 
  private:
   static constexpr int kept = 2 * max_nurbs_order;  // of controls and knots
@@ -54,20 +43,7 @@ class Nurbs {
 
   /// The polar form at a span's start degree - ends times, and at its end `ends` times: its Bezier control
   /// (de Boor's algorithm with a parameter for each step).
-  [[nodiscard]] SplineControl blossom(int span, int ends) const {
-    const int degree = order_ - 1;
-    std::array<SplineControl, static_cast<std::size_t>(max_nurbs_order)> points{};
-    for (int i = 0; i <= degree; ++i) points[static_cast<std::size_t>(i)] = control_[at(span - degree + i)];
-    for (int step = 1; step <= degree; ++step) {
-      const double u = step <= ends ? knot(span + 1) : knot(span);
-      for (int i = degree; i >= step; --i) {
-        const double low = knot(span - degree + i), high = knot(span + 1 + i - step);
-        auto& point = points[static_cast<std::size_t>(i)];
-        point = detail::between(points[static_cast<std::size_t>(i - 1)], point, (u - low) / (high - low));
-      }
-    }
-    return points[static_cast<std::size_t>(degree)];
-  }
+  [[nodiscard]] SplineControl blossom(int span, int ends) const;
 
   std::array<SplineControl, kept> control_{};
   std::array<double, kept> knot_{};
@@ -78,3 +54,7 @@ class Nurbs {
 };
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/nurbs-inl.hpp"
+#endif

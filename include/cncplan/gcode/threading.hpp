@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/canned_cycle.hpp"
 #include "cncplan/gcode/modal.hpp"
@@ -35,22 +36,7 @@ struct ThreadWords {
   /// Passes above the full depth, and one.
   [[nodiscard]] double passes() const { return std::pow(depth / first, degression) + 1.0; }
 
-  [[nodiscard]] static ThreadWords of(const Block& block, const Modal& modal) {
-    const double unit = modal.millimetres_per_unit, across = modal.diameter ? unit / 2.0 : unit;
-    const auto number = [&block](char letter) { return block.has(letter) ? block.number(letter) : 0.0; };
-    const int tapers = static_cast<int>(number('L'));
-    return {.pitch = number('P') * unit,
-            .peak = std::abs(number('I')) * across,
-            .inside = number('I') > 0.0,
-            .first = number('J') * across,
-            .depth = number('K') * across,
-            .degression = std::max(1.0, number('R')),
-            .angle = number('Q') * std::numbers::pi / 180.0,
-            .taper = number('E') * unit,
-            .taper_in = (tapers & 1) != 0,
-            .taper_out = (tapers & 2) != 0,
-            .springs = static_cast<int>(number('H'))};
-  }
+  [[nodiscard]] static ThreadWords of(const Block& block, const Modal& modal);
 };
 
 /// One step, to a place in the ZX plane. A feed has its pitch.
@@ -78,45 +64,7 @@ class ThreadingCycle {
   [[nodiscard]] bool busy() const { return phase_ != Phase::done; }
 
   /// The next step; nothing where there is none to be made in this phase.
-  std::optional<ThreadStep> next() {
-    const double shift = depth_ * slope_, from = start_z_ - shift,
-                 to = end_z_ + words_.depth * slope_ - shift;
-    const double crest = at(words_.peak + depth_ - words_.depth), bottom = at(words_.peak + depth_);
-    const double tapered =
-        taper_ == 0.0 ? words_.pitch : words_.pitch * std::hypot(taper_, words_.depth) / std::abs(taper_);
-    switch (phase_) {
-      case Phase::back:
-        phase_ = words_.taper_in && taper_ != 0.0 ? Phase::taper_in : Phase::in;
-        return rapid(at(depth_ - words_.depth), from);
-      case Phase::taper_in:
-        phase_ = Phase::sink;
-        return feed(crest, from, tapered);
-      case Phase::sink:
-        phase_ = Phase::along;
-        return feed(bottom, from - taper_, tapered);
-      case Phase::in:
-        phase_ = Phase::along;
-        return rapid(bottom, from);
-      case Phase::along:
-        phase_ = words_.taper_out && taper_ != 0.0 ? Phase::taper_out : Phase::out;
-        return feed(bottom, phase_ == Phase::out ? to : to + taper_, words_.pitch);
-      case Phase::taper_out:
-        phase_ = Phase::out;
-        return feed(crest, to, tapered);
-      case Phase::out: {
-        phase_ = Phase::back;
-        const ThreadStep out = rapid(at(depth_ - words_.depth), to);
-        deepen();
-        return out;
-      }
-      case Phase::home:
-        phase_ = Phase::done;
-        return rapid(end_x_, end_z_);
-      case Phase::done:
-        break;
-    }
-    return std::nullopt;
-  }
+  std::optional<ThreadStep> next();
 
  private:
   static constexpr double same_depth = 1e-9;  ///< mm; what a rounding leaves to cut takes no pass
@@ -131,14 +79,7 @@ class ThreadingCycle {
     return {.kind = CycleStep::Kind::feed, .x = x, .z = z, .pitch = pitch};
   }
 
-  void deepen() {
-    if (depth_ < words_.depth) {
-      depth_ = words_.first * std::pow(++pass_, 1.0 / words_.degression);
-      if (depth_ > words_.depth - same_depth) depth_ = words_.depth;
-    } else if (--left_ == 0) {
-      phase_ = Phase::home;
-    }
-  }
+  void deepen();
 
   ThreadWords words_;
   double start_x_{}, start_z_{}, end_x_{}, end_z_{};
@@ -150,3 +91,7 @@ class ThreadingCycle {
 };
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/threading-inl.hpp"
+#endif

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/block.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/modal.hpp"
@@ -71,17 +72,8 @@ class Warnings {
   [[nodiscard]] bool first_sender_command() { return first(sender_); }
 
  private:
-  static bool first(bool& told) {
-    const bool is = !told;
-    told = true;
-    return is;
-  }
-  bool first_of_group(Group group) {
-    const std::uint32_t mark = 1U << static_cast<unsigned>(group);
-    const bool is = (groups_ & mark) == 0;
-    groups_ |= mark;
-    return is;
-  }
+  static bool first(bool& told);
+  bool first_of_group(Group group);
 
   std::uint32_t groups_{};
   std::bitset<max_m_code + 1> own_codes_;
@@ -90,3 +82,7 @@ class Warnings {
 };
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/warnings-inl.hpp"
+#endif

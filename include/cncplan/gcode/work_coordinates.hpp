@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/motion.hpp"
 
@@ -44,25 +45,9 @@ class WorkCoordinates {
   [[nodiscard]] double rotation(std::size_t system) const { return turns_[system].degrees; }
   [[nodiscard]] bool rotated() const { return turn().degrees != 0.0; }
   /// A motion of work coordinates as the machine's axes lie.
-  void rotate(Motion& motion) const {
-    if (!rotated()) return;
-    turn().forth(motion.start[0], motion.start[1]);
-    turn().forth(motion.end[0], motion.end[1]);
-    turn().forth(motion.center[0], motion.center[1]);
-    for (SplineControl& control : motion.controls) turn().forth(control.first, control.second);
-  }
+  void rotate(Motion& motion) const;
   /// Where the axes would stand at machine coordinates, those of the others as they are.
-  [[nodiscard]] Position at_machine(const NamedCoordinates& named) const {
-    Position place = current_;
-    if (rotated() && (named[0] || named[1])) {
-      for (std::size_t i = 0; i < 2; ++i) place[i] = named[i].value_or(machine_[i]) - offset_[i];
-      turn().back(place[0], place[1]);
-      for (std::size_t i = 0; i < 2; ++i) place[i] = meet(i, place[i]);
-    }
-    for (std::size_t i = rotated() ? 2 : 0; i < count_; ++i)
-      if (named[i]) place[i] = meet(i, *named[i] - offset_[i]);
-    return place;
-  }
+  [[nodiscard]] Position at_machine(const NamedCoordinates& named) const;
   /// What G92 has shifted, and what is in force of it.
   [[nodiscard]] const Position& shift() const { return shift_; }
   [[nodiscard]] const Position& tool() const { return tool_; }
@@ -84,11 +69,7 @@ class WorkCoordinates {
     return std::abs(target - current_[axis]) <= rounding_[axis] ? current_[axis] : target;
   }
 
-  void arrive(const Position& end) {
-    current_ = end;
-    const Position turned = this->turned(end);
-    for (std::size_t i = 0; i < count_; ++i) machine_[i] = turned[i] + offset_[i];
-  }
+  void arrive(const Position& end);
 
   /// G54 to G59.3, from 0.
   void select(std::size_t system) {
@@ -99,25 +80,7 @@ class WorkCoordinates {
   /// G10 L2 and, if `here`, L20: the origin of a system in machine coordinates, or such that the axes stand
   /// at the coordinates named. `number` 1 is G54, 0 the system in force. The first two axes are X and Y where
   /// a system is rotated, by R in degrees.
-  void set_origin(int number, const NamedCoordinates& named, bool here, std::optional<double> rotation) {
-    const std::size_t system = index_of(number);
-    Position& origin = systems_[system];
-    Turn& turn = turns_[system];
-    if (here && turn.degrees != 0.0) {
-      const auto at = [&](std::size_t i) { return machine_[i] - origin[i] - tool_[i]; };
-      double x = at(0), y = at(1);
-      turn.back(x, y);
-      if (named[0]) x = *named[0] + shift_[0];
-      if (named[1]) y = *named[1] + shift_[1];
-      turn.forth(x, y);
-      origin[0] = machine_[0] - tool_[0] - x;
-      origin[1] = machine_[1] - tool_[1] - y;
-    }
-    for (std::size_t i = here && turn.degrees != 0.0 ? 2 : 0; i < count_; ++i)
-      if (named[i]) origin[i] = here ? machine_[i] - shift_[i] - tool_[i] - *named[i] : *named[i];
-    if (rotation) turn = Turn(*rotation);
-    update();
-  }
+  void set_origin(int number, const NamedCoordinates& named, bool here, std::optional<double> rotation);
 
   /// G10 L10 and, if `fixture`, L11: the offset of a tool along an axis with which the axes stand at a
   /// coordinate, of the system in force or of G59.3 without G92; that is not rotated, or the axis is not X,
@@ -128,11 +91,7 @@ class WorkCoordinates {
   }
 
   /// G43 and its kin: the axes named get new lengths of the tool.
-  void set_tool(const NamedCoordinates& named) {
-    for (std::size_t i = 0; i < count_; ++i)
-      if (named[i]) tool_[i] = *named[i];
-    update();
-  }
+  void set_tool(const NamedCoordinates& named);
 
   /// G43.2 adds to them.
   void add_tool(const NamedCoordinates& named) {
@@ -141,24 +100,9 @@ class WorkCoordinates {
   }
 
   /// G52: the shift of the axes named is this.
-  void set_shift(const NamedCoordinates& named) {
-    for (std::size_t i = 0; i < count_; ++i)
-      if (named[i]) shift_[i] = *named[i];
-    kept_shift_ = shift_;
-    update();
-  }
+  void set_shift(const NamedCoordinates& named);
   /// G92: the present place gets the coordinates named.
-  void shift_to(const NamedCoordinates& named) {
-    Position to = current_;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (named[i]) {
-        shift_[i] += current_[i] - *named[i];
-        to[i] = *named[i];
-      }
-    kept_shift_ = shift_;
-    update();
-    current_ = to;  // to the last bit
-  }
+  void shift_to(const NamedCoordinates& named);
   /// G92.1 forgets the shift, G92.2 suspends it, G92.3 restores it.
   void forget_shift() {
     kept_shift_ = {};
@@ -204,26 +148,7 @@ class WorkCoordinates {
     return place;
   }
 
-  void update() {
-    const Position shift = turned(shift_);
-    bool moved = false;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const double offset = nameable(i, systems_[system_][i] + shift[i] + tool_[i]);
-      if (offset == offset_[i]) continue;
-      moved = true;
-      blur(i, offset);
-      current_[i] = machine_[i] - offset;
-      offset_[i] = offset;
-    }
-    const double angle = turn().degrees;
-    if (angle == angle_ && (angle == 0.0 || !moved)) return;
-    angle_ = angle;
-    for (std::size_t i = 0; i < 2; ++i) {
-      blur(i, offset_[i]);
-      current_[i] = machine_[i] - offset_[i];
-    }
-    turn().back(current_[0], current_[1]);
-  }
+  void update();
 
   /// What the change to an offset leaves of roundings.
   void blur(std::size_t i, double offset) {
@@ -247,3 +172,7 @@ class WorkCoordinates {
 };
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/work_coordinates-inl.hpp"
+#endif

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/language/expression.hpp"
 
 namespace cncplan::gcode {
@@ -69,36 +70,13 @@ struct ControlWord {
 };
 
 /// Index of the O of a line that begins with one, behind blanks, / and N; npos for others.
-[[nodiscard]] inline std::size_t find_control_word(std::string_view line, bool& deleted) {
-  const auto blanks = [&line](std::size_t at) { return line.find_first_not_of(" \t", at); };
-  std::size_t at = blanks(0);
-  deleted = at < line.size() && line[at] == '/';
-  if (deleted) at = blanks(at + 1);
-  if (at < line.size() && (line[at] == 'N' || line[at] == 'n')) {
-    at = line.find_first_not_of(" \t.0123456789", at + 1);
-  }
-  const bool found = at < line.size() && (line[at] == 'O' || line[at] == 'o');
-  return found ? at : std::string_view::npos;
-}
+[[nodiscard]] std::size_t find_control_word(std::string_view line, bool& deleted);
 
 /// Reads it. What is wrong with the label is in the expression that has read it.
-[[nodiscard]] inline ControlWord read_control_word(Expression& expression) {
-  ControlWord word{.column = expression.column()};
-  expression.expect('O');
-  expression.skip_blanks();
-  if (expression.peek() == '<') {
-    word.label = expression.name();
-  } else if (expression.is_name()) {
-    expression.fail(ErrorCode::not_supported, "label without < >", expression.column());
-  } else {
-    const double number = expression.whole_value();
-    word.label = std::to_string(static_cast<long long>(number));
-  }
-  expression.skip_blanks();
-  for (const auto& [name, keyword] : detail::keywords)
-    if (word.keyword == Keyword::none && expression.take(name)) word.keyword = keyword;
-  word.end = expression.at();
-  return word;
-}
+[[nodiscard]] ControlWord read_control_word(Expression& expression);
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/language/control_word-inl.hpp"
+#endif

@@ -5,16 +5,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/language/parameters.hpp"
 #include "cncplan/gcode/scanner.hpp"
+#include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {
 
@@ -70,22 +71,20 @@ struct Function {
   double (*apply)(double){};
 };
 
-inline constexpr double degree = std::numbers::pi / 180.0;
-
 // Angles are degrees. ATAN and EXISTS have a form of their own.
 inline constexpr std::array functions{
     Function{"ABS", [](double x) { return std::abs(x); }},
-    Function{"ACOS", [](double x) { return std::acos(x) / degree; }},
-    Function{"ASIN", [](double x) { return std::asin(x) / degree; }},
-    Function{"COS", [](double x) { return std::cos(x * degree); }},
+    Function{"ACOS", [](double x) { return std::acos(x) / radians_per_degree; }},
+    Function{"ASIN", [](double x) { return std::asin(x) / radians_per_degree; }},
+    Function{"COS", [](double x) { return std::cos(x * radians_per_degree); }},
     Function{"EXP", [](double x) { return std::exp(x); }},
     Function{"FIX", [](double x) { return std::floor(x); }},
     Function{"FUP", [](double x) { return std::ceil(x); }},
     Function{"LN", [](double x) { return std::log(x); }},
     Function{"ROUND", [](double x) { return std::round(x); }},
-    Function{"SIN", [](double x) { return std::sin(x * degree); }},
+    Function{"SIN", [](double x) { return std::sin(x * radians_per_degree); }},
     Function{"SQRT", [](double x) { return std::sqrt(x); }},
-    Function{"TAN", [](double x) { return std::tan(x * degree); }},
+    Function{"TAN", [](double x) { return std::tan(x * radians_per_degree); }},
 };
 
 }  // namespace detail
@@ -102,111 +101,30 @@ class Expression {
   [[nodiscard]] std::size_t at() const { return at_; }
   [[nodiscard]] char peek() const { return at_ < line_.size() ? upper(line_[at_]) : '\0'; }
   /// Passes blanks and closed comments.
-  void skip_blanks() {
-    for (;;) {
-      if (peek() == '(' && comment_end(line_, at_) != std::string_view::npos)
-        at_ = comment_end(line_, at_);
-      else if (peek() == ' ' || peek() == '\t')
-        ++at_;
-      else
-        return;
-    }
-  }
+  void skip_blanks();
 
   /// A number, a parameter, an expression in brackets or a function, with or without signs.
-  double value() {
-    skip_blanks();
-    const int column = this->column();
-    double result = 0.0;
-    const bool sign = peek() == '+' || peek() == '-';
-    if (sign && !number_follows()) {
-      const bool minus = peek() == '-';
-      ++at_;
-      result = nested([this] { return value(); });
-      if (minus) result = -result;
-    } else if (peek() == '[') {
-      result = bracket();
-    } else if (peek() == '#') {
-      result = parameter();
-    } else if (peek() >= 'A' && peek() <= 'Z') {
-      result = function();
-    } else {
-      result = number();
-    }
-    if (!problem_ && !std::isfinite(result)) fail(ErrorCode::not_finite, "value", column, result);
-    return problem_ ? 0.0 : result;
-  }
+  double value();
 
   /// A value that stands for a whole number.
-  double whole_value() {
-    skip_blanks();
-    const int column = this->column();
-    const double value = this->value();
-    if (std::abs(value) > max_number) {
-      fail(ErrorCode::above_limit, "value", column, value, max_number);
-      return 0.0;
-    }
-    const double whole = std::round(value);
-    if (std::abs(value - whole) > whole_within) fail(ErrorCode::not_an_integer, "value", column, value);
-    return whole;
-  }
+  double whole_value();
 
   /// What stands behind a #.
-  ParameterName parameter_name() {
-    ++at_;
-    skip_blanks();
-    if (peek() == '<') return name();
-    if (is_name()) {
-      fail(ErrorCode::not_supported, "name of a parameter without < >", column());
-      return 0.0;
-    }
-    return nested([this] { return whole_value(); });
-  }
+  ParameterName parameter_name();
 
   /// A name in < >, in lower case and without blanks.
-  std::string name() {
-    const int column = this->column();
-    std::string name;
-    for (++at_; at_ < line_.size(); ++at_) {
-      const char c = line_[at_];
-      if (c == '>') {
-        ++at_;
-        return name;
-      }
-      if (c != ' ' && c != '\t') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
-    fail(ErrorCode::unclosed, "<", column);
-    return name;
-  }
+  std::string name();
 
   /// Passes a character, which must be there.
-  void expect(char character) {
-    skip_blanks();
-    if (peek() == character) {
-      ++at_;
-    } else {
-      fail(ErrorCode::missing_word, gcode::name(character), column());
-    }
-  }
+  void expect(char character);
 
   /// Passes a word if it comes next.
-  bool take(std::string_view word) {
-    for (std::size_t i = 0; i < word.size(); ++i)
-      if (at_ + i >= line_.size() || upper(line_[at_ + i]) != word[i]) return false;
-    at_ += word.size();
-    return true;
-  }
+  bool take(std::string_view word);
 
   [[nodiscard]] int column() const { return static_cast<int>(at_) + 1; }
 
   /// Whether letters come next that begin no function.
-  [[nodiscard]] bool is_name() const {
-    if (peek() != '_' && (peek() < 'A' || peek() > 'Z')) return false;
-    Expression ahead = *this;
-    if (ahead.take("ATAN") || ahead.take("EXISTS")) return false;
-    return std::none_of(detail::functions.begin(), detail::functions.end(),
-                        [&ahead](const detail::Function& function) { return ahead.take(function.name); });
-  }
+  [[nodiscard]] bool is_name() const;
 
   /// The first error stays.
   void fail(ErrorCode code, std::string_view field, int column, double value = 0.0, double bound = 0.0) {
@@ -217,11 +135,7 @@ class Expression {
   static constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
   // Whether the sign to come is that of a number.
-  [[nodiscard]] bool number_follows() const {
-    if (at_ + 1 >= line_.size()) return true;
-    const char next = line_[at_ + 1];
-    return (next >= '0' && next <= '9') || next == '.';
-  }
+  [[nodiscard]] bool number_follows() const;
 
   template <class F>
   double nested(F&& inner) {
@@ -235,47 +149,12 @@ class Expression {
     return result;
   }
 
-  double number() {
-    Scanner scanner(line_, at_);
-    const auto number = scanner.read_number('=', column());
-    if (!number) {
-      const Error& error = number.error().error;
-      fail(error.code, "value", column(), error.value, error.bound);
-      return 0.0;
-    }
-    at_ = static_cast<std::size_t>(scanner.column() - 1);
-    return *number;
-  }
+  double number();
 
-  double bracket() {
-    expect('[');
-    const double result = nested([this] { return operation(1); });
-    expect(']');
-    return result;
-  }
+  double bracket();
 
   // Operands of one precedence, joined from left to right.
-  double operation(int precedence) {
-    const auto operand = [&] {
-      return precedence == detail::highest_precedence ? value() : operation(precedence + 1);
-    };
-    double left = operand();
-    while (!problem_) {
-      skip_blanks();
-      const std::size_t before = at_;
-      const detail::Operation* const found = operator_here();
-      if (found == nullptr || found->precedence != precedence) {
-        at_ = before;
-        return left;
-      }
-      const double right = operand();
-      const int column = static_cast<int>(before) + 1;
-      if (found->divides && right == 0.0) fail(ErrorCode::division_by_zero, found->name, column, left);
-      left = found->apply(left, right);
-      if (!std::isfinite(left)) fail(ErrorCode::not_finite, found->result, column, left);
-    }
-    return 0.0;
-  }
+  double operation(int precedence);
 
   const detail::Operation* operator_here() {
     for (const detail::Operation& operation : detail::operations)
@@ -283,53 +162,16 @@ class Expression {
     return nullptr;
   }
 
-  double parameter() {
-    const int column = this->column();
-    const ParameterName name = parameter_name();
-    if (problem_) return 0.0;
-    if (const auto* text = std::get_if<std::string>(&name)) {
-      const auto value = parameters_.get(*text);
-      if (!value) fail(ErrorCode::not_defined, "named parameter", column);
-      return value.value_or(0.0);
-    }
-    const auto value = parameters_.get(std::get<double>(name));
-    if (!value)
-      fail(value.error().code, value.error().field, column, value.error().value, value.error().bound);
-    return value.value_or(0.0);
-  }
+  double parameter();
 
-  double function() {
-    const int column = this->column();
-    if (take("ATAN")) {
-      const double y = argument();
-      expect('/');
-      return std::atan2(y, argument()) / detail::degree;
-    }
-    if (take("EXISTS")) return exists();
-    for (const detail::Function& function : detail::functions)
-      if (take(function.name)) return function.apply(argument());
-    fail(ErrorCode::not_supported, "function", column);
-    return 0.0;
-  }
+  double function();
 
   double argument() {
     skip_blanks();
     return bracket();
   }
 
-  double exists() {
-    skip_blanks();
-    expect('[');
-    skip_blanks();
-    if (peek() != '#') {
-      fail(ErrorCode::missing_word, "#", column());
-      return 0.0;
-    }
-    const ParameterName name = parameter_name();
-    expect(']');
-    if (const auto* text = std::get_if<std::string>(&name)) return parameters_.get(*text) ? 1.0 : 0.0;
-    return parameters_.get(std::get<double>(name)) ? 1.0 : 0.0;
-  }
+  double exists();
 
   std::string_view line_;
   std::size_t at_;
@@ -339,3 +181,7 @@ class Expression {
 };
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/language/expression-inl.hpp"
+#endif

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/gcode/language/machine_parameters.hpp"
 #include "cncplan/gcode/reader.hpp"
@@ -34,55 +35,23 @@ class Parameters {
   explicit Parameters(const Reader& reader) : reader_(&reader), numbers_(max_parameter + 1), locals_(1) {}
 
   /// Errors: `below_limit`, `above_limit` for a number that is none of a parameter.
-  [[nodiscard]] Expected<double> get(double number) const {
-    if (const auto bad = out_of_range(number)) return tl::unexpected(*bad);
-    const int index = static_cast<int>(number);
-    return machine_parameter(*reader_, index).value_or(numbers_[static_cast<std::size_t>(index)]);
-  }
+  [[nodiscard]] Expected<double> get(double number) const;
 
   /// `name`: lower case and without blanks. None where it is not set.
-  [[nodiscard]] std::optional<double> get(std::string_view name) const {
-    if (const auto value = own(name)) return value;
-    const auto& names = scope(name);
-    const auto found = names.find(name);
-    return found == names.end() ? std::nullopt : std::optional(found->second);
-  }
+  [[nodiscard]] std::optional<double> get(std::string_view name) const;
 
   /// Errors: those of `get`, and `read_only`.
-  Expected<void> set(double number, double value) {
-    if (const auto bad = out_of_range(number)) return tl::unexpected(*bad);
-    const int index = static_cast<int>(number);
-    if (machine_parameter(*reader_, index))
-      return tl::unexpected(Error{ErrorCode::read_only, "parameter", number, 0.0});
-    numbers_[static_cast<std::size_t>(index)] = value;
-    return {};
-  }
-  Expected<void> set(std::string_view name, double value) {
-    if (own(name)) return tl::unexpected(Error{ErrorCode::read_only, "named parameter", 0.0, 0.0});
-    auto& names = name.starts_with('_') ? globals_ : locals_.back().names;
-    names.insert_or_assign(std::string(name), value);
-    return {};
-  }
+  Expected<void> set(double number, double value);
+  Expected<void> set(std::string_view name, double value);
 
   /// Number in its file of the line that runs, for #<_line>.
   void set_line(int line) { line_ = line; }
 
   /// A subprogram begins, with its arguments as #1 and on; the other local numbers are 0.
-  void enter(const std::vector<double>& arguments) {
-    std::copy_n(numbers_.begin() + 1, local_numbers, locals_.back().numbers.begin());
-    locals_.emplace_back();
-    std::fill_n(numbers_.begin() + 1, local_numbers, 0.0);
-    std::copy_n(arguments.begin(), std::min<std::size_t>(arguments.size(), local_numbers),
-                numbers_.begin() + 1);
-    result_.reset();
-  }
+  void enter(const std::vector<double>& arguments);
 
   /// It ends, and gives a value or none.
-  void leave(std::optional<double> result) {
-    locals_.pop_back();
-    std::copy_n(locals_.back().numbers.begin(), local_numbers, numbers_.begin() + 1);
-    result_ = result;
-  }
+  void leave(std::optional<double> result);
 
  private:
   using Names = std::map<std::string, double, std::less<>>;
@@ -92,26 +61,14 @@ class Parameters {
     Names names;
   };
 
-  static std::optional<Error> out_of_range(double number) {
-    if (!(number >= 1.0)) return Error{ErrorCode::below_limit, "number of a parameter", number, 1.0};
-    if (number > max_parameter)
-      return Error{ErrorCode::above_limit, "number of a parameter", number, max_parameter};
-    return std::nullopt;
-  }
+  static std::optional<Error> out_of_range(double number);
 
   [[nodiscard]] const Names& scope(std::string_view name) const {
     return name.starts_with('_') ? globals_ : locals_.back().names;
   }
 
   /// What the machine or the run of the program sets.
-  [[nodiscard]] std::optional<double> own(std::string_view name) const {
-    if (!name.starts_with('_')) return std::nullopt;
-    if (name == "_value") return result_.value_or(0.0);
-    if (name == "_value_returned") return result_ ? 1.0 : 0.0;
-    if (name == "_call_level") return static_cast<double>(locals_.size() - 1);
-    if (name == "_line") return static_cast<double>(line_);
-    return machine_parameter(*reader_, name);
-  }
+  [[nodiscard]] std::optional<double> own(std::string_view name) const;
 
   const Reader* reader_;
   std::vector<double> numbers_;
@@ -122,3 +79,7 @@ class Parameters {
 };
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/language/parameters-inl.hpp"
+#endif

@@ -1,0 +1,125 @@
+// Definitions of reader.hpp.
+#pragma once
+
+#include "cncplan/gcode/reader.hpp"
+
+namespace cncplan::gcode {
+
+CNCPLAN_INLINE void Reader::recover(std::string_view text) {
+  if (!readable_ || is_too_long(text)) return;
+  block_.salvage(text, 0, dialect_, alphabet_);
+  block_.lose(unclear_words(block_, modal_, alphabet_));
+  splines_.forget();
+  modal_ = after(block_, modal_, dialect_);
+  if (modal_.motion == code(5.3)) modal_.motion = no_code;
+  if ((block_.lost() & bit('F')) != 0) modal_.needs_feed = false;
+  const bool bare = modal_.motion == no_code && (block_.letters() & alphabet_.axes) != 0;
+  if (bare || ((block_.lost() & bit('G')) != 0 && !block_.has(Group::motion))) modal_.motion = lost_code;
+  doubtful_ |= block_.lost() & alphabet_.axes;
+  if (block_.has(Group::non_modal) && block_.code(Group::non_modal) != code(4)) doubtful_ |= alphabet_.axes;
+  follow();
+  const Code stop = block_.code(Group::stop);
+  finished_ = finished_ || stop == code(2) || stop == code(30);
+}
+
+CNCPLAN_INLINE std::optional<double> Reader::coordinate(std::size_t axis) const {
+  if (axis < 2 && names_polar(block_)) {
+    const double to = polar_target(block_, modal_, position())[axis];
+    return modal_.incremental ? to - position()[axis] : to;
+  }
+  const auto [letter, kind] = dialect_.axes[axis];
+  if (!block_.has(letter)) return std::nullopt;
+  const double unit = kind == AxisKind::linear ? modal_.millimetres_per_unit : radians_per_degree;
+  return block_.number(letter) * (modal_.diameter && letter == 'X' ? unit / 2.0 : unit);
+}
+
+CNCPLAN_INLINE NamedCoordinates Reader::named_coordinates() const {
+  NamedCoordinates named;
+  for (std::size_t i = 0; i < named.size(); ++i)
+    if (i < axis_count()) named[i] = coordinate(i);
+  return named;
+}
+
+CNCPLAN_INLINE Motion Reader::motion_to(const Position& end) const {
+  Motion motion;
+  motion.plane = modal_.plane;
+  motion.feed_mode = modal_.feed_mode == FeedMode::per_revolution ? FeedMode::per_minute : modal_.feed_mode;
+  motion.path_mode = modal_.path_mode;
+  motion.exact_stop = modal_.path_mode != PathMode::continuous;
+  motion.tolerance = modal_.tolerance;
+  motion.merge_tolerance = modal_.merge_tolerance;
+  motion.start = position();
+  motion.end = end;
+  motion.offset = offset();
+  motion.tool_radius = tool_radius_;
+  motion.line = line_;
+  return motion;
+}
+
+CNCPLAN_INLINE std::optional<double> Reader::feed(const Motion& motion) const {
+  if (modal_.feed && modal_.feed_mode == FeedMode::per_minute && turns_only(dialect_, motion))
+    return modal_.rotary_feed;
+  if (modal_.feed_mode != FeedMode::per_revolution || !modal_.feed) return modal_.feed;
+  return feed_of_turn(motion, *modal_.feed);
+}
+
+CNCPLAN_INLINE Expected<void, Diagnostic> Reader::check_state(const Modal& modal, Code motion, Code before) {
+  if (auto ok = spindle_.check(block_, modal, motion); !ok) return ok;
+  if (has_table_)
+    if (const auto tool = missing_tool(block_, dialect_))
+      return tl::unexpected(block_.error(ErrorCode::no_such_tool, *tool));
+  if (block_.code(Group::non_modal) == code(10) && sets_tool()) {
+    if (!has_room_for(dialect_, static_cast<int>(block_.number('P'))))
+      return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
+    if (auto ok = check_measured(block_, place_); !ok) return ok;
+  }
+  if (place_.rotated())
+    if (auto ok = check_rotated(block_, modal, motion); !ok) return ok;
+  if (auto ok = check_polar(block_, modal, motion, position()); !ok) return ok;
+  if (auto ok = splines_.check(block_, modal, motion, before); !ok) return ok;
+  return is_cycle(motion) ? cycles_.check(block_, modal, dialect_, motion, position())
+                          : Expected<void, Diagnostic>();
+}
+
+CNCPLAN_INLINE void Reader::set_table() {
+  const int number = static_cast<int>(block_.number('P'));
+  const double kind = block_.number('L');
+  std::optional<double> r;
+  if (block_.has('R')) r = block_.number('R');
+  if (!sets_tool()) return place_.set_origin(number, named_coordinates(), kind == 20.0, r);
+  NamedCoordinates offset = named_coordinates();
+  for (std::size_t i = 0; i < axis_count(); ++i)
+    if (offset[i] && kind != 1.0) offset[i] = place_.tool_for(i, *offset[i], kind == 11.0);
+  if (r) *r *= modal_.millimetres_per_unit;
+  set_tool(dialect_, number, offset, r);
+}
+
+CNCPLAN_INLINE void Reader::set_tool_length() {
+  const Code how = block_.code(Group::tool_length);
+  if (how == code(43.1)) return place_.set_tool(named_coordinates());
+  const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
+  const Position offset = how == code(49) ? Position{} : tool_offset(dialect_, number);
+  NamedCoordinates named;
+  std::copy(offset.begin(), offset.end(), named.begin());
+  if (how == code(43.2)) return place_.add_tool(named);
+  place_.set_tool(named);
+}
+
+CNCPLAN_INLINE void Reader::compensate() {
+  const Code how = modal_.compensation;
+  const bool given = how == code(41.1) || how == code(42.1);
+  const int number = block_.has('D') && !given ? static_cast<int>(block_.number('D')) : loaded_tool_;
+  const double diameter =
+      given ? block_.number('D') * modal_.millimetres_per_unit : tool_diameter(dialect_, number);
+  const bool left = how == code(41) || how == code(41.1);
+  tool_radius_ = how == code(40) ? 0.0 : (left ? 0.5 : -0.5) * diameter;
+}
+
+CNCPLAN_INLINE void Reader::shift(Code how) {
+  if (how == code(92)) return place_.shift_to(named_coordinates());
+  if (how == code(92.1)) return place_.forget_shift();
+  if (how == code(92.2)) return place_.suspend_shift();
+  place_.restore_shift();
+}
+
+}  // namespace cncplan::gcode
