@@ -134,6 +134,7 @@
 #include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/executor_core.hpp"
 #include "cncplan/plan/executor_state.hpp"
+#include "cncplan/plan/fallback.hpp"
 #include "cncplan/plan/follow_steps.hpp"
 #include "cncplan/plan/homing.hpp"
 #include "cncplan/plan/joint_speed.hpp"

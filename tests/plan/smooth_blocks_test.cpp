@@ -171,6 +171,72 @@ TEST_CASE("good and best: a velocity that is not reached changes nothing", "[smo
   }
 }
 
+TEST_CASE("good and best: limits of the tool above what its axes reach change nothing", "[smooth-blocks]") {
+  Machine<3> machine;
+  for (auto& axis : machine.axes) {
+    axis.velocity = 30;
+    axis.acceleration = 1000;
+    axis.jerk = 1e4;
+  }
+  const auto blocks = blocks_of("F1800 G1 X10\nX18 Y6\nX19 Y6.2 Z1\nG3 X25 Y12 R8\nG1 X25.1 Y14\nX3\n");
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
+    INFO("level " << (level == SmoothLevel::good ? "good" : "best"));
+    // The length of the vector of the axes' limits.
+    machine.limits = {.velocity = 60, .acceleration = std::sqrt(3.0) * 1000, .jerk = std::sqrt(3.0) * 1e4};
+    const auto reached = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+    REQUIRE(reached);
+    CHECK(reached->fallbacks().empty());
+    for (const double acceleration : {1e4, 1e6, infinity})
+      for (const double jerk : {1e5, 1e6, 1e7, infinity}) {
+        if (std::isinf(acceleration) && std::isinf(jerk)) continue;
+        CAPTURE(acceleration, jerk);
+        machine.limits.acceleration = acceleration;
+        machine.limits.jerk = jerk;
+        const auto planned = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+        REQUIRE(planned);
+        CHECK(planned->duration() == Approx(reached->duration()).epsilon(1e-6));
+        CHECK(planned->fallbacks().empty());
+      }
+  }
+}
+
+TEST_CASE("good and best: a level that is not the one asked for is told", "[smooth-blocks]") {
+  const auto blocks = blocks_of("F1800 G1 X10\nY10\nG4 P0.1\nX20\nG3 X30 Y20 J10\n");
+  const auto told = [&](const Machine<3>& machine, const PlanOptions& options,
+                        const std::vector<ProgramBlock<Machine<3>>>& program) {
+    const auto planned = plan_smooth(program, machine, options);
+    REQUIRE(planned);
+    return std::vector<Fallback>(planned->fallbacks().begin(), planned->fallbacks().end());
+  };
+  const auto whole = [&](FallbackReason reason) {
+    return std::vector<Fallback>{{0, blocks.size() - 1, FallbackLevel::fast, reason}};
+  };
+  CHECK(told(mill, {.tolerance = 0.01}, blocks).empty());
+  CHECK(told(mill, {.tolerance = 0}, blocks).empty());
+  CHECK(told(mill, {.tolerance = 0.01}, blocks_of("F1800 G1 X10\nX20\nG61 X30\nY9\n")).empty());
+  Machine<3> machine = mill;
+  machine.limits.jerk = std::numeric_limits<double>::infinity();
+  CHECK(told(machine, {.tolerance = 0.01}, blocks) == whole(FallbackReason::tool_limits));
+  CHECK(told(machine, {.tolerance = 0}, blocks).empty());
+  machine = mill;
+  std::swap(machine.axes[0].letter, machine.axes[1].letter);
+  CHECK(told(machine, {.tolerance = 0.01}, blocks) == whole(FallbackReason::axes));
+  // A line along the end of travel, a stop, and a corner with room.
+  machine = mill;
+  machine.axes[1].low = 0;
+  const auto wall = blocks_of("F1800 G1 X10 Y0\nX11 Y0.1\nX12 Y0\nX20\nG4 P0.1\nG1 Y10\nX30\n", machine);
+  const auto planned = plan_smooth(wall, machine, {.tolerance = 0.01});
+  if (planned) {
+    REQUIRE(planned->fallbacks().size() == 1);
+    const Fallback fallback = planned->fallbacks()[0];
+    CHECK(fallback.reason == FallbackReason::travel);
+    CHECK(fallback.level == FallbackLevel::fast);
+    CHECK(planned->program()[fallback.first].line == 1);
+    CHECK(planned->program()[fallback.last].line == 4);
+  }
+}
+
 TEST_CASE("best: dense lines with noise come up to speed", "[smooth-blocks]") {
   // A braking way has hundreds of cells here: windows of 400 gave up to 0.763 s for 0.710. The exact plan,
   // which jumps at all corners, is about as fast as can be.

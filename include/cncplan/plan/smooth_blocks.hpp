@@ -16,9 +16,10 @@ namespace cncplan {
 /// than 175 degrees, and where the unit of length changes. What belongs to no run is planned as `plan_blocks`
 /// does, from rest to rest.
 ///
-/// So is all of the program under a map, where the tool has a limit that is infinite, where X Y Z are not the
-/// first axes, where backlash takes time, and where the tolerance of the options is 0; blocks that move only
-/// rotary axes; and a run for which no curve was found, or one that leaves the travel of an axis.
+/// So is all of the program under a map, where the tool has a limit that is infinite, and one of its axes
+/// too, where X Y Z are not the first axes, where backlash takes time, and where the tolerance of the options
+/// is 0; blocks that do not move the tool; and a run for which no curve was found, one that leaves the travel
+/// of an axis, or one that takes more time. `fallbacks` of the trajectory says so, but for a tolerance of 0.
 ///
 /// Blocks of the trajectory are pieces of those that were given, merged as by `plan_blocks`; `source` says of
 /// which. In a run that has rapids and feed moves the tool's velocity may be that of rapids. Errors as for

@@ -44,7 +44,9 @@ class SmoothPlanner {
         options_(options),
         rules_(smoothing_rules<S>(options)),
         work_(level == SmoothLevel::good ? smooth::good_smoothing<S> : smooth::BasicSmoothOptions<S>{}),
-        possible_(options.tolerance > 0 && has_curve_level(machine)),
+        limits_(motion_limits(machine)),
+        impossible_(options.tolerance > 0 ? without_curve_level(machine) : std::nullopt),
+        possible_(options.tolerance > 0 && !impossible_),
         most_(most),
         memory_(memory) {}
 
@@ -69,6 +71,8 @@ class SmoothPlanner {
     BasicSmoothing<S, n> none(memory_);
     Part part(machine_, std::move(out_), std::move(phases_),
               std::move(smoothing_.corrections.empty() ? none : smoothing_));
+    part.set_fallbacks(std::move(fallbacks_));
+    fallbacks_.clear();
     smoothing_.blocks.clear();
     time_ = S(0);
     return part;
@@ -180,9 +184,44 @@ class SmoothPlanner {
     return false;
   }
 
+  // What was planned since there were so many blocks has another level than was asked for. There is room.
+  void tell(std::size_t before, FallbackLevel level, FallbackReason reason) {
+    if (out_.size() == before) return;
+    const Fallback next{before, out_.size() - 1, level, reason};
+    if (!fallbacks_.empty() && fallbacks_.back().last + 1 == before && fallbacks_.back().level == level &&
+        fallbacks_.back().reason == reason)
+      fallbacks_.back().last = next.last;
+    else
+      fallbacks_.push_back(next);
+  }
+
+  // Whether a block without a plan follows another one as smoothing would have it, but for its length, which
+  // only rotary axes make.
+  [[nodiscard]] bool turns_on(std::size_t i) const {
+    if (!possible_ || !moves(i) || length_of(blocks_[i].path, machine_) == LengthOf::tool) return false;
+    for (std::size_t before = i; before-- > planned_;) {
+      if (rests(before)) return false;
+      if (moves(before))
+        return passing_between(blocks_[before], blocks_[i], machine_, rules_) == Passing::smooth;
+    }
+    return false;
+  }
+
+  // Why blocks up to `end` that are no run are not smoothed as they might be, if that is so.
+  [[nodiscard]] std::optional<FallbackReason> why_fast(std::size_t end) const {
+    for (std::size_t i = planned_; i < end; ++i) {
+      if (impossible_ && moves(i) && tolerance_of(blocks_[i], rules_) > S(0)) return impossible_;
+      if (turns_on(i)) return FallbackReason::other_axes;
+    }
+    return std::nullopt;
+  }
+
   // Blocks as they are, up to `end`, planned at the level `fast`.
-  [[nodiscard]] Expected<void, ProgramError> add_fast(std::size_t end) {
+  [[nodiscard]] Expected<void, ProgramError> add_fast(std::size_t end,
+                                                      std::optional<FallbackReason> reason = std::nullopt) {
     if (planned_ == end) return {};
+    if (!reason) reason = why_fast(end);
+    make_room(fallbacks_, 1);
     auto planned = plan_blocks(given(end), machine_, options_, memory_);
     if (!planned) {
       if (planned.error().block) *planned.error().block += first_source_ + planned_;
@@ -207,36 +246,45 @@ class SmoothPlanner {
     }
     time_ += planned->duration();
     planned_ = end;
+    if (reason) tell(before, MappedModel<M> ? FallbackLevel::exact : FallbackLevel::fast, *reason);
     return {};
   }
 
   // A run to its end, on a curve of its own; at the level `fast` where it has no plan or a slower one.
   [[nodiscard]] Expected<void, ProgramError> add_run(std::size_t end) {
+    std::optional<FallbackReason> reason;
     if constexpr (!MappedModel<M>) {
-      if (add_curve(end)) return {};
+      reason = add_curve(end);
+      if (!reason) return {};
       if (cut_) {
-        if (!add_curve(known_)) add_slow(known_);
+        if (const auto why = add_curve(known_)) add_slow(known_, *why);
         return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
       }
     }
-    return add_fast(end);
+    return add_fast(end, reason);
   }
 
-  // From where plans end to rest on the fastest curve. False where it has no plan, a slower one than the
+  // From where plans end to rest on the fastest curve. Why not, where it has no plan, a slower one than the
   // level `fast`, or too little memory.
-  bool add_curve(std::size_t end) try {
+  std::optional<FallbackReason> add_curve(std::size_t end) try {
     const RunBlocks given = run_blocks(cut_ ? 0 : planned_, end);
     const RunPlan planned = Run(given.blocks, given.limits, work_, cut_, memory_).plan();
-    if (!works(planned) || (!cut_ && fast_is_faster(planned.duration, end))) return false;
+    if (!found(planned)) return FallbackReason::no_motion;
+    if (!has_room(planned)) return FallbackReason::travel;
+    if (!cut_ && fast_is_faster(planned.duration, end)) return FallbackReason::fast_is_faster;
     add_pieces(planned, given.sources, end);
-    return true;
+    return std::nullopt;
   } catch (const std::bad_alloc&) {
-    return false;
+    return FallbackReason::memory;
   }
   // From a cut to rest along blocks of which it was proven that they allow it.
-  void add_slow(std::size_t end) {
+  void add_slow(std::size_t end, FallbackReason reason) {
     const RunBlocks given = run_blocks(0, end);
-    add_pieces(Run(given.blocks, given.limits, work_, cut_, memory_).slow_plan(), given.sources, end);
+    const RunPlan planned = Run(given.blocks, given.limits, work_, cut_, memory_).slow_plan();
+    make_room(fallbacks_, 1);
+    const std::size_t before = out_.size();
+    add_pieces(planned, given.sources, end);
+    tell(before, FallbackLevel::slow, reason);
   }
 
   // The first part of a run, up to where it is cut; false where it cannot be.
@@ -255,7 +303,8 @@ class SmoothPlanner {
         if (!works(Run(rest.blocks, rest.limits, work_, there, memory_).slow_plan())) continue;
         run.end_before(cell, cut.speed);
         RunPlan planned = run.plan();
-        if (!works(planned)) planned = run.slow_plan();
+        const bool fastest = works(planned);
+        if (!fastest) planned = run.slow_plan();
         if (!works(planned)) return false;
         const std::size_t at = given.sources[planned.end_block];
         const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
@@ -266,7 +315,10 @@ class SmoothPlanner {
         next.approach = &planned.approach;
         const RunBlocks way = run_blocks(gone, end);
         if (!works(Run(way.blocks, way.limits, work_, next, memory_).slow_plan())) return false;
+        make_room(fallbacks_, 1);
+        const std::size_t before = out_.size();
         add_pieces(planned, given.sources, at);
+        if (!fastest) tell(before, FallbackLevel::slow, FallbackReason::no_motion);
         begun_ = out_.back().source == first_source_ + at;
         approach_ = std::move(planned.approach);
         cut_ = next;
@@ -283,25 +335,24 @@ class SmoothPlanner {
 
   [[nodiscard]] RunBlocks run_blocks(std::size_t first, std::size_t end) const {
     RunBlocks result(memory_);
-    result.limits.tool = {S(0), machine_.limits.acceleration, machine_.limits.jerk};
-    result.limits.tool_axes = tool_axes(machine_);
-    for (std::size_t i = 0; i < result.limits.axes.size(); ++i)
-      result.limits.axes[i] = {least_velocity(machine_.axes[i]), least_acceleration(machine_.axes[i]),
-                               machine_.axes[i].jerk};
+    result.limits = limits_;
+    result.limits.tool.velocity = S(0);
     result.blocks.reserve(end - first);
     result.sources.reserve(end - first);
     for (std::size_t i = first; i < end; ++i) {
       if (!moves(i)) continue;
-      result.limits.tool.velocity = std::max(result.limits.tool.velocity, top_speed(blocks_[i], machine_));
+      result.limits.tool.velocity = std::max(
+          result.limits.tool.velocity, std::min(top_speed(blocks_[i], machine_), limits_.tool.velocity));
       result.blocks.push_back({&blocks_[i].path, speed(i), tolerances(blocks_[i])});
       result.sources.push_back(i);
     }
     return result;
   }
 
-  [[nodiscard]] bool works(const RunPlan& plan) const {
-    return plan.deviation <= S(1) && std::isfinite(plan.duration) && !plan.pieces.empty() && has_room(plan);
+  [[nodiscard]] static bool found(const RunPlan& plan) {
+    return plan.deviation <= S(1) && std::isfinite(plan.duration) && !plan.pieces.empty();
   }
+  [[nodiscard]] bool works(const RunPlan& plan) const { return found(plan) && has_room(plan); }
 
   // Whether the level `fast` takes less time.
   [[nodiscard]] bool fast_is_faster(S duration, std::size_t end) const {
@@ -379,6 +430,8 @@ class SmoothPlanner {
   PlanOptions options_;
   SmoothingRules<S> rules_;
   smooth::BasicSmoothOptions<S> work_;
+  smooth::BasicMotionLimits<S, n> limits_;
+  std::optional<FallbackReason> impossible_;  // for the whole program
   bool possible_;
   std::size_t most_;
   std::pmr::memory_resource* memory_;
@@ -394,6 +447,7 @@ class SmoothPlanner {
   // What is planned.
   std::pmr::vector<Out> out_{memory_};
   std::pmr::vector<BasicBlockPhase<S>> phases_{memory_};
+  std::pmr::vector<Fallback> fallbacks_{memory_};
   BasicSmoothing<S, n> smoothing_{memory_};
   S time_{};  // s
 };

@@ -18,6 +18,7 @@
 #include "cncplan/core/points.hpp"
 #include "cncplan/gcode/word.hpp"
 #include "cncplan/interpolate/grid.hpp"
+#include "cncplan/plan/fallback.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/motion_table.hpp"
 #include "cncplan/plan/set_point.hpp"
@@ -72,7 +73,8 @@ class Trajectory {
         starts_(blocks.size() + 1, blocks.get_allocator()),
         blocks_(std::move(blocks)),
         smoothing_(std::move(smoothing)),
-        phases_(std::move(phases)) {
+        phases_(std::move(phases)),
+        fallbacks_(blocks_.get_allocator()) {
     for (std::size_t i = 0; i < blocks_.size(); ++i)
       starts_[i + 1] = starts_[i] + (counts(blocks_[i]) ? blocks_[i].path.length() : Scalar(0));
   }
@@ -206,6 +208,12 @@ class Trajectory {
   void warnings() const&& = delete;
   void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
 
+  /// Where the plan has another level of smoothing than was asked for, in order. Blocks that need no
+  /// smoothing are no fallbacks: those that are to be exact, stops, and lines straight on.
+  [[nodiscard]] std::span<const Fallback> fallbacks() const& { return fallbacks_; }
+  void fallbacks() const&& = delete;
+  void set_fallbacks(std::pmr::vector<Fallback> fallbacks) { fallbacks_ = std::move(fallbacks); }
+
   /// When the motion comes to the start of a block; of one that takes no time, to that of the next.
   [[nodiscard]] Scalar start_time(std::size_t block) const {
     const auto earlier = [](const Phase& phase, std::size_t b) { return phase.block < b; };
@@ -282,6 +290,7 @@ class Trajectory {
   std::pmr::vector<B> blocks_;
   Smoothing smoothing_;
   std::pmr::vector<Phase> phases_;
+  std::pmr::vector<Fallback> fallbacks_;
   std::vector<TimedWord> words_;
   std::vector<std::string> warnings_;
 };

@@ -1,6 +1,7 @@
 // Limits of a machine's motion as smoothing sees them: of each axis, and of the tool's vector.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -60,6 +61,26 @@ void for_each_limit(const BasicMotionLimits<S, N>& limits, F&& with) {
     if (std::isfinite(own.velocity) || std::isfinite(own.acceleration) || std::isfinite(own.jerk))
       with(own, AxisProduct{axis});
   }
+}
+
+/// The same limits without what cannot be reached: the tool's vector is no longer than that of the limits of
+/// its axes, where all of them have one. A limit beyond that would only be a wrong measure of what motion
+/// does.
+template <std::floating_point S, int N>
+[[nodiscard]] BasicMotionLimits<S, N> reachable(BasicMotionLimits<S, N> limits) {
+  const auto lower = [&](S BasicLimits<S>::*limit) {
+    S square = S(0);
+    for (const int axis : limits.tool_axes)
+      if (axis >= 0) {
+        const S own = limits.axes[static_cast<std::size_t>(axis)].*limit;
+        square += own * own;
+      }
+    limits.tool.*limit = std::min(limits.tool.*limit, std::sqrt(square));
+  };
+  lower(&BasicLimits<S>::velocity);
+  lower(&BasicLimits<S>::acceleration);
+  lower(&BasicLimits<S>::jerk);
+  return limits;
 }
 
 }  // namespace cncplan::smooth
