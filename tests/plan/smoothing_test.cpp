@@ -56,6 +56,29 @@ auto smoothed(const std::string& program, double tolerance = 0.01) {
 
 }  // namespace
 
+TEST_CASE("the tool is no faster than the feed where a smoothed path is longer", "[smoothing]") {
+  // |q'| > 1 between line and arc: by 1.2 % on the arc of R 0.318.
+  const auto check_feed = [](const std::string& text, double feed) {
+    INFO(text);
+    const auto planned = smoothed(text);
+    REQUIRE(planned);
+    double most = 0;
+    for (const auto& point : planned->samples(1e-4)) most = std::max(most, point.velocity.norm());
+    CHECK(most <= feed * (1 + 1e-9));
+    CHECK(most > 0.99 * feed);
+  };
+  check_feed("F333\nG1 X3\nG3 X3.318 Y0.318 I0 J0.318\nG1 Y3.318\n", 333.0 / 60);
+  Random random;
+  for (int i = 0; i < 30; ++i) {
+    const double radius = random.log_uniform(0.2, 5), feed = random.uniform(60, 500);
+    std::ostringstream text;
+    text << std::fixed << "F" << feed << "\nG1 X3\n"
+         << (random.coin() ? "G3" : "G2") << " X" << 3 + radius << " Y" << radius << " I0 J" << radius
+         << "\nG1 Y" << radius + 3 << "\n";
+    check_feed(text.str(), std::stod(text.str().substr(1)) / 60);
+  }
+}
+
 TEST_CASE("corners are smooth, within the tolerance and the limits", "[smoothing]") {
   for (const double degrees : {2.0, 10.0, 30.0, 90.0, 150.0, 174.0})
     for (const double tolerance : {0.005, 0.05}) {

@@ -86,12 +86,13 @@ class CutByLimits {
 
   /// The limits of a part of the block at any speed.
   [[nodiscard]] BasicLimits<Scalar> limits(const Driven& driven, Scalar from, Scalar to, Scalar speed) const {
-    const auto along = [&](const auto& path) {
-      return limits_along(path.bounds(from, to), machine_, speed, tool_speed_, path.length());
+    const auto along = [&](const auto& path, Scalar tool_speed) {
+      return limits_along(path.bounds(from, to), machine_, speed, tool_speed, path.length());
     };
+    // The feed is the tool's, which may be faster than the speed along the programmed length: |q'| > 1.
     if constexpr (EnclosedPath<typename B::Path>)
-      if (!driven.exact()) return along(driven);
-    return block_->path.visit(along);
+      if (!driven.exact()) return along(driven, std::min(tool_speed_, speed));
+    return block_->path.visit([&](const auto& path) { return along(path, tool_speed_); });
   }
 
  private:
