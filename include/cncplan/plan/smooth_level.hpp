@@ -47,10 +47,11 @@ struct SmoothBlockType<BasicBlock<S, N, Curves...>> {
 template <class B>
 using SmoothBlockOf = typename SmoothBlockType<B>::Type;
 
-/// The limits of a machine as smoothing sees them.
+/// The limits of a machine as smoothing sees them; none of one behind a map.
 template <MachineModel M>
 [[nodiscard]] smooth::BasicMotionLimits<typename M::Scalar, M::axis_count> motion_limits(const M& machine) {
   smooth::BasicMotionLimits<typename M::Scalar, M::axis_count> limits;
+  if constexpr (MappedModel<M>) return limits;
   limits.tool = machine.limits;
   limits.tool_axes = tool_axes(machine);
   for (std::size_t i = 0; i < limits.axes.size(); ++i)
