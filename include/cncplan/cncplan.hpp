@@ -137,6 +137,7 @@
 #include "cncplan/plan/fallback.hpp"
 #include "cncplan/plan/follow_steps.hpp"
 #include "cncplan/plan/homing.hpp"
+#include "cncplan/plan/joint_jumps.hpp"
 #include "cncplan/plan/joint_speed.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/level_limits.hpp"

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "cncplan/path/arc_from_center.hpp"
+#include "cncplan/plan/joint_jumps.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "support/catch.hpp"
+#include "support/random.hpp"
 
 using namespace cncplan;
 
@@ -16,7 +19,116 @@ namespace {
 
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
+template <int N>
+using Most = Eigen::Array<double, 3 * N + 3, 1>;
+
+// At many instants of every phase, its ends but for a billionth among them.
+template <class T>
+auto by_brute_force(const T& trajectory, int instants) {
+  constexpr int n = T::MachineType::axis_count;
+  const auto tool = tool_axes(trajectory.machine());
+  Most<n> most = Most<n>::Zero();
+  for (const auto& [phase, block] : trajectory.phases()) {
+    const auto path = trajectory.path(block);
+    if (!(phase.duration > 0 && path.length() > 0)) continue;
+    for (int k = 0; k <= instants; ++k) {
+      const double share = std::clamp(static_cast<double>(k) / instants, 1e-9, 1 - 1e-9);
+      const State along = phase.at(share * phase.duration);
+      const auto axes = motion(path.point_at(std::clamp(along.position, 0.0, path.length())), along);
+      Most<n> here;
+      here << axes.velocity, axes.acceleration, axes.jerk, in_space(axes.velocity, tool).norm(),
+          in_space(axes.acceleration, tool).norm(), in_space(axes.jerk, tool).norm();
+      most = most.max(here.abs());
+    }
+  }
+  return most;
+}
+
+template <int N>
+Most<N> in_one(const BasicPeaks<double, N>& peaks) {
+  Most<N> all;
+  all << peaks.velocity, peaks.acceleration, peaks.jerk, peaks.tool.velocity, peaks.tool.acceleration,
+      peaks.tool.jerk;
+  return all;
+}
+
+// Rings that climb a ball, of short lines.
+std::string rings(int lines) {
+  std::string text = "G21 G90 F1800\n";
+  for (int i = 0; i < lines; ++i) {
+    const double share = i / 36000.0, angle = i * 0.35, radius = 10 * std::sin(3 * share + 0.01);
+    text += "G1 X" + std::to_string(radius * std::cos(angle)) + " Y" +
+            std::to_string(radius * std::sin(angle)) + " Z" + std::to_string(10 * std::cos(3 * share)) + "\n";
+  }
+  return text;
+}
+
 }  // namespace
+
+TEST_CASE("peaks of any path are no lower than brute force finds and are reached") {
+  test::Random random;
+  const auto number = [&](double low, double high) { return random.uniform(low, high); };
+  const auto place = [&] {
+    return " X" + std::to_string(number(-5, 5)) + " Y" + std::to_string(number(-5, 5)) + " Z" +
+           std::to_string(number(-2, 2));
+  };
+  for (int round = 0; round < 12; ++round) {
+    std::string text = "G21 G90 G17 F" + std::to_string(number(200, 4000)) + "\nG64 P" +
+                       std::to_string(round % 4 == 0 ? 0.0 : number(0.001, 0.1)) + "\n";
+    const int motions = 2 + static_cast<int>(number(0, 12));
+    for (int i = 0; i < motions; ++i) {
+      const double kind = number(0, 4);
+      if (kind < 2)
+        text += "G1" + place() + (kind < 1 ? " A" + std::to_string(number(-90, 90)) : "") + "\n";
+      else if (kind < 3)
+        text += "G2 I" + std::to_string(number(0.2, 8)) + " J" + std::to_string(number(-3, 3)) + " Z" +
+                std::to_string(number(-2, 2)) + " P" + std::to_string(1 + static_cast<int>(number(0, 30))) +
+                "\n";
+      else
+        text += "G5 I1 J2 P" + std::to_string(number(-4, 4)) + " Q3" + place().substr(0, place().find(" Z")) +
+                "\n";
+    }
+    INFO(text);
+    Machine<4> machine{.limits = {.velocity = 60, .acceleration = 1000, .jerk = number(5e3, 1e5)}};
+    machine.axes[3] = {
+        .letter = 'A', .kind = AxisKind::rotary, .velocity = 3, .acceleration = 30, .jerk = 500};
+    const auto trajectory = plan_text(text, machine, {.tolerance = 0.01});
+    REQUIRE(trajectory);
+    const Most<4> found = in_one(peaks(*trajectory)), seen = by_brute_force(*trajectory, 2000);
+    for (int i = 0; i < found.size(); ++i) {
+      INFO("value " << i << ": " << found[i] << ", by brute force " << seen[i]);
+      CHECK(found[i] >= seen[i] * (1 - 1e-6) - 1e-8);
+      CHECK(found[i] <= seen[i] * (1 + 1e-3) + 1e-6);
+    }
+  }
+}
+
+TEST_CASE("the search for peaks takes a few looks at each phase, in short and in long programs") {
+  for (const int lines : {500, 4000}) {
+    const auto trajectory = plan_text(rings(lines), mill, {.tolerance = 0.01});
+    REQUIRE(trajectory);
+    detail::PeakSearch search(*trajectory);
+    const auto found = search.search();
+    CHECK(search.looks() <= 12 * trajectory->phases().size());
+    const Most<3> all = in_one(found), seen = by_brute_force(*trajectory, 20);
+    for (int i = 0; i < all.size(); ++i) {
+      INFO("value " << i);
+      CHECK(all[i] >= seen[i] * (1 - 1e-6) - 1e-8);
+    }
+  }
+}
+
+TEST_CASE("a thousand turns have the peaks of a hundred") {
+  const auto trajectory = plan_text("F1800\nG2 I1 P1000\nG1 X1\n", mill);
+  REQUIRE(trajectory);
+  detail::PeakSearch search(*trajectory);
+  const auto found = search.search();
+  CHECK(search.looks() <= 1000 * trajectory->phases().size());
+  const auto fewer = peaks(*plan_text("F1800\nG2 I1 P100\nG1 X1\n", mill));
+  CHECK(found.tool.velocity == Approx(fewer.tool.velocity).epsilon(1e-6));
+  CHECK(found.tool.acceleration == Approx(fewer.tool.acceleration).epsilon(1e-6));
+  CHECK(found.tool.jerk == Approx(fewer.tool.jerk).epsilon(1e-6));
+}
 
 TEST_CASE("peaks are no lower than dense samples, and hardly higher") {
   const auto arc = path::arc_from_center(Vector3(20, 0, 0), Vector3(20, 0, 4), Vector3(20, 3, 0),
