@@ -98,48 +98,28 @@ class PlayRecord {
 
 /// Runs the cells of blocks with a tick each `period` (s, > 0) and looks as far ahead as a controller would;
 /// requests, in order of time, come at their exact times. It ends where the program does, where it is
-/// stopped, or where it rests and nothing is to come. `feed_of` gives a block's own feed (mm/s). Error:
-/// above_limit for what takes more than `most_ticks`.
-template <BlockModel B, std::invocable<const B&> Feed>
-[[nodiscard]] Expected<std::pmr::vector<BasicBlockPhase<double>>> play(std::span<const B> blocks,
-                                                                       BasicCells<double> cells,
-                                                                       std::span<const TimedRequest> requests,
-                                                                       double period, Feed&& feed_of,
-                                                                       double most_ticks = 1e10) {
+/// stopped, or where it rests and nothing is to come. `blocks` are those of the cells. Error: above_limit for
+/// what takes more than `most_ticks`.
+[[nodiscard]] inline Expected<std::pmr::vector<BasicBlockPhase<double>>> play(
+    std::span<const PlayedBlock> cells, std::span<const std::size_t> blocks,
+    std::span<const TimedRequest> requests, double period, double most_ticks = 1e10) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr std::size_t most_ahead = 8192;                         // within a tolerance cells are short
-  if (!cells.pauses.empty() && cells.pauses.front().cells == 0) {  // rests before anything moves
-    double rest = 0.0;
-    for (const auto& pause : cells.pauses)
-      if (pause.cells == 0) rest += pause.seconds;
-    cells.caps.insert(cells.caps.begin(), {0.0, 0.0, {1.0, 1.0, 1.0}, rest});
-    cells.blocks.insert(cells.blocks.begin(), cells.pauses.front().block);
-  }
-  std::vector<PlayedBlock> played;
-  for (std::size_t i = 0; i < cells.caps.size(); ++i) {
-    const B& block = blocks[cells.blocks[i]];
-    const bool more = i + 1 < cells.caps.size();
-    played.push_back({.caps = cells.caps[i],
-                      .feed = feed_of(block),
-                      .rapid = block.rapid,
-                      .line = block.line,
-                      .goes_on = more && (cells.blocks[i + 1] == cells.blocks[i] || block.goes_on)});
-  }
-  const std::size_t window = std::clamp<std::size_t>(played.size(), 1, most_ahead);
+  constexpr std::size_t most_ahead = 8192;  // within a tolerance cells are short
+  const std::size_t window = std::clamp<std::size_t>(cells.size(), 1, most_ahead);
   std::vector<PlayedBlock> memory(window + 1);
   std::vector<BlockCaps> ahead(window);
   std::vector<Waypoint> waypoints(window + 1), spare_waypoints(window + 1);
   Player player({memory, ahead, waypoints, spare_waypoints});
-  detail::PlayRecord record(played, cells.blocks);
+  detail::PlayRecord record(cells, blocks);
   double time = 0.0;
   std::int64_t ticks = 1;  // the next one ends at so many periods
   std::size_t fed = 0;
   auto request = requests.begin();
   for (;;) {
     for (; request != requests.end() && request->time <= time; ++request) request->ask(player);
-    while (fed < played.size() && player.push(played[fed])) ++fed;
+    while (fed < cells.size() && player.push(cells[fed])) ++fed;
     const Played now = player.tick(0.0);  // what is asked for takes effect
-    const bool done = fed == played.size() && player.finished();
+    const bool done = fed == cells.size() && player.finished();
     const double lasts = player.until_change();
     if (done || player.stopped() || (std::isinf(lasts) && request == requests.end())) break;
     const double next_request = request != requests.end() ? request->time : infinity;
@@ -157,6 +137,44 @@ template <BlockModel B, std::invocable<const B&> Feed>
     time = edge ? time + step : due;
   }
   return record.finish();
+}
+
+/// Cells as a player takes them, of the blocks that they were cut from; `feed_of` gives a block's own feed
+/// (mm/s). A rest before anything moves becomes a cell of its own.
+template <BlockModel B, std::invocable<const B&> Feed>
+[[nodiscard]] std::vector<PlayedBlock> played_blocks(std::span<const B> blocks, BasicCells<double>& cells,
+                                                     Feed&& feed_of) {
+  if (!cells.pauses.empty() && cells.pauses.front().cells == 0) {
+    double rest = 0.0;
+    for (const auto& pause : cells.pauses)
+      if (pause.cells == 0) rest += pause.seconds;
+    cells.caps.insert(cells.caps.begin(), {0.0, 0.0, {1.0, 1.0, 1.0}, rest});
+    cells.blocks.insert(cells.blocks.begin(), cells.pauses.front().block);
+  }
+  std::vector<PlayedBlock> played;
+  played.reserve(cells.caps.size());
+  for (std::size_t i = 0; i < cells.caps.size(); ++i) {
+    const B& block = blocks[cells.blocks[i]];
+    const bool more = i + 1 < cells.caps.size();
+    played.push_back({.caps = cells.caps[i],
+                      .feed = feed_of(block),
+                      .rapid = block.rapid,
+                      .line = block.line,
+                      .goes_on = more && (cells.blocks[i + 1] == cells.blocks[i] || block.goes_on)});
+  }
+  return played;
+}
+
+/// Both at once.
+template <BlockModel B, std::invocable<const B&> Feed>
+[[nodiscard]] Expected<std::pmr::vector<BasicBlockPhase<double>>> play(std::span<const B> blocks,
+                                                                       BasicCells<double> cells,
+                                                                       std::span<const TimedRequest> requests,
+                                                                       double period, Feed&& feed_of,
+                                                                       double most_ticks = 1e10) {
+  const auto played = played_blocks(blocks, cells, std::forward<Feed>(feed_of));
+  return play(std::span<const PlayedBlock>(played), std::span<const std::size_t>(cells.blocks), requests,
+              period, most_ticks);
 }
 
 }  // namespace cncplan::plan
