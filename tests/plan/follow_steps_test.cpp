@@ -123,3 +123,15 @@ TEST_CASE("the first edge that breaks a drive's rule ends the following of steps
   CHECK(refused.error().error.code == ErrorCode::above_limit);
   CHECK(taken > 10);
 }
+
+TEST_CASE("steps are not held against positions at no period", "[follow_steps]") {
+  const auto planned = plan_text(program, stepped(0));
+  REQUIRE(planned);
+  for (const double period : {0.0, -1.0, std::nan("")}) {
+    int edges = 0;
+    const auto reports = follow_steps(*planned, period, [&](const MotorEdge&) { ++edges; });
+    REQUIRE_FALSE(reports);
+    CHECK(reports.error().error.field == "period");
+    CHECK(edges == 0);
+  }
+}

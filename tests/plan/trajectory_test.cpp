@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -158,6 +159,31 @@ TEST_CASE("no blocks are a trajectory of no time", "[trajectory]") {
   int edges = 0;
   for (const auto& edge : none->step_edges()) edges += edge.direction;
   CHECK(edges == 0);
+}
+
+TEST_CASE("no samples where the period is none, and why", "[trajectory]") {
+  const std::vector<Block<3>> blocks{{.path = line({0, 0, 0}, {10, 0, 0})}};
+  for (const auto& planned : {plan_blocks(blocks, mill), plan_blocks(std::vector<Block<3>>{}, mill)}) {
+    REQUIRE(planned);
+    for (const double period : {0.0, -0.0, -1.0, -1e-300, -std::numeric_limits<double>::infinity(),
+                                std::numeric_limits<double>::infinity(), std::nan("")}) {
+      INFO("period " << period);
+      const auto samples = planned->samples(period);
+      CHECK(samples.size() == 0);
+      CHECK(samples.begin() == samples.end());
+      int rows = 0;
+      for (const auto& point : samples) rows += 1 + point.line;
+      CHECK(rows == 0);
+      REQUIRE(samples.error());
+      CHECK(samples.error()->field == "period");
+      CHECK(samples.error()->code ==
+            (std::isfinite(period) ? ErrorCode::not_positive : ErrorCode::not_finite));
+      Columns<std::remove_cvref_t<decltype(*planned)>> out(3, 4);
+      CHECK(planned->positions(period, 0, PointsN<double, 3>(out.data(), 3, 4)) == 0);
+    }
+    CHECK_FALSE(planned->samples(1e-3).error());
+    CHECK(planned->samples(1e300).size() == (planned->duration() > 0 ? 2 : 1));
+  }
 }
 
 // Closed form: a line long enough to reach every limit takes L/v + v/a + a/j.

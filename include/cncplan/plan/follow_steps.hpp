@@ -19,7 +19,7 @@ namespace cncplan {
 /// Hands every edge to `take`, in order of time, those that make up for backlash included, and reports what
 /// the first motor of each axis has done: its position is held against the planned one at every `period` (s,
 /// > 0) and at the end. An axis without a motor has an empty report. Error: the first rule that an edge
-/// breaks.
+/// breaks; `not_finite` or `not_positive` of the period, at the time 0.
 template <MachineModel M, BlockModel B, std::invocable<const BasicMotorEdge<typename M::Scalar>&> Take>
 [[nodiscard]] Expected<
     std::array<step::BasicAxisReport<typename M::Scalar>, static_cast<std::size_t>(M::axis_count)>,
@@ -27,6 +27,8 @@ template <MachineModel M, BlockModel B, std::invocable<const BasicMotorEdge<type
 follow_steps(const Trajectory<M, B>& trajectory, typename M::Scalar period, Take&& take) {
   using S = typename M::Scalar;
   constexpr auto n = static_cast<std::size_t>(M::axis_count);
+  const auto planned = trajectory.samples(period);
+  if (const auto fault = planned.error()) return tl::unexpected(step::Violation{*fault, 0, 0.0});
   std::array<step::BasicDrive<S>, n> drives{};
   std::array<std::int64_t, n> counts{}, backlash{};
   std::array<std::size_t, n> motors{};
@@ -45,7 +47,6 @@ follow_steps(const Trajectory<M, B>& trajectory, typename M::Scalar period, Take
   }
   step::SimulatedBackend<S, M::axis_count> backend(scale, counts, backlash);
   step::DriveCheck<S, n> check(drives);
-  const auto planned = trajectory.samples(period);
   auto sample = planned.begin();
   S due = S(0);
   std::int64_t k = 0;

@@ -10,11 +10,13 @@
 #include <iterator>
 #include <limits>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/error.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/gcode/word.hpp"
 #include "cncplan/interpolate/grid.hpp"
@@ -135,7 +137,8 @@ class Trajectory {
            1;
   }
 
-  /// The set points at k period while that is before the end, and one at the end. A range.
+  /// The set points at k period (s, > 0) while that is before the end, and one at the end. A range, empty for
+  /// any other period: its `error` says why.
   class Samples;
   [[nodiscard]] Samples samples(Scalar period) const& { return Samples(*this, period); }
   void samples(Scalar period) const&& = delete;
@@ -149,7 +152,7 @@ class Trajectory {
   Eigen::Index positions(Scalar period, std::int64_t first, PointsN<Scalar, M::axis_count> out) const {
     const interpolate::BasicGrid<Scalar> grid{period, duration()};
     const auto count =
-        static_cast<Eigen::Index>(std::clamp<std::int64_t>(grid.size() - first, 0, out.cols()));
+        static_cast<Eigen::Index>(std::clamp<std::int64_t>(samples(period).size() - first, 0, out.cols()));
     std::array<Scalar, 64> along;
     std::size_t index = phase_at(grid.time(first));
     for (Eigen::Index done = 0; done < count;) {
@@ -331,7 +334,18 @@ class Trajectory<M, B>::Samples {
   };
 
   Samples(const Trajectory& trajectory, Scalar period)
-      : trajectory_(&trajectory), grid_{period, trajectory.duration()}, size_(grid_.size()) {}
+      : trajectory_(&trajectory),
+        grid_{period, trajectory.duration()},
+        size_(error() ? 0 : grid_.size()) {}
+
+  /// Why there is none: `not_finite` or `not_positive` of the period.
+  [[nodiscard]] std::optional<Error> error() const {
+    if (!std::isfinite(grid_.period))
+      return Error{ErrorCode::not_finite, "period", static_cast<double>(grid_.period), 0.0};
+    if (!(grid_.period > Scalar(0)))
+      return Error{ErrorCode::not_positive, "period", static_cast<double>(grid_.period), 0.0};
+    return std::nullopt;
+  }
 
   [[nodiscard]] Iterator begin() const { return Iterator(*this); }
   [[nodiscard]] std::default_sentinel_t end() const { return {}; }
