@@ -1,4 +1,5 @@
 #include "cncplan/core/error.hpp"
+#include "cncplan/core/error_text.hpp"
 
 #include <set>
 
@@ -31,4 +32,8 @@ TEST_CASE("limits are refused by name") {
         Error{ErrorCode::not_positive, "acceleration limit", -2.0, 0.0});
   CHECK(validate(Limits{1.0, 1.0, NAN}).error().code == ErrorCode::not_finite);
   CHECK(validate(Limits{INFINITY, 1.0, 1.0}).error().field == "velocity limit");
+}
+
+TEST_CASE("a file that cannot be read has no value") {
+  CHECK(to_text(Error{ErrorCode::unreadable, "file", 0.0, 0.0}) == "file: cannot be read");
 }

@@ -37,7 +37,7 @@ namespace cncplan {
 }
 
 /// "end speed: 30 cannot be reached within the length (12.5)": field, value, what is wrong, and the bound
-/// where there is one.
+/// where there is one. A file that cannot be read has no value.
 [[nodiscard]] inline std::string to_text(const Error& error) {
   const std::string_view sentence = message(error.code);
   const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
@@ -45,7 +45,7 @@ namespace cncplan {
                         sentence.starts_with("cannot ");
   std::string text(error.field);
   if (!text.empty()) text += ": ";
-  if (has_verb) text += number_text(error.value) + ' ';
+  if (has_verb && error.code != ErrorCode::unreadable) text += number_text(error.value) + ' ';
   text += sentence;
   switch (error.code) {
     case ErrorCode::above_limit:
