@@ -1,9 +1,15 @@
 #include "support/arguments.hpp"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <numeric>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -25,6 +31,48 @@ CLI::Validator number_from_zero(bool with_zero) {
                                text);
           },
           with_zero ? "NOT NEGATIVE" : "POSITIVE"};
+}
+
+// How many letters have to be put in, left out or exchanged to make one word of another.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t corner = row[0]++;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t exchanged = corner + (a[i] == b[k] ? 0 : 1);
+      corner = row[k + 1];
+      row[k + 1] = std::min({exchanged, row[k] + 1, corner + 1});
+    }
+  }
+  return row.back();
+}
+
+// The option of a program that is most like a word, if there is one that is much like it.
+std::string like(const CLI::App& app, std::string_view word) {
+  std::size_t least = word.size() / 3 + 1;  // so many letters are too many
+  std::string found;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) {
+      const std::size_t apart = distance(word, "--" + name);
+      if (apart < least) {
+        least = apart;
+        found = "--" + name;
+      }
+    }
+  return found;
+}
+
+// What is left of a command line: the first option that is not known, else all.
+std::string unexpected(const CLI::App& app) {
+  const std::vector<std::string> left = app.remaining();
+  for (const std::string& word : left) {
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    const std::string other = like(app, name);
+    return fmt::format("{} is not known{}", name, other.empty() ? "" : fmt::format(": {}?", other));
+  }
+  return fmt::format("not expected: {}", fmt::join(left, " "));
 }
 
 }  // namespace
@@ -61,6 +109,8 @@ bool parse(CLI::App& app, int argc, char** argv) {
                                                 CNCPLAN_VERSION_MINOR, CNCPLAN_VERSION_PATCH));
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    throw Failure(Exit::bad_input, unexpected(app));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) throw Failure(Exit::bad_input, error.what());
     app.exit(error);

@@ -1,11 +1,15 @@
 // What the command lines of the programs share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace support {
 
