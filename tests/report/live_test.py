@@ -63,6 +63,19 @@ class Served:
         except urllib.error.HTTPError as error:
             return error.code
 
+    def raw(self, text):
+        """The answer's first line and its body, of a request as it is written here."""
+        with socket.create_connection(("127.0.0.1", self.port), timeout=4) as connection:
+            connection.sendall(text.replace("\n", "\r\n").encode())
+            answer = b""
+            while b"\r\n\r\n" not in answer or (b" 400 " in answer and not answer.endswith(b"\n\n") and b"no request" not in answer):
+                got = connection.recv(4096)
+                if not got:
+                    break
+                answer += got
+        head, _, body = answer.decode().partition("\r\n\r\n")
+        return head.split("\r\n")[0], body
+
     def rows(self, seconds, until=None):
         """Rows of so many seconds, or until a state; and the last answer."""
         rows, end = [], time.monotonic() + seconds
@@ -122,6 +135,14 @@ def http():
 
 def refusals():
     with Served() as served:
+        # A request says all in its address: it goes with a body, without one, and without a word of it.
+        for length in ("", "Content-Length: 0\n"):
+            status, _ = served.raw(f"POST /ask/feed?value=0.5 HTTP/1.1\nHost: here\n{length}Connection: close\n\n")
+            check(" 204 " in status, f"without a body: {status}")
+        status, _ = served.raw("POST /ask/feed?value=1 HTTP/1.1\nHost: here\nContent-Length: 3\nConnection: close\n\nabc")
+        check(" 204 " in status, f"with a body: {status}")
+        status, body = served.raw("POST /ask/fly HTTP/1.1\nHost: here\nConnection: close\n\n")
+        check(" 400 " in status and "no request 'fly'" in body, f"an unknown request: {status} {body}")
         for bad in ("fly", "feed", "feed?value=3", "feed?value=x", "feed?value=-1", "rapid?value=1.5", "step?value=nan"):
             check(served.ask(bad) == 400, f"{bad} is taken")
         check(served.ask("resume", Origin="http://elsewhere.example") == 403, "another site may start it")
