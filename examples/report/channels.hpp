@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "report/motion_data.hpp"
+#include "report/channel_point.hpp"
 #include "report/report.hpp"
 #include "support/machine_file.hpp"
 

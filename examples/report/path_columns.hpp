@@ -1,31 +1,21 @@
 // The path of a plan as columns of whole numbers, which a page turns into polynomials.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "report/channel_point.hpp"
+#include "report/grids.hpp"
 #include "report/packed.hpp"
 
 namespace report {
-
-/// Tool X, Y, Z (machine coordinates, mm), then axes (mm or degrees).
-using Channels = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 + cncplan::gcode::max_axes, 1>;
-using ChannelPoint = cncplan::PathPoint<Channels>;
-
-/// A whole number stands for a quantity times one of these.
-struct PathGrid {
-  static constexpr double length = 1e10;  ///< lengths and positions
-  static constexpr double second = 1e10;  ///< second derivatives by length
-  static constexpr double shape = 1e12;   ///< what powers 3 to 5 of the length add over a piece
-};
 
 /// Factors of the powers of the length from a piece's start; those above its degree are 0.
 struct Polynomial {
@@ -52,6 +42,8 @@ struct Polynomial {
 /// start of its own, or a higher degree, or is cut in two.
 class PathColumns {
  public:
+  using At = std::function<ChannelPoint(double)>;
+
   explicit PathColumns(std::size_t channels)
       : zero_(Channels::Zero(static_cast<Eigen::Index>(channels))),
         here_{zero_, zero_, zero_, zero_},
@@ -62,7 +54,6 @@ class PathColumns {
         shapes_(3 * channels) {}
 
   /// Appends the path of a block. at(s): a `ChannelPoint` where s mm have been travelled.
-  template <class At>
   void add(double length, const At& at) {
     const std::size_t before = degrees_.size();
     read_ = 0.0;
@@ -111,7 +102,6 @@ class PathColumns {
     return values.cwiseAbs().maxCoeff() * grid < static_cast<double>(packed_end / 2);
   }
 
-  template <class At>
   void add_pieces(double from, double to, const At& at, int depth) {
     constexpr int deepest = 12;
     const double middle = from + (to - from) / 2;

@@ -8,18 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
-#include "limited_by.hpp"
+#include "cncplan/plan/motion_table.hpp"
+#include "report/grids.hpp"
+#include "report/limited_by.hpp"
 #include "report/packed.hpp"
 
 namespace report {
-
-/// A whole number stands for a quantity times one of these: powers of ten, so that few digits are kept as
-/// they are.
-struct PhaseGrid {
-  double time = 1e12;  ///< s
-  double jerk = 1e6;   ///< mm/s^3
-};
 
 /// A phase lies in one block and has a duration and a jerk. It goes on from the end of the one before in
 /// speed, acceleration and, within a block, position; in another block it begins at the start. Or it has a

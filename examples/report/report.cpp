@@ -55,6 +55,7 @@ Json to_json(const Plan& plan) {
             {"deviation",
              {{"period", plan.deviation.period},
               {"tolerance", plan.deviation.tolerance},
+              {"largest", plan.deviation.largest},
               {"vectors", column(plan.deviation.vectors)}}}};
   if (m.samples) {
     json["samples"] = to_json(*m.samples);

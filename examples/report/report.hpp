@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/limits.hpp"
+#include "cncplan/core/vector.hpp"
 #include "report/motion_data.hpp"
 #include "support/machine_file.hpp"
 
@@ -38,6 +39,7 @@ struct Drawing {
 struct Deviation {
   double period{};             ///< s
   double tolerance{};          ///< mm; 0: not one for all
+  double largest{};            ///< mm; between two instants it may be larger than at both
   std::vector<float> vectors;  ///< X, Y, Z each, mm; empty where the programmed path is driven
 };
 

@@ -3,7 +3,9 @@
 
 #include <array>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/jet.hpp"
+#include "cncplan/core/path_point.hpp"
+#include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 
 namespace report {
 

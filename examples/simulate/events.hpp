@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
-
 namespace simulate {
 
 enum class Request { hold, resume, feed, rapid, stop, step, pause };
@@ -25,8 +23,5 @@ struct Event {
 
 /// As its row has it: the event and its value.
 [[nodiscard]] std::string event_text(const Event& event);
-
-/// Passes a request on.
-void ask(cncplan::plan::Player& player, const Event& event);
 
 }  // namespace simulate

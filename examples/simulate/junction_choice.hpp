@@ -7,7 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/junction/acceleration_step.hpp"
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/junction/exact_stop.hpp"
+#include "cncplan/junction/tangent_step.hpp"
+#include "cncplan/published/junction_table.hpp"
 
 namespace simulate {
 

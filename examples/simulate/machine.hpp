@@ -2,10 +2,22 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
+#include <type_traits>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/kinematics/polar.hpp"
+#include "cncplan/kinematics/tire_mold/row.hpp"
+#include "cncplan/kinematics/tire_mold/tire_mold.hpp"
+#include "cncplan/path/measured.hpp"
+#include "cncplan/path/spline.hpp"
+#include "cncplan/plan/block_builder.hpp"
+#include "cncplan/plan/machine.hpp"
+#include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/set_point.hpp"
+#include "cncplan/plan/table_path.hpp"
 #include "support/machine_file.hpp"
+#include "tool_path.hpp"
 
 namespace simulate {
 
@@ -14,22 +26,10 @@ using support::MachineAxis;
 
 /// Up to three axes X Y Z, or up to six with others beside them; those that are not there stand still.
 template <int N>
-struct Mill : cncplan::Machine<N> {
-  using Block = cncplan::ProgramBlock<cncplan::Machine<N>>;
-};
-
-/// The same, driven along pieces of curves within a tolerance.
-template <int N>
-struct SmoothMill : Mill<N> {
-  using Block = cncplan::plan::SmoothBlockOf<typename Mill<N>::Block>;
-};
-
-/// Where a program goes in space.
-using ToolPath = cncplan::path::Segment<3, cncplan::path::Spline<3>>;
+using Mill = cncplan::Machine<N>;
 
 /// Two slides and a rotary table, programmed in X Y Z. Tool positions are the table's, its axis at X0 Y0.
 struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarMap> {
-  using Block = cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarMap, ToolPath>>;
   double smallest_radius = 1.0;  ///< mm; nothing nearer to the table's axis is driven
 };
 
@@ -54,9 +54,29 @@ struct RowCurve {
 /// Two slides, a tilting spindle and a rotary table, whose programs name these axes.
 struct Rows : cncplan::Machine<4> {
   using Row = cncplan::path::Measured<RowCurve, 16>;
-  using Block = cncplan::Block<4, Row>;
   double tool_length = 0.0;  ///< mm
 };
+
+namespace detail {
+
+template <class M>
+struct BlockType {
+  using Type = cncplan::ProgramBlock<M>;
+};
+template <>
+struct BlockType<Table> {
+  using Type = cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarMap, ToolPath>>;
+};
+template <>
+struct BlockType<Rows> {
+  using Type = cncplan::Block<4, Rows::Row>;
+};
+
+}  // namespace detail
+
+/// What programs of a machine are made of.
+template <class M>
+using BlockOf = typename detail::BlockType<M>::Type;
 
 /// The tool's place at a set point.
 template <class M>

@@ -4,13 +4,14 @@
 #include <cstddef>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/limits.hpp"
+#include "cncplan/core/state.hpp"
+#include "cncplan/core/vector.hpp"
+#include "cncplan/step/backend.hpp"
+#include "per_axis.hpp"
 #include "program.hpp"
 
 namespace simulate {
-
-/// One value for each axis; without heap.
-using PerAxis = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, cncplan::gcode::max_axes, 1>;
 
 /// One row of the samples. Axes in mm and rad.
 struct Sample {
@@ -38,8 +39,8 @@ struct Measures {
   double length = 0.0;
   bool completed = true;
   std::vector<MotionTiming> motions;
-  PerAxis travel;  ///< way of each axis, between the ends of blocks
-  std::size_t samples = 0;
+  PerAxis travel;           ///< way of each axis, between the ends of blocks
+  std::size_t samples = 0;  ///< none where none are made
   cncplan::Limits peak;
   cncplan::Limits tool_peak;
   PerAxis axis_velocity;
@@ -47,12 +48,13 @@ struct Measures {
   PerAxis axis_jerk;
   double corner_velocity_step = 0.0;
   std::size_t acceleration_jumps = 0;
-  double end_error = 0.0;
-  double contour_error = 0.0;
-  double deviation = 0.0;  ///< of smoothed paths from the programmed ones
+  double end_error = 0.0;      ///< of the last sample from the program's end
+  double contour_error = 0.0;  ///< of samples from the programmed path, where that is driven
+  double deviation = 0.0;      ///< of smoothed paths from the programmed ones
   std::size_t junctions_limited = 0;
   std::vector<cncplan::step::AxisReport> steps;  ///< none where no steps are made
   double plan_seconds = 0.0;
+  double measure_seconds = 0.0;
   double interpolate_seconds = 0.0;
   double steps_seconds = 0.0;
 };

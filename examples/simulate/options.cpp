@@ -111,6 +111,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_flag("--count-steps", options.count_steps,
                "make and count step edges where neither --steps nor --machine asks for them");
   if (!support::parse(app, argc, argv)) return std::nullopt;
+  options.period_given = app.count("--period") > 0;
   settle_corners(options, junction, tolerance);
   if (served) options.serve = serve::parse_address(*served);
   support::refuse_shared_files({{"PROGRAM", options.program},

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/limits.hpp"
 #include "junction_choice.hpp"
 #include "serve/address.hpp"
 #include "support/arguments.hpp"
@@ -38,6 +38,10 @@ struct Options : support::RunOptions {
   std::optional<std::string> blocks;
   bool count_steps = false;
 
+  bool period_given = false;  ///< on the command line
+
+  /// Samples are made.
+  [[nodiscard]] bool makes_samples() const { return period_given || samples || plot || report; }
   /// Step edges are made, and held against the drives' rules.
   [[nodiscard]] bool makes_steps() const { return count_steps || steps || machine; }
 };

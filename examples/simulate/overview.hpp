@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/vector.hpp"
 #include "measures.hpp"
 #include "program.hpp"
 

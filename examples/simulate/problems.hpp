@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/error.hpp"
+#include "cncplan/gcode/diagnostic_text.hpp"
+#include "cncplan/gcode/motion.hpp"
 
 namespace simulate {
 

@@ -1,17 +1,22 @@
 // What a program was in its text: for outputs and messages.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
-#include "machine.hpp"
+#include "cncplan/core/plane.hpp"
+#include "cncplan/core/vector.hpp"
+#include "cncplan/junction/geometry.hpp"
+#include "tool_path.hpp"
 
 namespace simulate {
 
-/// A motion.
+/// A motion of a program.
 struct Origin {
   int line{};
   int column{};
@@ -26,24 +31,25 @@ struct Origin {
 
 struct ProgramText {
   std::string file;
-  std::optional<std::string> kept;     ///< the text, of standard input or a pipe: there is no second reading
-  std::vector<Origin> motions;         ///< the first one is the start: no way
-  std::vector<std::size_t> motion_of;  ///< of each block; one that rests has the motion before it
+  std::optional<std::string> kept;  ///< the text, of standard input or a pipe: there is no second reading
+  std::vector<Origin> motions;      ///< the first one is the start: no way
   std::size_t lines = 0;
   std::vector<int> tools;             ///< numbers of T, each once, in the order of the program
   std::vector<std::string> warnings;  ///< FILE:LINE:COLUMN: warning: TEXT
+  /// mm that motions may leave the path by, where the program says so: the least and the most.
+  double least_tolerance = std::numeric_limits<double>::infinity(), most_tolerance = 0.0;
+  bool takes_tolerance = false;  ///< there are motions for which the program says nothing of it
 
-  /// FILE:LINE:COLUMN of a block.
-  [[nodiscard]] std::string place(std::size_t block) const {
-    const Origin& motion = motions[motion_of[block]];
+  /// The least and the most that is in force, where the options have `given`.
+  [[nodiscard]] std::pair<double, double> tolerances(double given) const {
+    if (!takes_tolerance) return {std::min(least_tolerance, most_tolerance), most_tolerance};
+    return {std::min(least_tolerance, given), std::max(most_tolerance, given)};
+  }
+
+  /// FILE:LINE:COLUMN of a motion.
+  [[nodiscard]] std::string place(const Origin& motion) const {
     return file + ":" + std::to_string(motion.line) + ":" + std::to_string(motion.column);
   }
-};
-
-/// There is always a block: a program without motion is one of length zero.
-template <class M>
-struct Program : ProgramText {
-  std::vector<typename M::Block> blocks;
 };
 
 }  // namespace simulate

@@ -60,6 +60,11 @@ std::string feeds_text(const std::vector<double>& feeds) {
   return text + " mm/min";
 }
 
+// A peak beside its limit, where there is one.
+std::string of_limit(double peak, double limit) {
+  return std::isfinite(limit) ? fmt::format("{:.4g} of {:.4g}", peak, limit) : fmt::format("{:.4g}", peak);
+}
+
 }  // namespace
 
 std::string json_summary(const ProgramText& program, const Options& options, const support::Machine& machine,
@@ -70,7 +75,7 @@ std::string json_summary(const ProgramText& program, const Options& options, con
   json["arcs"] = count_arcs(program);
   json["length_mm"] = m.length;
   json["time_s"] = m.duration;
-  json["samples"] = m.samples;
+  if (options.makes_samples()) json["samples"] = m.samples;
   const Overview overview = overview_of(program, m, options.limits.velocity);
   const auto place = [](const cncplan::Vector3& p) { return Json::array({p.x(), p.y(), p.z()}); };
   json["box_mm"] = {{"low", place(overview.low)}, {"high", place(overview.high)}};
@@ -94,8 +99,10 @@ std::string json_summary(const ProgramText& program, const Options& options, con
   json["deviation_mm"] = m.deviation;
   json["acceleration_jumps"] = m.acceleration_jumps;
   json["corner_velocity_step"] = m.corner_velocity_step;
-  json["end_error_mm"] = m.end_error;
-  json["contour_error_mm"] = m.contour_error;
+  if (options.makes_samples()) {
+    json["end_error_mm"] = m.end_error;
+    json["contour_error_mm"] = m.contour_error;
+  }
   json["junctions_limited"] = m.junctions_limited;
   if (options.makes_steps()) {
     const auto steps = [&](std::size_t i) -> const auto& { return m.steps[i]; };
@@ -107,7 +114,8 @@ std::string json_summary(const ProgramText& program, const Options& options, con
     json["rmse"] = per_axis(machine, [&](std::size_t i) { return steps(i).rms_error; });
   }
   json["plan_s"] = m.plan_seconds;
-  json["interpolate_s"] = m.interpolate_seconds;
+  json["measure_s"] = m.measure_seconds;
+  if (options.makes_samples()) json["interpolate_s"] = m.interpolate_seconds;
   if (options.makes_steps()) json["steps_s"] = m.steps_seconds;
   json["limits"] = {{"velocity", options.limits.velocity},
                     {"acceleration", options.limits.acceleration},
@@ -127,7 +135,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
   row("lines, motions, arcs",
       fmt::format("{}, {}, {}", program.lines, count_motions(program), count_arcs(program)));
   row("path length", fmt::format("{:.4f} mm", m.length));
-  row("time", fmt::format("{:.4f} s ({}), {} samples{}", m.duration, clock_text(m.duration), m.samples,
+  row("time", fmt::format("{:.4f} s ({}){}{}", m.duration, clock_text(m.duration),
+                          options.makes_samples() ? fmt::format(", {} samples", m.samples) : "",
                           m.completed ? "" : ", not to the end"));
   const Overview overview = overview_of(program, m, options.limits.velocity);
   row("cutting", share_text(overview.cutting));
@@ -142,17 +151,29 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
     row("slowed by --vmax", fmt::format("{} feed moves, of up to {} mm/min", overview.capped,
                                         per_minute(overview.highest_capped)));
   if (!program.tools.empty()) row("tools", fmt::format("{}", fmt::join(program.tools, ", ")));
-  row("peak along the path", fmt::format("{:.4g} mm/s, {:.4g} mm/s^2, {:.4g} mm/s^3", m.peak.velocity,
-                                         m.peak.acceleration, m.peak.jerk));
-  if (options.tolerance > 0.0)
-    row("off the path", fmt::format("{:.4g} mm, tolerance {:.4g}", m.deviation, options.tolerance));
+  row("tool's peaks",
+      fmt::format("{} mm/s, {} mm/s^2, {} mm/s^3", of_limit(m.tool_peak.velocity, options.limits.velocity),
+                  of_limit(m.tool_peak.acceleration, options.limits.acceleration),
+                  of_limit(m.tool_peak.jerk, options.limits.jerk)));
+  if (options.tolerance > 0.0) {
+    const auto [least, most] = program.tolerances(options.tolerance);
+    row("off the path", fmt::format("{:.4g} mm, tolerance {}", m.deviation,
+                                    least < most ? fmt::format("{:.4g} to {:.4g}", least, most)
+                                                 : fmt::format("{:.4g}", most)));
+  }
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
   row("junctions below their feed", fmt::format("{}", m.junctions_limited));
-  row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
-  const bool stepped = !m.steps.empty();
-  row(stepped ? "plan, interpolate, step" : "plan, interpolate",
-      fmt::format("{:.4f} s, {:.4f} s{}", m.plan_seconds, m.interpolate_seconds,
-                  stepped ? fmt::format(", {:.4f} s", m.steps_seconds) : ""));
+  if (options.makes_samples())
+    row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
+  std::string stages = "plan, measure",
+              seconds = fmt::format("{:.4f} s, {:.4f} s", m.plan_seconds, m.measure_seconds);
+  const auto add = [&](const char* stage, double time) {
+    stages += stage;
+    seconds += fmt::format(", {:.4f} s", time);
+  };
+  if (options.makes_samples()) add(", interpolate", m.interpolate_seconds);
+  if (!m.steps.empty()) add(", step", m.steps_seconds);
+  row(stages.c_str(), seconds);
   return rows;
 }
 
@@ -162,13 +183,15 @@ std::string table_summary(const ProgramText& program, const Options& options, co
   for (const auto& [name, value] : summary_rows(program, options, m))
     text += fmt::format("{:<28}{}\n", name, value);
   const bool stepped = !m.steps.empty();
-  text += fmt::format("\n{:<6}{:>12}{:>14}", "axis", "peak /s", "peak /s^2");
+  text += fmt::format("\n{:<6}{:>18}{:>20}{:>22}", "axis", "peak /s", "peak /s^2", "peak /s^3");
   if (stepped) text += fmt::format("{:>12}{:>12}{:>14}{:>14}", "edges", "net", "error steps", "rmse");
   text += '\n';
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const auto axis = static_cast<int>(i);
-    text += fmt::format("{:<6}{:>12.4f}{:>14.3f}", machine.axes[i].letter, m.axis_velocity[axis],
-                        m.axis_acceleration[axis]);
+    const cncplan::Limits& limits = machine.axes[i].limits;
+    text += fmt::format(
+        "{:<6}{:>18}{:>20}{:>22}", machine.axes[i].letter, of_limit(m.axis_velocity[axis], limits.velocity),
+        of_limit(m.axis_acceleration[axis], limits.acceleration), of_limit(m.axis_jerk[axis], limits.jerk));
     if (stepped) {
       const auto& steps = m.steps[i];
       text += fmt::format("{:>12}{:>12}{:>14.4f}{:>14.3g}", steps.total_steps, steps.net_steps,

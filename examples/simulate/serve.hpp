@@ -1,17 +1,21 @@
 // A program played in real time for a browser to see and to steer.
 #pragma once
 
-#include "machine.hpp"
 #include "options.hpp"
-#include "program.hpp"
+#include "program_blocks.hpp"
 #include "report/report.hpp"
+#include "serve/live_run.hpp"
+#include "support/machine_file.hpp"
 
 namespace simulate {
 
+/// Makes machines that run a program; what it is given outlives them.
+template <class M>
+[[nodiscard]] serve::LiveRun::Fresh live_machines(const Options& options, const support::Machine& file,
+                                                  const M& machine, const Program<M>& program);
+
 /// Serves the report of a program as a page that runs it, at the address of `options.serve`, until SIGINT.
 /// Throws `Failure`.
-template <class M>
-int serve_program(const Options& options, const support::Machine& file, const M& machine,
-                  const Program<M>& program, report::Report report);
+int serve_program(const Options& options, report::Report report, const serve::LiveRun::Fresh& fresh);
 
 }  // namespace simulate

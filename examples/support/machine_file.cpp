@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "cncplan/gcode/controls.hpp"
+#include "cncplan/gcode/work_coordinates.hpp"
 #include "support/failure.hpp"
 
 namespace support {

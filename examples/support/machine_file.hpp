@@ -1,6 +1,7 @@
 // A machine, as its TOML file says.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numbers>
@@ -8,7 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/cncplan.hpp"
+#include "cncplan/core/joint_limits.hpp"
+#include "cncplan/core/limits.hpp"
+#include "cncplan/gcode/dialect.hpp"
+#include "cncplan/plan/machine.hpp"
+#include "cncplan/step/drive.hpp"
 
 namespace support {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "report/channels.hpp"
+#include "report/driven_trajectory.hpp"
 #include "report/tip_point.hpp"
 
 namespace tire_mold {

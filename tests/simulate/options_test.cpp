@@ -85,7 +85,8 @@ TEST_CASE("ramps across blocks are faster than published planning") {
 }
 
 TEST_CASE("interpolators differ in their error and keep the end") {
-  const auto exact = summary("--tolerance 0 --interpolator exact"), taylor = summary("--interpolator taylor");
+  const auto exact = summary("--tolerance 0 --period 0.001 --interpolator exact"),
+             taylor = summary("--period 0.001 --interpolator taylor");
   CHECK(exact["time_s"] == time_of("--tolerance 0"));
   CHECK(exact["contour_error_mm"] < 1e-12);
   CHECK(taylor["time_s"] == exact["time_s"]);
@@ -102,8 +103,8 @@ TEST_CASE("interpolators differ in their error and keep the end") {
 
 TEST_CASE("constant increments: length over feed, for every block") {
   const test::Folder folder;
-  const auto run =
-      folder.run_text("G1 X9 F900\nG0 Y12\nG1 X0 F600\n", "--json --interpolator constant --blocks b.csv");
+  const auto run = folder.run_text("G1 X9 F900\nG0 Y12\nG1 X0 F600\n",
+                                   "--json --period 0.001 --interpolator constant --blocks b.csv");
   REQUIRE(run.exit == 0);
   CHECK(run.json()["time_s"].get<double>() == Approx(9.0 / 15.0 + 12.0 / 30.0 + 9.0 / 10.0));
   CHECK(test::Table(folder / "b.csv")["v_in"] == std::vector<double>{15.0, 30.0, 10.0});

@@ -22,6 +22,7 @@ class Motion {
     this.offsets = plan.offsets;
     this.deviations = {period: plan.deviation.period, vectors: decode(Float32Array, plan.deviation.vectors)};
     this.tolerance = plan.deviation.tolerance;
+    this.largestDeviation = plan.deviation.largest;
     this.take(plan);
     this.count = this.phase.time.length;
   }

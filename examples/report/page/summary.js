@@ -69,16 +69,10 @@ function showPeaks(report) {
 // Plans of one program beside each other, if there are several.
 function showPlans(motions) {
   document.getElementById('plans-section').hidden = motions.length < 2;
-  const largest = motion => {
-    let most = 0;
-    for (let k = 0; k < motion.deviations.vectors.length; k += 3)
-      most = Math.max(most, norm(motion.deviations.vectors.subarray(k, k + 3)));
-    return most;
-  };
   const first = motions[0].duration;
   fillTable(document.getElementById('plans'), motions.map(motion => [
     motion.name, timeText(motion.duration), first > 0 ? `${(100 * motion.duration / first).toFixed(2)} %` : '',
-    `${shortNumber(motion.duration > 0 ? motion.length / motion.duration : 0)} mm/s`, `${shortNumber(largest(motion))} mm`]),
+    `${shortNumber(motion.duration > 0 ? motion.length / motion.duration : 0)} mm/s`, `${shortNumber(motion.largestDeviation)} mm`]),
             ['plan', 'time', 'of the first', 'mean speed', 'largest deviation']);
 }
 

@@ -1,14 +1,19 @@
-// What `execute` does, for the files that define it for one kind of machine each.
-#pragma once
+#include "execute.hpp"
 
 #include <fmt/format.h>
 
-#include <type_traits>
+#include <algorithm>
+#include <cstdio>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "execute.hpp"
+#include "cncplan/step/vcd.hpp"
+#include "deviation.hpp"
 #include "html_report.hpp"
+#include "machine.hpp"
+#include "pause_places.hpp"
+#include "plan.hpp"
 #include "plots.hpp"
 #include "problems.hpp"
 #include "progress.hpp"
@@ -16,7 +21,6 @@
 #include "report.hpp"
 #include "run.hpp"
 #include "serve.hpp"
-#include "stopwatch.hpp"
 #include "support/failure.hpp"
 #include "support/gnuplot.hpp"
 #include "support/main_program.hpp"
@@ -26,16 +30,16 @@
 
 namespace simulate {
 
-namespace detail {
+namespace {
 
 using support::Exit;
 using support::Failure;
 
 // Refuses what would not come to its end: a period or a number of steps that is a slip of the keyboard.
-inline void check_size(const Measures& measures, const Options& options, const support::Machine& machine) {
+void check_size(const Measures& measures, const Options& options, const support::Machine& machine) {
   constexpr double most = 1e10;
   const double samples = measures.duration / options.period;
-  if (!(samples <= most))
+  if (options.makes_samples() && !(samples <= most))
     throw Failure(Exit::bad_input, fmt::format("the program takes {:.6g} s, which is {:.3g} samples at a "
                                                "period of {:.6g} s: more than {:.0e}",
                                                measures.duration, samples, options.period, most));
@@ -52,16 +56,16 @@ inline void check_size(const Measures& measures, const Options& options, const s
 }
 
 // At most so many points are drawn.
-inline constexpr std::size_t drawn_points = 20000;
+constexpr std::size_t drawn_points = 20000;
 
 // Most problems of a program that are told: of one that was to be run, and of one that is checked.
-inline constexpr std::size_t told_problems = 20;
-inline constexpr std::size_t checked_problems = 100;
+constexpr std::size_t told_problems = 20;
+constexpr std::size_t checked_problems = 100;
 
 // Samples, steps and all else that is wanted of a run.
-template <class M>
-int write_out(const Options& options, const support::Machine& file, const Program<M>& program, Run<M> run,
-              const std::vector<report::Plan>& others) {
+int write_out(const Options& options, const support::Machine& file, const ProgramText& program,
+              const Plan& plan, const std::vector<report::Plan>& others) {
+  Run run(options, file, program, plan);
   const Measures& measures = run.measures();
   check_size(measures, options, file);
   if (options.plot) support::make_folder(*options.plot);
@@ -77,12 +81,13 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   Progress progress(!options.quiet, measures.duration * (options.makes_steps() ? 2.0 : 1.0));
   std::vector<Sample> drawn;
   const auto every = static_cast<std::size_t>(measures.duration / options.period) / drawn_points + 1;
-  run.sample([&](const Sample& sample) {
-    if (samples != nullptr) write_sample(*samples, file, sample);
-    if (options.plot && (measures.samples % every == 0 || !(sample.time < measures.duration)))
-      drawn.push_back(sample);
-    progress.reach(sample.time);
-  });
+  if (options.makes_samples())
+    run.sample([&](const Sample& sample) {
+      if (samples != nullptr) write_sample(*samples, file, sample);
+      if (options.plot && (measures.samples % every == 0 || !(sample.time < measures.duration)))
+        drawn.push_back(sample);
+      progress.reach(sample.time);
+    });
 
   if (steps != nullptr) {
     auto vcd = cncplan::step::vcd_writer(*steps, support::MotorSignals(file).traces());
@@ -96,7 +101,7 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   }
 
   if (page != nullptr) {
-    auto shown = html_report(options, file, program, measures, run.trajectory());
+    auto shown = html_report(options, file, program, measures, plan);
     shown.plans.insert(shown.plans.end(), others.begin(), others.end());
     report::write(*page, shown);
   }
@@ -112,43 +117,24 @@ int write_out(const Options& options, const support::Machine& file, const Progra
   return static_cast<int>(Exit::done);
 }
 
-// Plans a program and hands it to `take` with the blocks that it is planned as: pieces of its own, where it
-// is a mill's within a tolerance at the level `good` or `best`.
-template <class M, class Take>
-int with_plan(const Options& options, const support::Machine& file, const M& machine,
-              const Program<M>& program, const Take& take) {
-  if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
-    if (options.tolerance > 0.0 && !options.events && options.smooth != Smooth::fast) {
-      using Smoothed = SmoothMill<M::axis_count>;
-      double seconds = 0.0;
-      const auto planned = [&] {
-        const Stopwatch watch(seconds);
-        return cncplan::plan_smooth(
-            program.blocks, Smoothed{machine},
-            {.tolerance = options.tolerance,
-             .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree},
-            options.smooth == Smooth::good ? cncplan::SmoothLevel::good : cncplan::SmoothLevel::best);
-      }();
-      if (!planned) {
-        auto error = planned.error();
-        error.file = program.file;
-        throw Failure(Exit::bad_input, cncplan::to_text(error));
-      }
-      Program<Smoothed> pieces{program, {planned->program().begin(), planned->program().end()}};
-      pieces.motion_of.clear();
-      for (const auto& piece : pieces.blocks) pieces.motion_of.push_back(program.motion_of[piece.source]);
-      return take(pieces, Run<Smoothed>(options, file, pieces, *planned, seconds));
-    }
-  return take(program, Run<M>(options, file, machine, program));
+// A pause before a line without motion never comes.
+void tell_pauses(const Options& options, ProgramText& program) {
+  if (!options.events) return;
+  for (const auto& [line, row, column] : pause_places(*options.events)) {
+    const auto is_there = [number = line](const Origin& motion) { return motion.line == number; };
+    if (line == 0 || std::any_of(program.motions.begin() + 1, program.motions.end(), is_there)) continue;
+    program.warnings.push_back(fmt::format("{}:{}:{}: warning: pause: {} has no motion on line {}",
+                                           *options.events, row, column, program.file, line));
+    fmt::print(stderr, "{}\n", program.warnings.back());
+  }
 }
 
-}  // namespace detail
+}  // namespace
 
 template <class M>
 int execute(const Options& options, const support::Machine& file, const M& machine) {
-  using namespace detail;
   Problems problems(options.program, options.check ? checked_problems : told_problems);
-  const auto program = read_program(options, file, machine, problems);
+  auto program = read_program(options, file, machine, problems);
   if (options.check) {  // says all that is wrong, and by kind; plans nothing
     if (options.json)
       support::print(kinds_json(problems, program.lines, program.warnings.size()));
@@ -157,24 +143,29 @@ int execute(const Options& options, const support::Machine& file, const M& machi
   }
   problems.refuse();
   if (options.check) return static_cast<int>(Exit::done);
+  tell_pauses(options, program);
 
   if (options.serve) {
-    const Run<M> planned(options, file, machine, program);
-    return serve_program(options, file, machine, program,
-                         html_report(options, file, program, planned.measures(), planned.trajectory()));
+    const Plan planned = plan(options, file, machine, program);
+    const Run run(options, file, program, planned);
+    return serve_program(options, html_report(options, file, program, run.measures(), planned),
+                         live_machines(options, file, machine, program));
   }
   std::vector<report::Plan> others;
   if (options.compare) {
     Options other = options;
     other.tolerance = *options.compare;
-    with_plan(other, file, machine, program, [&](const auto& planned, const auto& run) {
-      others.push_back(plan_of(other, file, planned, run.trajectory()));
-      return 0;
-    });
+    const Plan planned = plan(other, file, machine, program);
+    const double deviation =
+        other.tolerance > 0.0 ? largest_deviation(program, planned, MotionPlaces(program, planned)) : 0.0;
+    others.push_back(plan_of(other, program, planned, deviation));
   }
-  return with_plan(options, file, machine, program, [&](const auto& planned, auto run) {
-    return write_out(options, file, planned, std::move(run), others);
-  });
+  return write_out(options, file, program, plan(options, file, machine, program), others);
 }
+
+template int execute(const Options&, const support::Machine&, const Mill<3>&);
+template int execute(const Options&, const support::Machine&, const Mill<6>&);
+template int execute(const Options&, const support::Machine&, const Table&);
+template int execute(const Options&, const support::Machine&, const Rows&);
 
 }  // namespace simulate

@@ -1,7 +1,0 @@
-#include "execute_program.hpp"
-
-namespace simulate {
-
-template int execute(const Options&, const support::Machine&, const Rows&);
-
-}  // namespace simulate

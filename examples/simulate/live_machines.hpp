@@ -1,0 +1,34 @@
+// What `live_machines` does, for the files that define it for one kind of machine each.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cncplan/gcode/work_coordinates.hpp"
+#include "machine.hpp"
+#include "serve.hpp"
+#include "serve/live_executor.hpp"
+
+namespace simulate {
+
+template <class M>
+serve::LiveRun::Fresh live_machines(const Options& options, const support::Machine& file, const M& machine,
+                                    const Program<M>& program) {
+  return [&] {
+    using Machine = serve::LiveExecutor<M, BlockOf<M>>;
+    const auto shown = [&](const typename Machine::SetPoint& point, std::vector<double>& row) {
+      const cncplan::Vector3 tool = tool_at(machine, point);
+      row.insert(row.end(), tool.begin(), tool.end());
+      for (std::size_t i = 0; i < file.axes.size(); ++i)
+        for (const auto* of : {&point.position, &point.velocity, &point.acceleration, &point.jerk})
+          row.push_back(file.shown(i, (*of)[static_cast<Eigen::Index>(i)]));
+    };
+    const cncplan::ExecutorOptions how{
+        .tolerance = options.tolerance,
+        .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
+        .junction_deviation = options.corner_tolerance};
+    return std::make_unique<Machine>(machine, program.blocks, how, shown);
+  };
+}
+
+}  // namespace simulate

@@ -1,0 +1,32 @@
+// How far points are from the programmed path.
+#pragma once
+
+#include "cncplan/core/vector.hpp"
+#include "cncplan/path/segment.hpp"
+#include "cncplan/path/spline.hpp"
+#include "program.hpp"
+
+namespace simulate {
+
+/// A point of the tool, and about where it is along its motion's path.
+struct PlaceBeside {
+  const Origin* motion{};
+  cncplan::Vector3 position = cncplan::Vector3::Zero();  ///< machine coordinates
+  double within{};                                       ///< mm from the motion's start
+};
+
+/// Distance of points from the programmed path, which is computed in higher precision than the points were:
+/// the nearest parameter by Newton's method, from a guess that is close.
+class PathDistance {
+ public:
+  double operator()(const PlaceBeside& place) { return gap(place).norm(); }
+
+  /// From the programmed path to the place, mm.
+  cncplan::Vector3 gap(const PlaceBeside& place);
+
+ private:
+  const Origin* motion_ = nullptr;
+  cncplan::path::BasicSegment<long double, 3, cncplan::path::BasicSpline<long double, 3>> exact_;
+};
+
+}  // namespace simulate

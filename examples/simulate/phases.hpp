@@ -1,0 +1,24 @@
+// The motion along a program's cells as the options ask for it.
+#pragma once
+
+#include <memory_resource>
+#include <vector>
+
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/plan/player/played.hpp"
+#include "events.hpp"
+#include "options.hpp"
+
+namespace simulate {
+
+/// What drives cells from end to end. Throws `Failure` for what cannot be planned.
+[[nodiscard]] std::pmr::vector<cncplan::plan::BasicBlockPhase<double>> phases_of(
+    const Options& options, const cncplan::plan::BasicCells<double>& cells);
+/// The program played: nothing is known of the events before they come, but how far the feed goes. `blocks`:
+/// the cells as a player takes them. Throws `Failure` for what does not end.
+[[nodiscard]] std::pmr::vector<cncplan::plan::BasicBlockPhase<double>> played(
+    const Options& options, const cncplan::plan::BasicCells<double>& cells,
+    const std::vector<cncplan::plan::PlayedBlock>& blocks, const std::vector<Event>& events);
+
+}  // namespace simulate

@@ -1,0 +1,115 @@
+// What `plan_blocks` does, for the files that define it for one kind of machine each.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <memory_resource>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/merge_lines.hpp"
+#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/plan/player/play.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "cncplan/published/block_planning.hpp"
+#include "events.hpp"
+#include "phases.hpp"
+#include "plan.hpp"
+#include "planned_on.hpp"
+#include "support/failure.hpp"
+
+namespace simulate {
+
+namespace detail {
+
+[[noreturn]] inline void refuse(cncplan::ProgramError error, const std::string& file) {
+  error.file = file;
+  throw support::Failure(support::Exit::bad_input, cncplan::to_text(error));
+}
+
+template <class B, class M>
+[[nodiscard]] double wanted_speed(const B& block, const M& machine) {
+  return cncplan::plan::wanted_speed(block, machine, cncplan::length_of(block.path, machine));
+}
+
+/// Joints between motions that are slower than the feeds on both sides.
+template <class M>
+[[nodiscard]] std::size_t count_limited(const cncplan::plan::BasicCells<double>& cells, const M& machine,
+                                        const Program<M>& program) {
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < cells.caps.size(); ++i) {
+    const std::size_t before = cells.blocks[i - 1], after = cells.blocks[i];
+    if (program.motion_of[before] != program.motion_of[after] &&
+        cells.caps[i].entry < std::min(wanted_speed(program.blocks[before], machine),
+                                       wanted_speed(program.blocks[after], machine)))
+      ++count;
+  }
+  return count;
+}
+
+/// Blocks as they are driven, and cut into cells.
+template <class M>
+[[nodiscard]] cncplan::plan::BasicCells<double> cells_of(
+    const Options& options, const M& machine, const Program<M>& program, std::span<const BlockOf<M>> blocks,
+    const cncplan::plan::BasicSmoothing<double, M::axis_count>& smoothing) {
+  namespace plan = cncplan::plan;
+  const plan::JointRules<double, JunctionChoice> rules{
+      options.junction, options.corner_tolerance,
+      options.rotary_tolerance * cncplan::gcode::radians_per_degree};
+  const bool whole = options.planning == Planning::block || options.interpolator == Interpolator::constant;
+  auto cells = whole ? plan::make_cells<cncplan::published::WholeBlocks>(blocks, machine, rules, smoothing)
+                     : plan::make_cells(blocks, machine, rules, smoothing);
+  if (!cells) refuse(plan::error_in(blocks, cells.error()), program.file);
+  return std::move(*cells);
+}
+
+}  // namespace detail
+
+template <class M>
+Plan plan_blocks(const Options& options, const support::Machine& file, const M& machine,
+                 const Program<M>& program) {
+  namespace plan = cncplan::plan;
+  using Block = BlockOf<M>;
+  using Trajectory = cncplan::Trajectory<M, Block>;
+  // A mill's paths are smoothed; a table's and rows R Z A C are driven exactly.
+  constexpr bool smoothed = !std::is_same_v<M, Table> && !std::is_same_v<M, Rows>;
+  Plan result;
+  result.motion_of = program.motion_of;
+  std::pmr::vector<Block> driven(program.blocks.begin(), program.blocks.end());
+  typename Trajectory::Smoothing smoothing;
+  if constexpr (smoothed)
+    if (options.tolerance > 0.0) {
+      const plan::SmoothingRules<double> within{
+          options.tolerance, options.rotary_tolerance * cncplan::gcode::radians_per_degree};
+      cncplan::merge_lines(std::span(driven), machine, within);
+      smoothing = plan::smoothing(std::span<const Block>(driven), machine, within);
+    }
+  std::pmr::vector<plan::BasicBlockPhase<double>> phases;
+  if (options.events) {  // limits are made for the highest feed
+    const std::vector<Event> events = read_events(*options.events);
+    std::pmr::vector<Block> fastest = driven;
+    for (Block& block : fastest) block.feed *= highest_feed(events);
+    auto cells = detail::cells_of(options, machine, program, std::span<const Block>(fastest), smoothing);
+    result.junctions_limited = detail::count_limited(cells, machine, program);
+    const auto feed_of = [&](const Block& block) {
+      if (block.rapid) return rapid_speed(machine);
+      return std::isfinite(block.feed) ? block.feed : feed_speed(machine);
+    };
+    const auto blocks = plan::played_blocks(std::span<const Block>(program.blocks), cells, feed_of);
+    phases = played(options, cells, blocks, events);
+  } else {
+    const auto cells = detail::cells_of(options, machine, program, std::span<const Block>(driven), smoothing);
+    result.junctions_limited = detail::count_limited(cells, machine, program);
+    phases = phases_of(options, cells);
+  }
+  result.motion = std::make_unique<PlannedOn<M, Block>>(
+      file, Trajectory(machine, std::move(driven), std::move(phases), std::move(smoothing)),
+      options.interpolator == Interpolator::taylor);
+  return result;
+}
+
+}  // namespace simulate

@@ -1,0 +1,141 @@
+// A trajectory of one kind of machine and of blocks as a planned program.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "channels_of.hpp"
+#include "cncplan/plan/follow_steps.hpp"
+#include "cncplan/plan/joint_jumps.hpp"
+#include "cncplan/plan/peaks.hpp"
+#include "cncplan/plan/trajectory.hpp"
+#include "machine.hpp"
+#include "planned.hpp"
+#include "report/channels.hpp"
+#include "report/limits_of_phases.hpp"
+#include "report/tip_point.hpp"
+#include "taylor_follower.hpp"
+
+namespace simulate {
+
+/// `file` outlives it. `taylor`: samples are those of Taylor steps.
+template <class M, class B>
+class PlannedOn final : public Planned {
+ public:
+  using Trajectory = cncplan::Trajectory<M, B>;
+
+  PlannedOn(const support::Machine& file, Trajectory&& trajectory, bool taylor = false)
+      : file_(file), channels_(channels_of(file)), taylor_(taylor), trajectory_(std::move(trajectory)) {}
+
+  [[nodiscard]] double duration() const override { return trajectory_.duration(); }
+  [[nodiscard]] double length() const override { return trajectory_.length(); }
+  [[nodiscard]] std::span<const cncplan::plan::BasicBlockPhase<double>> phases() const override {
+    return trajectory_.phases();
+  }
+  [[nodiscard]] Instant at(double time) const override {
+    const auto point = trajectory_.at(time);
+    return {point.block, point.along};
+  }
+  [[nodiscard]] std::size_t block_count() const override { return trajectory_.program().size(); }
+  [[nodiscard]] double block_length(std::size_t block) const override {
+    return trajectory_.program()[block].path.length();
+  }
+  [[nodiscard]] double start_length(std::size_t block) const override {
+    return trajectory_.start_length(block);
+  }
+  [[nodiscard]] double wanted_speed(std::size_t block) const override {
+    return report::wanted_speed_of(trajectory_, block);
+  }
+  [[nodiscard]] std::vector<report::LimitedBy> limited_by() const override {
+    return report::limited_by(trajectory_);
+  }
+  [[nodiscard]] report::ChannelPoint channels(std::size_t block, double s) const override {
+    const auto path = trajectory_.path(block);
+    const auto axes = path.point_at(s);
+    return report::channel_point(file_, channels_, tool_point(path, axes, s), axes);
+  }
+
+  [[nodiscard]] bool completed() const override { return trajectory_.completed(); }
+  [[nodiscard]] PlanPeaks peaks() const override {
+    const auto inside = cncplan::peaks(trajectory_);
+    const auto joints = cncplan::joint_jumps(trajectory_);
+    return {
+        own(inside.velocity), own(inside.acceleration), own(inside.jerk), own(joints.velocity), inside.tool,
+        inside.along,         joints.accelerations};
+  }
+  [[nodiscard]] std::vector<BlockTiming> timings() const override {
+    std::vector<BlockTiming> result;
+    for (const auto& block : trajectory_.blocks())
+      result.push_back({block.block, block.entry, block.peak, block.exit, block.duration});
+    return result;
+  }
+  [[nodiscard]] PerAxis way(std::size_t block) const override {
+    const auto& path = trajectory_.program()[block].path;
+    if (!(path.length() > 0.0)) return PerAxis::Zero(count());
+    return own((path.position_at(path.length()) - path.position_at(0.0)).cwiseAbs());
+  }
+  [[nodiscard]] bool as_programmed(std::size_t block) const override {
+    const B& driven = trajectory_.program()[block];
+    if (!trajectory_.path(block).exact() || driven.merged > 0.0) return false;
+    if constexpr (requires { driven.source; }) {
+      const auto& path = driven.path;
+      return path.line() != nullptr || path.arc() != nullptr ||
+             path.template as<cncplan::path::Spline<M::axis_count>>() != nullptr;
+    }
+    return true;
+  }
+  [[nodiscard]] cncplan::Vector3 tool(std::size_t block, double s) const override {
+    const auto path = trajectory_.path(block);
+    return tool_point(path, path.point_at(s), s).position;
+  }
+
+  void sample(double period, const std::function<void(const SetPoint&)>& take) const override {
+    std::optional<TaylorFollower<Trajectory>> follow;
+    if constexpr (std::is_same_v<B, BlockOf<Mill<3>>>)
+      if (taylor_) follow.emplace(trajectory_);
+    for (const auto& point : trajectory_.samples(period)) {
+      SetPoint here{point.time,          point.block,         tool_at(trajectory_.machine(), point),
+                    own(point.position), own(point.velocity), own(point.acceleration),
+                    point.along};
+      if constexpr (std::is_same_v<B, BlockOf<Mill<3>>>)
+        if (follow && point.time < trajectory_.duration()) here.tool = (*follow)(point);
+      take(here);
+    }
+  }
+  [[nodiscard]] cncplan::Expected<std::vector<cncplan::step::AxisReport>, cncplan::step::Violation> step(
+      double period, const std::function<void(const cncplan::MotorEdge&)>& take) const override {
+    const auto reports = cncplan::follow_steps(trajectory_, period, take);
+    if (!reports) return tl::unexpected(reports.error());
+    return std::vector<cncplan::step::AxisReport>(reports->begin(), reports->begin() + count());
+  }
+
+ private:
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(file_.axes.size()); }
+  // Of the axes that the machine's file has.
+  template <class V>
+  [[nodiscard]] PerAxis own(const V& axes) const {
+    return axes.head(count());
+  }
+
+  template <class V>
+  [[nodiscard]] cncplan::PathPoint<cncplan::Vector3> tool_point(const typename Trajectory::DrivenPath& path,
+                                                                const cncplan::PathPoint<V>& axes,
+                                                                double s) const {
+    const M& machine = trajectory_.machine();
+    if constexpr (std::is_same_v<M, Rows>)
+      return report::tip_point(machine.tool_length, axes);
+    else
+      return path.exact() ? cncplan::tool_point(path.programmed(), s, cncplan::tool_axes(machine))
+                          : path.tool_point_at(s);
+  }
+
+  const support::Machine& file_;
+  std::vector<std::size_t> channels_;
+  bool taylor_;
+  Trajectory trajectory_;
+};
+
+}  // namespace simulate
