@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base64.hpp"
+#include "cncplan/gcode/lines.hpp"
 #include "page.hpp"
 #include "support/failure.hpp"
 #include "utf8.hpp"
