@@ -78,13 +78,17 @@ class Builder {
     if (const auto block = read_.take(item); block && *block) rest(**block);
   }
 
-  // What reads programs: axes without limits; a table's programs name X Y Z.
+  // What reads programs: axes with the limits that threads have to keep; a table's programs name X Y Z.
   static Plain plain(const M& machine) {
     Plain result;
+    result.limits.velocity = machine.limits.velocity;
+    result.feed_limit = machine.feed_limit;
     if constexpr (!std::is_same_v<M, Table>)
       for (std::size_t i = 0; i < result.axes.size(); ++i) {
         result.axes[i].letter = machine.axes[i].letter;
         result.axes[i].kind = machine.axes[i].kind;
+        result.axes[i].velocity = machine.axes[i].velocity;
+        result.axes[i].velocity_down = machine.axes[i].velocity_down;
       }
     return result;
   }
@@ -116,32 +120,9 @@ class Builder {
       return;
     }
     Origin& added = program_.motions.back();
-    if (motion.threads && motion.feed) check_pitch(motion);
     added.feed = block.rapid                                  ? rapid_speed(machine_)
                  : std::isfinite(program_.blocks.back().feed) ? program_.blocks.back().feed
                                                               : feed_speed(machine_);
-  }
-
-  // A thread that is cut slower than its pitch at the spindle's speed has another pitch.
-  void check_pitch(const cncplan::gcode::Motion& motion) {
-    constexpr double rounding = 1e-9;
-    const double most = std::min(feed_speed(machine_), highest_speed(program_.blocks.back()));
-    if (*motion.feed <= most * (1.0 + rounding)) return;
-    problems_.add(
-        {motion.line, motion.column, "a thread is too fast",
-         fmt::format("the thread takes {:.6g} mm/s at the spindle's speed, the machine no more than {:.6g}: "
-                     "its pitch would be wrong",
-                     *motion.feed, most)});
-  }
-  // That the axes allow along a straight block.
-  [[nodiscard]] double highest_speed(const BlockOf<M>& block) const {
-    const auto bounds = block.path.bounds(0.0, 0.0);
-    double most = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < M::axis_count; ++i)
-      if (bounds.first[i] > 0.0)
-        most = std::min(
-            most, cncplan::least_velocity(machine_.axes[static_cast<std::size_t>(i)]) / bounds.first[i]);
-    return most;
   }
 
   // Whether the motion can be made; else its problem is noted.

@@ -42,16 +42,16 @@ TEST_CASE("a thread that the machine cannot cut fast enough is refused") {
     const auto run = folder.run_text(text, options + " --quiet");
     return run.exit == 0 ? std::string() : run.err.substr(run.err.find("program.ngc:2:5: error"));
   };
-  const std::string why = "the thread takes 66.6667 mm/s at the spindle's speed, the machine no more than ";
+  const std::string why = "program.ngc:2:5: error: speed of a thread is above the limit ";
   const std::string thread = "S2000 M3\nG33 Z-10 K2\n";
-  CHECK(told(thread, "") == "program.ngc:2:5: error: " + why + "30: its pitch would be wrong\n");
-  CHECK(told(thread, "--vmax 66").find(why + "66:") != std::string::npos);
+  CHECK(told(thread, "") == why + "30\n");
+  CHECK(told(thread, "--vmax 66") == why + "66\n");
   CHECK(told(thread, "--vmax 67").empty());
   CHECK(told("S900 M3\nG33 Z-10 K2\nG1 F6000 X9\n", "").empty());
   folder.write("mill.toml",
                "[[axis]]\nletter = \"X\"\n[[axis]]\nletter = \"Y\"\n[[axis]]\nletter = \"Z\"\n"
                "velocity = 20\nacceleration = 1000\njerk = 10000\n");
-  CHECK(told(thread, "--vmax 100 --machine mill.toml").find(why + "20:") != std::string::npos);
+  CHECK(told(thread, "--vmax 100 --machine mill.toml") == why + "20\n");
 }
 
 TEST_CASE("travel is told at the axis' word, in degrees for one that turns") {
