@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "cncplan/gcode/controls.hpp"
@@ -144,6 +145,7 @@ class Builder {
       return add(placed);
     } else if constexpr (std::is_same_v<M, Table>) {
       origin.path = block.path;
+      begin_table(block.path.start());
       const std::size_t first = program_.blocks.size();
       bool within = true;
       const auto followed = cncplan::plan::follow_table(
@@ -214,6 +216,7 @@ class Builder {
       const cncplan::Vector3 at = block.path.start();
       const double radius = std::hypot(at.x(), at.y());
       if (!(radius >= machine_.smallest_radius)) return refuse_radius(radius, block.line, 1);
+      begin_table(at);
       using cncplan::kinematics::PolarMap;
       const cncplan::path::Part<ToolPath> here(block.path, 0.0, 0.0);
       add(copy(block,
@@ -221,6 +224,14 @@ class Builder {
     } else {
       add(copy(block, *block.path.line()));
     }
+  }
+
+  // A table whose travel has ends begins within it, by whole turns where need be.
+  void begin_table(const cncplan::Vector3& at) {
+    if (std::exchange(table_begun_, true)) return;
+    const cncplan::Axis& axis = machine_.axes[2];
+    if (std::isfinite(axis.low) || std::isfinite(axis.high))
+      table_ = cncplan::plan::first_table_angle(at.x(), at.y(), axis.low, axis.high);
   }
 
   void refuse_radius(double radius, int line, int column) {
@@ -252,6 +263,7 @@ class Builder {
   Problems& problems_;
   cncplan::BlockBuilder<Plain> read_;
   double table_ = 0.0;  // angle of the table, rad
+  bool table_begun_ = false;
 };
 
 // Leaves out what comes before a line: the machine stands where its first motion begins.

@@ -110,3 +110,24 @@ TEST_CASE("a path round a table: parts join, turn by a radian at most, and end w
   }
   CHECK(followed > 150);
 }
+
+TEST_CASE("a table that turns from 0 to 360 degrees begins and goes on within them", "[table_path]") {
+  constexpr double pi = std::numbers::pi, turn = 2 * pi;
+  for (int degree = 5; degree < 360; degree += 10) {
+    CAPTURE(degree);
+    const double angle = degree * pi / 180;
+    const Vector3 from(50 * std::cos(angle), 50 * std::sin(angle), 0), to = 1.5 * from;
+    double table = plan::first_table_angle(from.x(), from.y(), 0.0, turn);
+    CHECK(table == Approx(angle));
+    double low = table, high = table;
+    const path::Segment<3> outwards = path::Line<3>(from, to);
+    REQUIRE(plan::follow_table(outwards, Map{}, 0.5, table, [&](const Part& part) {
+      low = std::min(low, part.position_at(0.0)[2]);
+      high = std::max(high, part.position_at(part.length())[2]);
+    }));
+    CHECK(low >= 0);
+    CHECK(high <= turn);
+  }
+  CHECK(plan::first_table_angle(0.0, -1.0, -turn, 0.0) == Approx(-pi / 2));
+  CHECK(plan::first_table_angle(0.0, 1.0, -turn, 0.0) == Approx(pi / 2 - turn));
+}

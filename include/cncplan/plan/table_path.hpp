@@ -41,6 +41,14 @@ template <Path P>
   return least;
 }
 
+/// The angle, rad, at which a table begins that turns from `low` to `high`: that of the first point (x, y),
+/// or as few whole turns from there as bring it within. How the program goes on is not known yet.
+template <std::floating_point S>
+[[nodiscard]] S first_table_angle(S x, S y, S low, S high) {
+  const S angle = std::atan2(y, x);
+  return angle + kinematics::turns_into(angle, angle, low, high);
+}
+
 /// Cuts a path into parts over which the table turns by one radian at most, and calls `add` with the image of
 /// each. `table` is the angle at which the table stands, rad with whole turns; it is moved on. Error, with
 /// nothing added: below_limit with the least radius, for a path that comes nearer to the axis than
