@@ -143,7 +143,7 @@ class Executor:
         self._core.optional_stop(flag(wanted, "wanted"))
 
     def program_stop(self, wanted: bool = True) -> None:
-        """Rests at M0 and M60 until it is resumed."""
+        """Rests at M0 and M60 until it is resumed, which it does unless this is switched off."""
         self._core.program_stop(flag(wanted, "wanted"))
 
     def pause_at(self, line: int) -> None:

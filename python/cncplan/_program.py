@@ -23,15 +23,16 @@ _KINDS = np.array(["rapid", "line", "arc", "spline"])
 class Program:
     """A program that was read, with all that is wrong with it. `read_program` makes it."""
 
-    def __init__(self, core: Any, machine: Machine) -> None:
+    def __init__(self, core: Any, machine: Machine, most_problems: int) -> None:
         self._core = core
+        self._most_problems = most_problems
         self.machine = machine
 
     @property
     def problems(self) -> list[Error]:
         """All that is wrong, in order: lines that are not understood, arcs that cannot be made, motions that
         leave the travel. Empty: the program can be planned."""
-        return [Error(*arguments) for arguments in self._core.problems()]
+        return [Error(*arguments) for arguments in self._core.problems()[:self._most_problems]]
 
     @property
     def warnings(self) -> list[str]:
@@ -46,7 +47,7 @@ class Program:
     @property
     def motions(self) -> np.ndarray:
         """The motions, in machine coordinates, as a structured array: line, column, kind ("rapid", "line", "arc",
-        "spline"), plane (17, 18, 19), start and end (axes,) in mm and rad, center (3,), radius (mm) and sweep (rad;
+        "spline"), plane (of an arc: 17, 18, 19), start and end (axes,) in mm and rad, center (3,), radius (mm) and sweep (rad;
         + counter-clockwise) of an arc, length (mm), feed (mm/s). What a motion lacks is NaN."""
         rows = np.asarray(self._core.motions()).view(_ROW_DTYPE)
         n = len(self.machine)
@@ -62,8 +63,10 @@ class Program:
 
     @property
     def words(self) -> np.ndarray:
-        """Words that others act on (M3, S, T ...), in order, as a structured array: letter, number, line."""
-        return np.array(self._core.words(), dtype=[("letter", "U1"), ("number", "f8"), ("line", "i8")])
+        """Words that others act on (M3, S, T ...), in order, as a structured array: letter, number, line, arguments (the words
+        that belong to a code: pairs of letter and number)."""
+        return np.array(self._core.words(), dtype=[("letter", "U1"), ("number", "f8"), ("line", "i8"),
+                                                   ("arguments", "O")])
 
 
 def read_program(path: str | os.PathLike[str] | None = None, machine: Machine | None = None, *,
@@ -81,7 +84,7 @@ def read_program(path: str | os.PathLike[str] | None = None, machine: Machine | 
     tolerance : float
         mm; 0: P and Q of G64 have no effect, and a warning says so.
     most_problems : int
-        Reading ends behind so many.
+        So many are told.
     """
     if machine is None:
         machine = Machine(velocity=1.0, acceleration=1.0, jerk=1.0)
@@ -90,8 +93,8 @@ def read_program(path: str | os.PathLike[str] | None = None, machine: Machine | 
     options = options_of(machine, tolerance, 0.05, 0.01, None)
     most = integer(most_problems, "most_problems", 1, 10**6)
     if path is not None:
-        return Program(_core.read_file(core_of(machine), path_of(path), options, most), machine)
-    return Program(_core.read_text(core_of(machine), _program(text), options, most), machine)
+        return Program(_core.read_file(core_of(machine), path_of(path), options), machine, most)
+    return Program(_core.read_text(core_of(machine), _program(text), options), machine, most)
 
 
 def write_gcode(source: Program | Sequence[Block], machine: Machine | None = None,

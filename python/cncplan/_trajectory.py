@@ -18,7 +18,7 @@ LEVELS = ("exact", "fast", "good", "best")
 
 BLOCK_DTYPE = np.dtype([("block", "i8"), ("line", "i8"), ("length", "f8"), ("start", "f8"), ("duration", "f8"),
                         ("entry", "f8"), ("peak", "f8"), ("exit", "f8")])
-WORD_DTYPE = np.dtype([("letter", "U1"), ("number", "f8"), ("time", "f8"), ("line", "i8")])
+WORD_DTYPE = np.dtype([("letter", "U1"), ("number", "f8"), ("time", "f8"), ("line", "i8"), ("arguments", "O")])
 EDGE_DTYPE = np.dtype([("time", "f8"), ("motor", "i8"), ("axis", "i8"), ("direction", "i8")])
 
 
@@ -57,7 +57,8 @@ class SetPoint:
     v: Any
     a: Any
     j: Any
-    words: tuple[tuple[str, float, int], ...] = ()  #: of an executor: letter, number and line of words reached
+    #: of an executor, words that were reached: letter, number, line, and the words that belong to it as pairs
+    words: tuple[tuple[str, float, int, tuple[tuple[str, float], ...]], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ class Trajectory:
     @property
     def words(self) -> np.ndarray:
         """Words that others act on (M3, S, T ...), in order, as a structured array: letter, number, time (s at
-        which the motion reaches it), line."""
+        which the motion reaches it), line, arguments (the words that belong to a code: pairs of letter and number)."""
         return np.array(self._core.words(), dtype=WORD_DTYPE)
 
     def at(self, t: float | Sequence[float] | np.ndarray) -> SetPoint:

@@ -25,8 +25,7 @@ void bind_executor(py::module_& module) {
            [](E& e, double period) {
              const AnySetPoint p = e.tick(period);
              py::list words;
-             for (const auto& word : p.words)
-               words.append(py::make_tuple(std::string(1, word.letter), word.number, word.line));
+             for (const auto& word : p.words) words.append(word_tuple(word));
              Numbers tool(3, p.tool.data());
              return py::make_tuple(p.time, p.block, p.line, array_of(p.position), array_of(p.velocity),
                                    array_of(p.acceleration), array_of(p.jerk), tool, p.along.position,

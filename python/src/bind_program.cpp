@@ -1,16 +1,11 @@
 // Programs as they are read, without a plan, and as they are written.
 #include <pybind11/stl.h>
 
-#include <filesystem>
 #include <iterator>
-#include <memory>
-#include <system_error>
 
 #include "bindings.hpp"
-#include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/gcode/writer.hpp"
 #include "fault.hpp"
-#include "interruption.hpp"
 #include "program.hpp"
 #include "sizes.hpp"
 #include "trajectory.hpp"
@@ -19,28 +14,18 @@ namespace cncplan::python {
 
 namespace {
 
-ReadProgram read(const AnyMachine& machine, std::streambuf& buffer, const PlanOptions& options,
-                 const std::string& file, std::size_t most) {
-  std::istream text(&buffer);
-  return with_size(machine.axes.size(),
-                   [&](auto n) { return read_all<n>(machine, text, options, file, most); });
+ReadProgram read(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
+                 const std::string& file) {
+  return with_size(machine.axes.size(), [&](auto n) { return read_all<n>(machine, text, options, file); });
 }
 
-ReadProgram read_file(const AnyMachine& machine, const std::string& file, PlanOptions options,
-                      std::size_t most) {
-  InterruptibleBuffer<std::filebuf> buffer;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored) ||
-      buffer.open(file, std::ios::in | std::ios::binary) == nullptr)
-    raise({{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file, {}});
-  options.subprograms = gcode::files_of(std::filesystem::path(file).parent_path());
-  return read(machine, buffer, options, file, most);
+ReadProgram read_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options) {
+  const auto [text, here] = open_program(file, options);
+  return read(machine, text, here, file);
 }
 
-ReadProgram read_text(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
-                      std::size_t most) {
-  InterruptibleBuffer<std::stringbuf> buffer(text, std::ios::in);
-  return read(machine, buffer, options, {}, most);
+ReadProgram read_text(const AnyMachine& machine, const std::string& text, const PlanOptions& options) {
+  return read(machine, text, options, {});
 }
 
 std::string write(const std::vector<gcode::Item>& items, const gcode::Dialect& dialect) {
@@ -93,12 +78,7 @@ void bind_program(py::module_& module) {
       .def("words",
            [](const ReadProgram& program) {
              py::list words;
-             for (const auto& item : program.items) {
-               if (const auto* word = std::get_if<gcode::Word>(&item))
-                 words.append(py::make_tuple(std::string(1, word->letter), word->number, word->line));
-               if (const auto* stop = std::get_if<gcode::Stop>(&item))
-                 words.append(py::make_tuple("M", static_cast<double>(stop->code), stop->line));
-             }
+             for (const auto& word : program.words) words.append(word_tuple(word));
              return words;
            })
       .def("write", [](const ReadProgram& program) { return write(program.items, program.dialect); });

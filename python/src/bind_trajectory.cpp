@@ -1,15 +1,11 @@
 // Planning, and what a trajectory answers.
 #include <pybind11/stl.h>
 
-#include <filesystem>
 #include <memory>
 #include <span>
-#include <system_error>
 
 #include "bindings.hpp"
-#include "cncplan/gcode/language/find_file.hpp"
 #include "fault.hpp"
-#include "interruption.hpp"
 #include "sizes.hpp"
 #include "trajectory.hpp"
 
@@ -25,30 +21,22 @@ PlanOptions options_of(double tolerance, double rotary_tolerance, double junctio
   return options;
 }
 
-TrajectoryPointer plan(const AnyMachine& machine, std::streambuf& buffer, const PlanOptions& options,
+TrajectoryPointer plan(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
                        int level, const std::string& file) {
-  std::istream text(&buffer);
   return with_size(machine.axes.size(), [&](auto n) {
-    return plan_program<n>(machine, text, options, static_cast<Level>(level), file);
+    return plan_text<n>(machine, text, options, static_cast<Level>(level), file);
   });
 }
 
-TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, PlanOptions options,
+TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options,
                             int level) {
-  const std::filesystem::path path(file);
-  InterruptibleBuffer<std::filebuf> buffer;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored) ||
-      buffer.open(path, std::ios::in | std::ios::binary) == nullptr)
-    raise({{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file, {}});
-  options.subprograms = gcode::files_of(path.parent_path());
-  return plan(machine, buffer, options, level, file);
+  const auto [text, here] = open_program(file, options);
+  return plan(machine, text, here, level, file);
 }
 
-TrajectoryPointer plan_text(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
-                            int level) {
-  InterruptibleBuffer<std::stringbuf> buffer(text, std::ios::in);
-  return plan(machine, buffer, options, level, {});
+TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
+                              int level) {
+  return plan(machine, text, options, level, {});
 }
 
 // New arrays of so many rows, and where they are.
@@ -110,8 +98,7 @@ void bind_trajectory(py::module_& module) {
       .def("words",
            [](const AnyTrajectory& trajectory) {
              py::list rows;
-             for (const WordRow& row : trajectory.words())
-               rows.append(py::make_tuple(std::string(1, row.letter[0]), row.number, row.time, row.line));
+             for (const TimedWord& word : trajectory.words()) rows.append(word_tuple(word.word, word.time));
              return rows;
            })
       .def("warnings", &AnyTrajectory::warnings)
@@ -139,7 +126,7 @@ void bind_trajectory(py::module_& module) {
 
   py::class_<PlanOptions>(module, "PlanOptions").def(py::init(&options_of));
   module.def("plan_file", &plan_file, Released());
-  module.def("plan_text", &plan_text, Released());
+  module.def("plan_text", &plan_string, Released());
   module.def("plan_blocks",
              [](const AnyMachine& machine, const py::list& given, const PlanOptions& options, int level) {
                std::vector<AnyBlock> blocks;

@@ -7,10 +7,13 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blocks.hpp"
+#include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "machine.hpp"
 
@@ -43,6 +46,13 @@ using Numbers = py::array_t<double, py::array::c_style>;
 
 /// So many coordinates, 9 at most.
 [[nodiscard]] Places places_of(const std::vector<double>& coordinates);
+
+/// Letter, number, line, and the words that belong to it as pairs of letter and number; a time is put behind
+/// the number.
+[[nodiscard]] py::tuple word_tuple(const gcode::Word& word, std::optional<double> time = std::nullopt);
+
+/// The text of a program's file, and options that find files of its folder. Throws `Fault`.
+[[nodiscard]] std::pair<std::string, PlanOptions> open_program(const std::string& file, PlanOptions options);
 
 /// From the tuple that cncplan._blocks makes.
 [[nodiscard]] AnyBlock block_from(const py::tuple& block);

@@ -3,10 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
-#include <fstream>
 #include <memory_resource>
-#include <sstream>
-#include <string>
 
 namespace cncplan::python {
 
@@ -47,27 +44,6 @@ class InterruptibleMemory final : public std::pmr::memory_resource {
 
   Interruption interruption_;
   bool asks_ = true;
-};
-
-/// A buffer of a stream, `std::filebuf` or `std::stringbuf`, that asks at every piece and wherever a loop of
-/// the program goes back.
-template <class Buffer>
-class InterruptibleBuffer final : public Buffer {
- public:
-  using Buffer::Buffer;
-
- protected:
-  typename Buffer::int_type underflow() override {
-    interruption_.poll();
-    return Buffer::underflow();
-  }
-  std::streamsize xsgetn(char* to, std::streamsize count) override {
-    interruption_.poll();
-    return Buffer::xsgetn(to, count);
-  }
-
- private:
-  Interruption interruption_;
 };
 
 }  // namespace cncplan::python

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
 
 #include "bindings.hpp"
+#include "cncplan/plan/program.hpp"
 #include "cncplan/version.hpp"
 #include "fault.hpp"
 #include "interruption.hpp"
@@ -57,6 +59,23 @@ Places places_of(const std::vector<double>& coordinates) {
   Places places{};
   std::copy_n(coordinates.begin(), std::min(coordinates.size(), places.size()), places.begin());
   return places;
+}
+
+py::tuple word_tuple(const gcode::Word& word, std::optional<double> time) {
+  py::list arguments;
+  for (std::size_t i = 0; i < word.arguments.size(); ++i)
+    arguments.append(py::make_tuple(std::string(1, word.arguments[i].letter), word.arguments[i].number));
+  const std::string letter(1, word.letter);
+  const py::tuple owned(arguments);
+  if (time) return py::make_tuple(letter, word.number, *time, word.line, owned);
+  return py::make_tuple(letter, word.number, word.line, owned);
+}
+
+std::pair<std::string, PlanOptions> open_program(const std::string& file, PlanOptions options) {
+  auto text = plan::text_of(file);
+  if (!text) raise(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file, {}});
+  options.subprograms = gcode::files_of(std::filesystem::path(file).parent_path());
+  return {std::move(*text), std::move(options)};
 }
 
 AnyBlock block_from(const py::tuple& block) {

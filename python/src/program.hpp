@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <istream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cncplan/gcode/motion.hpp"
@@ -20,7 +20,7 @@ namespace cncplan::python {
 struct MotionRow {
   std::int64_t line{}, column{};
   std::int64_t kind{};   ///< 0 rapid, 1 line, 2 arc, 3 spline
-  std::int64_t plane{};  ///< 17, 18 or 19
+  std::int64_t plane{};  ///< of an arc: 17, 18 or 19
   Places start{}, end{};
   std::array<double, 3> center{};
   double radius{}, sweep{};
@@ -29,16 +29,16 @@ struct MotionRow {
 
 struct ReadProgram {
   gcode::Dialect dialect;
-  std::vector<gcode::Item> items;
+  std::vector<gcode::Item> items;  ///< none where there is a problem
   std::vector<MotionRow> motions;
   std::vector<ProgramError> problems;  ///< each with its file
   std::vector<std::string> warnings;
+  std::vector<gcode::Word> words;
   int lines{};
 };
 
-/// Reads on behind problems, up to `most` of them.
 template <int N>
-[[nodiscard]] ReadProgram read_all(const AnyMachine& machine, std::istream& text, const PlanOptions& options,
-                                   const std::string& file, std::size_t most);
+[[nodiscard]] ReadProgram read_all(const AnyMachine& machine, std::string_view text,
+                                   const PlanOptions& options, const std::string& file);
 
 }  // namespace cncplan::python

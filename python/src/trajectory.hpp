@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <istream>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "blocks.hpp"
 #include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan/trajectory.hpp"
 #include "machine.hpp"
 
 namespace cncplan::python {
@@ -33,12 +33,6 @@ struct Columns {
 struct BlockRow {
   std::int64_t block{}, line{};
   double length{}, start{}, duration{}, entry{}, peak{}, exit{};
-};
-struct WordRow {
-  char letter[1]{};
-  double number{};
-  double time{};
-  std::int64_t line{};
 };
 struct EdgeRow {
   double time{};
@@ -63,7 +57,7 @@ class AnyTrajectory {
   virtual void sample(double period, const Columns& out) const = 0;
   virtual void at(std::span<const double> times, const Columns& out) const = 0;
   [[nodiscard]] virtual std::vector<BlockRow> blocks() const = 0;
-  [[nodiscard]] virtual std::vector<WordRow> words() const = 0;
+  [[nodiscard]] virtual std::vector<TimedWord> words() const = 0;
   [[nodiscard]] virtual std::vector<std::string> warnings() const = 0;
   /// Error above_limit where there are more than `most`.
   [[nodiscard]] virtual std::vector<EdgeRow> step_edges(std::size_t most) const = 0;
@@ -74,9 +68,8 @@ using TrajectoryPointer = std::unique_ptr<AnyTrajectory>;
 
 /// Each throws `Fault`.
 template <int N>
-[[nodiscard]] TrajectoryPointer plan_program(const AnyMachine& machine, std::istream& text,
-                                             const PlanOptions& options, Level level,
-                                             const std::string& file);
+[[nodiscard]] TrajectoryPointer plan_text(const AnyMachine& machine, std::string_view text,
+                                          const PlanOptions& options, Level level, const std::string& file);
 template <int N>
 [[nodiscard]] TrajectoryPointer plan_hand_made(const AnyMachine& machine, const std::vector<AnyBlock>& blocks,
                                                const PlanOptions& options, Level level);

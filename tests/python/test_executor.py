@@ -42,7 +42,7 @@ def test_undisturbed_it_is_the_plan(mill):
     assert points[-1].t == pytest.approx(planned.duration, abs=0.002)
     for point in points[::50]:
         assert point.position == pytest.approx(planned.at(point.t).position, abs=1e-3)
-    words = [(letter, number) for point in points for letter, number, _ in point.words]
+    words = [(letter, number) for point in points for letter, number, *_ in point.words]
     assert words == [("S", 1000), ("M", 3), ("M", 30)]
     assert points[0].position.shape == (3,) and points[-1].position == pytest.approx([0, 0, 0], abs=1e-9)
 

@@ -37,26 +37,27 @@ class ExecutorOfSize final : public AnyExecutor {
 
   bool push_line(std::string_view line) override {
     if (!push_pending()) return false;
-    auto blocks = reader_->read_line(line);
-    if (!blocks) raise(blocks.error());
-    pending_ = *blocks;
+    pending_ = value_of(reader_->read_line(line));
     ended_ = false;
     push_pending();
     return true;
   }
   bool push_block(const AnyBlock& block) override {
     const auto made = block_of<AXES>(block);
+    if (!push_pending() || !executor_.push(made)) return false;
     ended_ = false;
-    return push_pending() && executor_.push(made);
+    return true;
   }
   void end_of_program() override {
+    if (ended_) return;
+    if (push_pending()) pending_ = value_of(reader_->end_of_program());
     ended_ = true;
-    finish();
+    if (push_pending()) executor_.end_of_program();
   }
 
   AnySetPoint tick(double period) override {
     // What a line had no room for comes as soon as there is some.
-    if (!pending_.empty() && push_pending() && ended_) finish();
+    if (pending() && push_pending() && ended_) executor_.end_of_program();
     const auto point = executor_.tick(period);
     const auto list = [this](const Vector& vector) {
       return std::vector<double>(vector.data(), vector.data() + axes_);
@@ -73,7 +74,7 @@ class ExecutorOfSize final : public AnyExecutor {
   }
 
   [[nodiscard]] bool finished() const override {
-    return executor_.finished() && (pending_.empty() || executor_.error());
+    return executor_.finished() && (!pending() || executor_.error());
   }
   [[nodiscard]] std::optional<ProgramError> error() const override { return executor_.error(); }
   [[nodiscard]] std::int64_t pushed() const override { return executor_.pushed(); }
@@ -98,32 +99,26 @@ class ExecutorOfSize final : public AnyExecutor {
   bool restart(int line, const Places& position) override {
     if (!executor_.restart(line, vector_of(position))) return false;
     reader_.emplace(executor_.machine(), read_);
-    pending_ = {};
+    pending_.reset();
     ended_ = false;
     return true;
   }
 
  private:
+  [[nodiscard]] bool pending() const { return pending_ && !pending_->empty(); }
   // Whether the blocks of the last line have all found room.
   bool push_pending() {
-    for (const auto& block : pending_)
+    if (!pending()) return true;
+    for (const auto& block : *pending_)
       if (!executor_.push(block)) return false;
     return true;
-  }
-  // With what cutter compensation holds back; later where there is no room.
-  void finish() {
-    if (!push_pending()) return;
-    auto last = reader_->end_of_program();
-    if (!last) raise(last.error());
-    pending_ = *last;
-    if (push_pending()) executor_.end_of_program();
   }
 
   std::size_t axes_;
   PlanOptions read_;
   std::optional<Reader> reader_;
   Runner executor_;
-  Reader::Blocks pending_;  // of the last line
+  std::optional<Reader::Blocks> pending_;  // of the last line
   bool ended_ = false;
 };
 

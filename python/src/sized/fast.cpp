@@ -1,13 +1,15 @@
 // The levels exact and fast, for machines of AXES axes.
-#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/compiled.hpp"
 #include "planned.hpp"
 
 namespace cncplan::python {
 
+using Fast = Expected<Trajectory<Machine<AXES>, ReadBlock<AXES>>, ProgramError>;
+
 template <>
 PlannedOrError<AXES> plan_fast<AXES>(std::vector<ReadBlock<AXES>>&& blocks, const Machine<AXES>& machine,
                                      const PlanOptions& options, std::pmr::memory_resource* memory) {
-  auto planned = plan_blocks(std::span<const ReadBlock<AXES>>(blocks), machine, options, memory);
+  Fast planned = plan_blocks(std::span<const ReadBlock<AXES>>(blocks), machine, options, memory);
   if (!planned) return tl::unexpected(planned.error());
   std::pmr::vector<PlannedBlock<AXES>> own(memory);
   own.reserve(planned->program().size());
@@ -23,8 +25,8 @@ PlannedOrError<AXES> plan_fast<AXES>(std::vector<ReadBlock<AXES>>&& blocks, cons
 }  // namespace cncplan::python
 
 // `plan_at` plans what it cannot smooth in this way.
-template cncplan::Expected<
-    cncplan::Trajectory<cncplan::Machine<AXES>, cncplan::ProgramBlock<cncplan::Machine<AXES>>>,
-    cncplan::ProgramError>
-cncplan::plan_blocks(std::span<const cncplan::ProgramBlock<cncplan::Machine<AXES>>>&&,
-                     const cncplan::Machine<AXES>&, const cncplan::PlanOptions&, std::pmr::memory_resource*);
+#if !defined(CNCPLAN_COMPILED) || AXES != 3
+template cncplan::python::Fast cncplan::plan::plan_own_blocks(
+    std::pmr::vector<cncplan::python::ReadBlock<AXES>>&&, const cncplan::Machine<AXES>&,
+    const cncplan::PlanOptions&);
+#endif

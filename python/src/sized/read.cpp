@@ -1,15 +1,12 @@
 // From a program's text, or from blocks made by hand, to a trajectory, for machines of AXES axes.
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <cmath>
 #include <limits>
-#include <string>
+#include <span>
 
-#include "cncplan/gcode/stream_lines.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
-#include "cncplan/plan/block_checks.hpp"
-#include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "fault.hpp"
 #include "planned.hpp"
@@ -18,11 +15,6 @@
 namespace cncplan::python {
 
 namespace {
-
-[[noreturn]] void refuse(ProgramError error, const std::string& file) {
-  error.file = file;
-  raise(std::move(error));
-}
 
 VectorN<double, AXES> place_of(const gcode::Position& position) {
   VectorN<double, AXES> place;
@@ -53,31 +45,29 @@ typename ReadBlock<N>::Path with_others(const path::Arc& arc, const VectorN<doub
     return path::BasicArcAlong<double, N>(arc, start, end);
 }
 
-MotionRow row_of(const gcode::Motion& motion, const ReadBlock<AXES>& block) {
+MotionRow row_of(const ReadBlock<AXES>& block) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  constexpr std::array<int, 4> planes{17, 18, 19, 18};
-  MotionRow row{.line = motion.line,
-                .column = motion.column,
-                .kind = motion.kind == gcode::MotionKind::rapid ? 0 : 3,
-                .plane = planes[static_cast<std::size_t>(motion.plane)],
+  MotionRow row{.line = block.line,
+                .column = block.column,
+                .kind = block.rapid ? 0 : 3,
                 .center = {none, none, none},
                 .radius = none,
                 .sweep = none,
                 .length = block.path.length(),
-                .feed = block.rapid || !motion.feed ? none : block.feed};
+                .feed = block.rapid || !std::isfinite(block.feed) ? none : block.feed};
   const auto start = block.path.position_at(0), end = block.path.position_at(row.length);
   std::copy_n(start.data(), AXES, row.start.begin());
   std::copy_n(end.data(), AXES, row.end.begin());
-  const auto tell_arc = [&](const path::Arc& arc) {
+  if (block.path.line() != nullptr) {
+    if (!block.rapid) row.kind = 1;
+  } else if (const auto* along = block.path.arc()) {
+    constexpr std::array<int, 4> planes{17, 18, 19, 18};
+    const path::Arc& arc = in_space(*along);
     row.kind = 2;
+    row.plane = planes[static_cast<std::size_t>(arc.plane())];
     std::copy_n(arc.center().data(), 3, row.center.begin());
     row.radius = arc.start_radius();
     row.sweep = arc.sweep();
-  };
-  if (block.path.line() != nullptr) {
-    if (row.kind != 0) row.kind = 1;
-  } else if (const auto* arc = block.path.arc()) {
-    tell_arc(in_space(*arc));
   }
   return row;
 }
@@ -85,46 +75,34 @@ MotionRow row_of(const gcode::Motion& motion, const ReadBlock<AXES>& block) {
 }  // namespace
 
 template <>
-ReadProgram read_all<AXES>(const AnyMachine& given, std::istream& text, const PlanOptions& options,
-                           const std::string& file, std::size_t most) {
-  const auto machine = machine_of<AXES>(given);
-  ReadProgram program;
-  program.dialect = given.dialect;
-  gcode::StreamLines lines(text);
-  gcode::Reader reader(given.dialect, start_position(options));
-  BlockBuilder<Machine<AXES>> builder(machine, given.dialect);
-  builder.start_at(start_position(options));
-  gcode::ProgramLines flat(lines, reader, options.subprograms);
-  const auto file_here = [&] { return flat.file().empty() ? file : std::string(flat.file()); };
-  // What a loop meets in every pass is told once.
-  const auto tell = [&](const gcode::Diagnostic& problem) {
-    ProgramError error{problem, file_here(), {}};
-    const auto same = [&](const ProgramError& other) {
-      return other.about == problem && other.file == error.file;
-    };
-    if (std::none_of(program.problems.begin(), program.problems.end(), same))
-      program.problems.push_back(std::move(error));
-    return program.problems.size() < most;
+ReadProgram read_all<AXES>(const AnyMachine& machine, std::string_view text, const PlanOptions& given,
+                           const std::string& file) {
+  const PlanOptions options = with_dialect(given, machine);
+  const Program<Machine<AXES>> program(text, machine_of<AXES>(machine), options, file);
+  ReadProgram result;
+  result.dialect = machine.dialect;
+  result.lines = program.lines();
+  const auto tell = [&](std::span<const Problem> problems) {
+    for (const Problem& problem : problems)
+      if (problem.warning)
+        result.warnings.push_back(to_text(problem));
+      else
+        result.problems.push_back(problem);
   };
+  tell(program.problems());
+  if (!(options.tolerance > 0)) tell(program.if_not_smoothed());
+  for (const ReadBlock<AXES>& block : program.blocks())
+    if (block.path.length() > 0) result.motions.push_back(row_of(block));
+  for (const ProgramWord& word : program.words()) result.words.push_back(word.word);
+  if (!result.problems.empty()) return result;
+  // What is written is the program as its items.
+  gcode::Reader reader(machine.dialect, start_position(options));
+  gcode::TextLines lines(text);
+  gcode::ProgramLines flat(lines, reader, options.subprograms);
   gcode::read_program(
-      flat, reader,
-      [&](const gcode::Item& item) {
-        program.items.push_back(item);
-        if (const auto* warning = std::get_if<gcode::Warning>(&item);
-            warning != nullptr && !(options.tolerance > 0 && gcode::void_if_smoothed(warning->about)))
-          program.warnings.push_back(gcode::to_text(file_here(), warning->about, "warning"));
-        const auto block = builder.take(item);
-        if (!block) return tell(block.error());
-        const auto* motion = std::get_if<gcode::Motion>(&item);
-        if (motion == nullptr || !*block || !((*block)->path.length() > 0)) return true;
-        program.motions.push_back(row_of(*motion, **block));
-        for (const auto& ok : {plan::within_travel((*block)->path, machine), plan::limited(**block, machine)})
-          if (!ok && !tell({ok.error(), motion->line, motion->column, {}})) return false;
-        return true;
-      },
-      tell);
-  program.lines = reader.line();
-  return program;
+      flat, reader, [&](const gcode::Item& item) { result.items.push_back(item); },
+      [](const gcode::Diagnostic&) { return true; });
+  return result;
 }
 
 template <>
@@ -155,19 +133,18 @@ ReadBlock<AXES> block_of<AXES>(const AnyBlock& from) {
 }
 
 template <>
-TrajectoryPointer plan_program<AXES>(const AnyMachine& given, std::istream& text, const PlanOptions& options,
-                                     Level level, const std::string& file) {
+TrajectoryPointer plan_text<AXES>(const AnyMachine& given, std::string_view text, const PlanOptions& options,
+                                  Level level, const std::string& file) {
   const auto machine = machine_of<AXES>(given);
-  const std::string whole(std::istreambuf_iterator<char>(text), {});
-  Program<Machine<AXES>> program(whole, machine, with_dialect(options, given), file);
-  if (const Problem* error = program.first_error()) raise(ProgramError(*error));
+  Program<Machine<AXES>> program(text, machine, with_dialect(options, given), file);
+  if (const Problem* error = program.first_error()) raise(*error);
   auto memory = std::make_unique<InterruptibleMemory>();
   auto planned = plan<AXES>(level, std::move(program).take_blocks(), machine, options, memory.get());
   if (!planned) {
-    const auto at = planned.error().block;
-    refuse(planned.error(), at ? program.file_of(*at) : file);
+    planned.error().file = program.file_of(planned.error().block.value_or(0));
+    raise(planned.error());
   }
-  cncplan::plan::tell(*planned, program, options.tolerance > 0);
+  plan::tell(*planned, program, level != Level::exact && options.tolerance > 0);
   return any_trajectory<AXES>(std::move(memory), std::move(*planned));
 }
 

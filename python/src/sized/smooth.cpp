@@ -1,12 +1,11 @@
 // The levels good and best, for machines of AXES axes.
-#include "cncplan/plan/smooth_blocks.hpp"
+#include "cncplan/compiled.hpp"
 #include "planned.hpp"
 
 extern template cncplan::Expected<
-    cncplan::Trajectory<cncplan::Machine<AXES>, cncplan::ProgramBlock<cncplan::Machine<AXES>>>,
-    cncplan::ProgramError>
-cncplan::plan_blocks(std::span<const cncplan::ProgramBlock<cncplan::Machine<AXES>>>&&,
-                     const cncplan::Machine<AXES>&, const cncplan::PlanOptions&, std::pmr::memory_resource*);
+    cncplan::Trajectory<cncplan::Machine<AXES>, cncplan::python::ReadBlock<AXES>>, cncplan::ProgramError>
+cncplan::plan::plan_own_blocks(std::pmr::vector<cncplan::python::ReadBlock<AXES>>&&,
+                               const cncplan::Machine<AXES>&, const cncplan::PlanOptions&);
 
 namespace cncplan::python {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cncplan/compiled.hpp"
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/step_edges.hpp"
 #include "fault.hpp"
@@ -80,11 +81,8 @@ class TrajectoryOfSize final : public AnyTrajectory {
     return rows;
   }
 
-  [[nodiscard]] std::vector<WordRow> words() const override {
-    std::vector<WordRow> rows;
-    for (const TimedWord& word : planned_.words())
-      rows.push_back({{word.word.letter}, word.word.number, word.time, word.word.line});
-    return rows;
+  [[nodiscard]] std::vector<TimedWord> words() const override {
+    return {planned_.words().begin(), planned_.words().end()};
   }
   [[nodiscard]] std::vector<std::string> warnings() const override {
     return {planned_.warnings().begin(), planned_.warnings().end()};
