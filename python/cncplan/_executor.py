@@ -61,7 +61,7 @@ class Executor:
         return self._core.push_line(ended)
 
     def end_of_program(self) -> None:
-        """Nothing will follow."""
+        """Nothing will follow: lines that are pushed behind this are errors, until `restart`."""
         self._core.end_of_program()
 
     def tick(self, period: float) -> SetPoint:

@@ -153,6 +153,23 @@ def test_cycles_of_many_blocks(mill):
     assert ((depth[1:] < -0.9) & (depth[:-1] >= -0.9)).sum() == 3
 
 
+def test_compensated_motions_come_to_their_end(mill):
+    machine = Machine(**LIMITS, tools={1: {"length": 0, "diameter": 4}})
+    lines = ["F1200", "T1 M6", "G42 G1 X10 Y2 D1", "X40", "Y20"]  # the last motion is held back until the end is known
+    points = run(cncplan.Executor(machine), lines)
+    planned = cncplan.plan_text("\n".join(lines), machine)
+    assert points[-1].position == pytest.approx(planned.at(planned.duration).position, abs=1e-9)
+    assert points[-1].position[1] == pytest.approx(20, abs=1e-9)
+
+
+def test_a_line_behind_the_end_is_refused(mill):
+    executor = cncplan.Executor(mill)
+    executor.push("G1 X1 F600")
+    executor.end_of_program()
+    with pytest.raises(cncplan.Error, match="behind the end"):
+        executor.push("X2")
+
+
 def test_errors(mill):
     executor = cncplan.Executor(mill)
     with pytest.raises(cncplan.Error) as caught:

@@ -36,28 +36,29 @@ class ExecutorOfSize final : public AnyExecutor {
   }
 
   bool push_line(std::string_view line) override {
+    if (ended_) raise(Error{ErrorCode::ignored, "line behind the end of the program", 0, 0});
     if (!push_pending()) return false;
     pending_ = value_of(reader_->read_line(line));
-    ended_ = false;
     push_pending();
     return true;
   }
   bool push_block(const AnyBlock& block) override {
     const auto made = block_of<AXES>(block);
-    if (!push_pending() || !executor_.push(made)) return false;
-    ended_ = false;
-    return true;
+    return push_pending() && executor_.push(made);
   }
   void end_of_program() override {
-    if (ended_) return;
-    if (push_pending()) pending_ = value_of(reader_->end_of_program());
     ended_ = true;
-    if (push_pending()) executor_.end_of_program();
+    finish();
   }
 
   AnySetPoint tick(double period) override {
     // What a line had no room for comes as soon as there is some.
-    if (pending() && push_pending() && ended_) executor_.end_of_program();
+    if (pending()) {
+      if (ended_)
+        finish();
+      else
+        push_pending();
+    }
     const auto point = executor_.tick(period);
     const auto list = [this](const Vector& vector) {
       return std::vector<double>(vector.data(), vector.data() + axes_);
@@ -100,7 +101,7 @@ class ExecutorOfSize final : public AnyExecutor {
     if (!executor_.restart(line, vector_of(position))) return false;
     reader_.emplace(executor_.machine(), read_);
     pending_.reset();
-    ended_ = false;
+    ended_ = closed_ = false;
     return true;
   }
 
@@ -114,12 +115,22 @@ class ExecutorOfSize final : public AnyExecutor {
     return true;
   }
 
+  // Says that nothing will follow, once all has found room: first to the reader, which may hold a motion
+  // back.
+  void finish() {
+    if (!push_pending()) return;
+    if (!closed_) pending_ = value_of(reader_->end_of_program());
+    closed_ = true;
+    if (push_pending()) executor_.end_of_program();
+  }
+
   std::size_t axes_;
   PlanOptions read_;
   std::optional<Reader> reader_;
   Runner executor_;
   std::optional<Reader::Blocks> pending_;  // of the last line
-  bool ended_ = false;
+  bool ended_ = false;                     // nothing will follow
+  bool closed_ = false;                    // the reader knows it
 };
 
 }  // namespace
