@@ -55,8 +55,7 @@ Walk walk(Method method, const P& path, const profile::Profile& profile, double 
     if (k + 1 == size) break;
     result.parameters.push_back(u);
     const double next = grid.time(k + 1);
-    if (method != Method::exact)
-      u = step(method, curve_point(path, u), u, along, next - grid.time(k));
+    if (method != Method::exact) u = step(method, curve_point(path, u), u, along, next - grid.time(k));
     along = travel.at(next, place);
   }
   result.end = u;
@@ -153,8 +152,7 @@ template <CurveByLength P>
 double largest_curvature(const P& path) {
   double largest = 0.0;
   for (int i = 0; i <= 1000; ++i)
-    largest = std::max(largest,
-                       frame(curve_point(path, path.parameter_end() * i / 1000)).second.norm());
+    largest = std::max(largest, frame(curve_point(path, path.parameter_end() * i / 1000)).second.norm());
   return largest;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cncplan/plan/joint_jumps.hpp"
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 

@@ -122,7 +122,9 @@ TEST_CASE("more words than a set point has room for come one after another", "[e
   CHECK(ticks == 2);
 }
 
-TEST_CASE("M0 holds unless that is switched off, M1 where it is switched on, lines and blocks where it is asked", "[executor]") {
+TEST_CASE(
+    "M0 holds unless that is switched off, M1 where it is switched on, lines and blocks where it is asked",
+    "[executor]") {
   const Lines lines{"G1 X5 F1200", "M0", "X10", "M1", "X15", "M60", "X20", "X25"};
   const auto places = [&](auto ask) {
     Runner executor(mill);

@@ -175,8 +175,7 @@ TEST_CASE("trajectory executor: a stop ends the program where it comes to rest",
   CHECK(executor.clock().position < 1);
 }
 
-TEST_CASE("trajectory executor: words come once, and stops wait as they are told",
-          "[trajectory-executor]") {
+TEST_CASE("trajectory executor: words come once, and stops wait as they are told", "[trajectory-executor]") {
   const auto trajectory = planned("F1800 M3 G1 X5\nM8\nY5\nM0\nX0\nM1\nY0\nM9\n", mill);
   for (const bool waits : {false, true}) {
     TrajectoryExecutor executor(trajectory, mill);

@@ -15,7 +15,7 @@ using namespace cncplan;
 
 namespace {
 
-using Move = test::StateCase;
+using RandomMove = test::StateCase;
 
 // Accelerations held, and for how long the first is; the other two holds follow from speed and length.
 struct Choice {
@@ -41,7 +41,7 @@ struct Motion {
   }
 };
 
-Motion drive(const Move& move, const Choice& choice, double second_hold, double third_hold) {
+Motion drive(const RandomMove& move, const Choice& choice, double second_hold, double third_hold) {
   const double v = move.start.velocity;
   Motion motion{0.0, v, move.start.acceleration, 0.0, v, v};
   const std::array<double, 3> holds{choice.first_hold, second_hold, third_hold};
@@ -59,7 +59,7 @@ Motion drive(const Move& move, const Choice& choice, double second_hold, double 
 }
 
 // Time of the motion with these holds that meets end speed and length within the limits; infinite if none.
-double time_of(const Move& move, const Choice& choice) {
+double time_of(const RandomMove& move, const Choice& choice) {
   constexpr double none = std::numeric_limits<double>::infinity();
   const auto [a1, a2, a3] = choice.held;
   if (a3 == 0.0) return none;
@@ -89,7 +89,7 @@ double time_of(const Move& move, const Choice& choice) {
   return best;
 }
 
-double searched(const Move& move, test::Random& random) {
+double searched(const RandomMove& move, test::Random& random) {
   const double a = move.limits.acceleration;
   const double longest = move.length / move.limits.velocity;
   const auto acceleration = [&] {
@@ -125,9 +125,9 @@ double searched(const Move& move, test::Random& random) {
   return time;
 }
 
-Move draw_move(test::Random& random) {
+RandomMove draw_move(test::Random& random) {
   for (;;) {
-    Move move{};
+    RandomMove move{};
     move.limits = {random.log_uniform(1.0, 100.0), random.log_uniform(10.0, 3000.0),
                    random.log_uniform(100.0, 1e5)};
     const double most =
@@ -150,9 +150,9 @@ TEST_CASE("no motion that a search finds is faster than from_state's") {
   constexpr int moves = 150;
   int near = 0;
   double fastest = 2.0;
-  Move where{};
+  RandomMove where{};
   for (int n = 0; n < moves; ++n) {
-    const Move move = draw_move(random);
+    const RandomMove move = draw_move(random);
     const auto profile = profile::from_state(move.length, move.start, move.end, move.limits);
     const double ratio = searched(move, random) / profile->duration();
     if (ratio < fastest) fastest = ratio, where = move;

@@ -94,8 +94,7 @@ Case draw(std::uint64_t seed, double seconds) {
 }
 
 template <class T>
-void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, const Case& c,
-             Errors& errors) {
+void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, const Case& c, Errors& errors) {
   std::vector<double> ends;  // mm of the program up to the end of each block
   for (const auto& block : blocks) ends.push_back((ends.empty() ? 0 : ends.back()) + block.path.length());
   const Mill& machine = c.program.machine;

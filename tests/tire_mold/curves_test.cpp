@@ -104,10 +104,9 @@ TEST_CASE("a cubic and a quadratic spline on the wall", "[tire_mold]") {
 TEST_CASE("NURBS on the wall", "[tire_mold]") {
   const Folder folder;
   write_machine(folder);
-  const auto done =
-      run(folder,
-          "G0 X150 Y10 Z0\nF600\nG5.2 P1 L4\nX165 Y20 P1\nX140 Y45 P1\nX160 Y60 P1\nG5.3\n"
-          "G0 Z5\nM30\n");
+  const auto done = run(folder,
+                        "G0 X150 Y10 Z0\nF600\nG5.2 P1 L4\nX165 Y20 P1\nX140 Y45 P1\nX160 Y60 P1\nG5.3\n"
+                        "G0 Z5\nM30\n");
   INFO(done.err);
   REQUIRE(done.exit == 0);
   CHECK(farthest(folder, bezier({{150, 10}, {165, 20}, {140, 45}, {160, 60}})) < 0.005);

@@ -334,9 +334,7 @@ class Trajectory<M, B>::Samples {
   };
 
   Samples(const Trajectory& trajectory, Scalar period)
-      : trajectory_(&trajectory),
-        grid_{period, trajectory.duration()},
-        size_(error() ? 0 : grid_.size()) {}
+      : trajectory_(&trajectory), grid_{period, trajectory.duration()}, size_(error() ? 0 : grid_.size()) {}
 
   /// Why there is none: `not_finite` or `not_positive` of the period.
   [[nodiscard]] std::optional<Error> error() const {

@@ -31,7 +31,8 @@ struct CanonMove {
 class Host;
 int send(Host& host, const CanonMove& move);
 
-/// How far a point is from a move's path, which begins at `start`; mm. No further search where it is `enough`.
+/// How far a point is from a move's path, which begins at `start`; mm. No further search where it is
+/// `enough`.
 [[nodiscard]] double distance(const Vector3& point, const Vector3& start, const CanonMove& move,
                               double enough = 0.0);
 
