@@ -22,7 +22,7 @@ int main() {
 
   std::printf("%10s %12s %14s %12s %12s\n", "hold at s", "speed mm/s", "rest after s", "X mm", "Y mm");
   for (const double at : {0.3, 0.66, 0.7, 1.5, 2.0}) {
-    cncplan::TrajectoryExecutor executor(*best, mill);
+    cncplan::TrajectoryExecutor executor(*best, mill, {.longest_hold = 1.5});
     if (const auto error = executor.error()) return std::fprintf(stderr, "%s\n", to_text(*error).c_str()), 2;
     double speed = 0;
     while (executor.clock().position < at) speed = executor.tick(0.001).velocity.norm();

@@ -1,5 +1,12 @@
 // Says how this library was compiled: see core/compiled.hpp.
 #include "cncplan/core/compiled.hpp"
 
-template <>
-const bool cncplan::detail::CompiledWithAlignment<EIGEN_MAX_ALIGN_BYTES>::value = true;
+namespace cncplan::detail {
+
+template <int eigen_alignment>
+bool compiled_with_alignment() {
+  return true;
+}
+template bool compiled_with_alignment<EIGEN_MAX_ALIGN_BYTES>();
+
+}  // namespace cncplan::detail

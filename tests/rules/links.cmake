@@ -5,6 +5,7 @@ cmake_minimum_required(VERSION 3.22)
 get_filename_component(folder ${PAGE} DIRECTORY)
 file(READ ${PAGE} text)
 string(REPLACE ";" "," text "${text}")
+string(REGEX REPLACE "\n```[^`]*\n```" "" text "${text}")  # code has brackets of its own
 string(REPLACE "](" "@(" text "${text}")  # brackets would join the list's elements
 string(REGEX REPLACE "[][]" "" text "${text}")
 string(REGEX MATCHALL "@\\([^)#]+" links "${text}")

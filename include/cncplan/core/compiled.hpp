@@ -17,13 +17,11 @@
 namespace cncplan::detail {
 
 /// Vectors lie in memory as Eigen aligns them, so a program and the library have to agree on that. The
-/// library defines `value` for its own alignment only: another one does not link.
+/// library defines this for its own alignment only: another one does not link.
 template <int eigen_alignment>
-struct CompiledWithAlignment {
-  static const bool value;
-};
+bool compiled_with_alignment();
 
-[[gnu::used]] inline const bool* const same_alignment = &CompiledWithAlignment<EIGEN_MAX_ALIGN_BYTES>::value;
+[[gnu::used]] inline bool (*const same_alignment)() = &compiled_with_alignment<EIGEN_MAX_ALIGN_BYTES>;
 
 }  // namespace cncplan::detail
 #endif
