@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "cncplan/core/limits.hpp"
@@ -33,6 +34,12 @@ struct MotionTiming {
   double duration{};
 };
 
+/// Lines of the program that are planned at another level of smoothing than was asked for.
+struct OtherLevel {
+  int first_line{}, last_line{};
+  std::string_view level, reason;
+};
+
 /// Axes in mm and degrees.
 struct Measures {
   double duration = 0.0;
@@ -52,6 +59,7 @@ struct Measures {
   double contour_error = 0.0;  ///< of samples from the programmed path, where that is driven
   double deviation = 0.0;      ///< of smoothed paths from the programmed ones
   std::size_t junctions_limited = 0;
+  std::vector<OtherLevel> other_levels;
   std::vector<cncplan::step::AxisReport> steps;  ///< none where no steps are made
   double plan_seconds = 0.0;
   double measure_seconds = 0.0;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "cncplan/core/limits.hpp"
 #include "junction_choice.hpp"
@@ -40,6 +41,12 @@ struct Options : support::RunOptions {
 
   bool period_given = false;  ///< on the command line
 
+  /// The level of smoothing that is asked for.
+  [[nodiscard]] std::string_view level() const {
+    if (!(tolerance > 0.0)) return "exact";
+    const Smooth asked = smooth.value_or(events ? Smooth::fast : Smooth::best);
+    return asked == Smooth::best ? "best" : asked == Smooth::good ? "good" : "fast";
+  }
   /// Samples are made.
   [[nodiscard]] bool makes_samples() const { return period_given || samples || plot || report; }
   /// Step edges are made, and held against the drives' rules.

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "measures.hpp"
 #include "options.hpp"
 #include "planned.hpp"
 #include "program_blocks.hpp"
@@ -19,7 +20,8 @@ struct Plan {
   std::unique_ptr<Planned> motion;
   std::vector<std::size_t> motion_of;  ///< of the program, for each block
   std::size_t junctions_limited = 0;  ///< joints between motions that are slower than the feeds on both sides
-  double seconds = 0.0;               ///< that planning took
+  std::vector<OtherLevel> other_levels;  ///< in the order of the program
+  double seconds = 0.0;                  ///< that planning took
 };
 
 /// On the exact path, by the level `fast`, or with events. Throws `Failure` for what cannot be planned.

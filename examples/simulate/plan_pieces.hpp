@@ -21,7 +21,11 @@ Plan plan_pieces(const Options& options, const support::Machine& file, const Mil
     error.file = program.file;
     throw support::Failure(support::Exit::bad_input, cncplan::to_text(error));
   }
-  for (const auto& piece : planned->program()) result.motion_of.push_back(program.motion_of[piece.source]);
+  const auto blocks = planned->program();
+  for (const cncplan::Fallback& part : planned->fallbacks())
+    result.other_levels.push_back({blocks[part.first].line, blocks[part.last].line, cncplan::name(part.level),
+                                   cncplan::text(part.reason)});
+  for (const auto& piece : blocks) result.motion_of.push_back(program.motion_of[piece.source]);
   result.motion = std::make_unique<PlannedOn<Mill<N>, typename Pieces<N>::Block>>(file, std::move(*planned));
   return result;
 }

@@ -96,6 +96,11 @@ std::string json_summary(const ProgramText& program, const Options& options, con
                        {"acceleration", m.tool_peak.acceleration},
                        {"jerk", m.tool_peak.jerk}};
   json["tolerance_mm"] = options.tolerance;
+  json["level"] = options.level();
+  json["fallbacks"] = Json::array();
+  for (const OtherLevel& part : m.other_levels)
+    json["fallbacks"].push_back(
+        {{"lines", {part.first_line, part.last_line}}, {"level", part.level}, {"reason", part.reason}});
   json["deviation_mm"] = m.deviation;
   json["acceleration_jumps"] = m.acceleration_jumps;
   json["corner_velocity_step"] = m.corner_velocity_step;
@@ -161,6 +166,9 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
                                     least < most ? fmt::format("{:.4g} to {:.4g}", least, most)
                                                  : fmt::format("{:.4g}", most)));
   }
+  for (const OtherLevel& part : m.other_levels)
+    row("another level",
+        fmt::format("lines {} to {}: {}, as {}", part.first_line, part.last_line, part.level, part.reason));
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
   row("junctions below their feed", fmt::format("{}", m.junctions_limited));
   if (options.makes_samples())

@@ -108,6 +108,7 @@ void Run::measure() {
   measures_.corner_velocity_step = shown(file_, peaks.corner_velocity_step).maxCoeff();
   measures_.acceleration_jumps = peaks.acceleration_jumps;
   measures_.junctions_limited = plan_.junctions_limited;
+  measures_.other_levels = plan_.other_levels;
   if (options_.tolerance > 0.0) measures_.deviation = largest_deviation(program_, plan_, places_);
   measures_.travel = PerAxis::Zero(static_cast<Eigen::Index>(file_.axes.size()));
   for (std::size_t i = 0; i < motion.block_count(); ++i) measures_.travel += shown(file_, motion.way(i));

@@ -121,6 +121,29 @@ TEST_CASE("the mean square error of a rotary axis is in square degrees") {
   }
 }
 
+TEST_CASE("the summary says which lines are planned at another level, and why") {
+  const test::Folder folder;
+  folder.write("mill.toml",
+               "[[axis]]\nletter = \"X\"\n[[axis]]\nletter = \"Y\"\n[[axis]]\nletter = \"Z\"\n"
+               "[[axis]]\nletter = \"C\"\nkind = \"rotary\"\nvelocity = 60\nacceleration = 1000\n"
+               "jerk = 10000\n");
+  const std::string text = "F600\nG1 X3\nX5 Y2\nC-20\nC10\nX7 Y4\n";
+  for (const std::string level : {"good", "best"}) {
+    INFO(level);
+    const auto json = folder.run_text(text, "--machine mill.toml --json --smooth " + level).json();
+    CHECK(json["level"] == level);
+    REQUIRE(json["fallbacks"].size() == 1);
+    CHECK(json["fallbacks"][0]["lines"] == nlohmann::json{4, 5});
+    CHECK(json["fallbacks"][0]["level"] == "fast");
+    CHECK(json["fallbacks"][0]["reason"] == "axes move, but not X Y Z");
+  }
+  const auto plain = folder.run_text(corner, "--json").json();
+  CHECK(plain["level"] == "best");
+  CHECK(plain["fallbacks"].empty());
+  CHECK(folder.run_text(corner, "--json --tolerance 0").json()["level"] == "exact");
+  CHECK(folder.run_text(corner, "--json --smooth fast").json()["level"] == "fast");
+}
+
 TEST_CASE("the real program of short lines is measured in less time than it is planned in") {
   const auto data = test::shared();
   if (!data) return;
