@@ -23,7 +23,7 @@ double largest_deviation(const ProgramText& program, const Plan& plan, const Mot
     int depth;
   };
   const Planned& motion = *plan.motion;
-  PathDistance distance;
+  PathDistance distance(program);
   double largest = 0.0;
   for (const auto& [phase, block] : motion.phases()) {
     const double length = motion.block_length(block);

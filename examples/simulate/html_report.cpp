@@ -31,7 +31,7 @@ report::Deviation deviation_of(const Options& options, const ProgramText& progra
   result.tolerance = least < most_tolerance ? 0.0 : most_tolerance;
   result.largest = largest;
   const MotionPlaces places(program, plan);
-  PathDistance distance;
+  PathDistance distance(program);
   for (double k = 0.0; k <= count; ++k) {
     const auto [block, along] = motion.at(k * result.period);
     const double within = along.position - motion.start_length(block);

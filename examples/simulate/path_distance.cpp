@@ -29,11 +29,36 @@ ExtendedSegment extended(const ToolPath& segment) {
 }  // namespace
 
 cncplan::Vector3 PathDistance::gap(const PlaceBeside& place) {
+  const Origin& own = *place.motion;
+  const double within = std::clamp(place.within, 0.0, own.length);
+  cncplan::Vector3 nearest = gap_of(own, place.position, within);
+  // What is nearer than the place where the point belongs is at most twice that far from it, along a path
+  // that turns little; where it turns sharply, motions on both sides of the corner are that near to it.
+  const double reach = 2.0 * (place.position - own.path.position_at(within)).norm();
+  const auto look = [&](const Origin& motion, double start) {
+    if (!(motion.length > 0.0) || motion.turns) return 0.0;
+    const cncplan::Vector3 gap = gap_of(motion, place.position, start);
+    if (gap.squaredNorm() < nearest.squaredNorm()) nearest = gap;
+    return motion.length;
+  };
+  const Origin* const first = program_.motions.data();
+  const Origin* const end = first + program_.motions.size();
+  double way = own.length - within;
+  for (const Origin* motion = &own + 1; motion != end && way < reach; ++motion) way += look(*motion, 0.0);
+  way = within;
+  for (const Origin* motion = &own; motion != first && way < reach;) {
+    --motion;
+    way += look(*motion, motion->length);
+  }
+  return nearest;
+}
+
+cncplan::Vector3 PathDistance::gap_of(const Origin& motion, const cncplan::Vector3& position, double within) {
   using cncplan::BasicVector3;
-  if (place.motion != motion_) exact_ = extended(place.motion->path);
-  motion_ = place.motion;
-  const BasicVector3<Extended> point = place.position.cast<Extended>();
-  Extended u = place.motion->path.parameter_at(std::clamp(place.within, 0.0, place.motion->length));
+  if (&motion != motion_) exact_ = extended(motion.path);
+  motion_ = &motion;
+  const BasicVector3<Extended> point = position.cast<Extended>();
+  Extended u = motion.path.parameter_at(within);
   for (int step = 0; step < 3; ++step) {
     const auto at = exact_.at(u);
     const BasicVector3<Extended> gap = at.position - point;

@@ -16,15 +16,23 @@ struct PlaceBeside {
 };
 
 /// Distance of points from the programmed path, which is computed in higher precision than the points were:
-/// the nearest parameter by Newton's method, from a guess that is close.
+/// the nearest parameter by Newton's method, from a guess that is close. Near the end of a motion the path of
+/// those beside it may be nearer than its own.
 class PathDistance {
  public:
+  /// The program must outlive it.
+  explicit PathDistance(const ProgramText& program) : program_(program) {}
+
   double operator()(const PlaceBeside& place) { return gap(place).norm(); }
 
   /// From the programmed path to the place, mm.
   cncplan::Vector3 gap(const PlaceBeside& place);
 
  private:
+  // From the path of one motion; the search begins `within` mm from its start.
+  cncplan::Vector3 gap_of(const Origin& motion, const cncplan::Vector3& position, double within);
+
+  const ProgramText& program_;
   const Origin* motion_ = nullptr;
   cncplan::path::BasicSegment<long double, 3, cncplan::path::BasicSpline<long double, 3>> exact_;
 };

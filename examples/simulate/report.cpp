@@ -37,14 +37,23 @@ Json share_json(const Share& share) {
   return {{"motions", share.motions}, {"length_mm", share.length}, {"time_s", share.time}};
 }
 
-std::string share_text(const Share& share) {
-  return fmt::format("{} motions, {:.3f} mm, {:.3f} s", share.motions, share.length, share.time);
+// From here on no more than the size of a time matters, s.
+constexpr double beyond_clocks = 1e12;
+
+std::string seconds_text(double seconds, int decimals) {
+  return seconds < beyond_clocks ? fmt::format("{:.{}f} s", seconds, decimals)
+                                 : fmt::format("{:.6g} s", seconds);
 }
 
-// 1:02:03 of seconds, to the nearest.
+std::string share_text(const Share& share) {
+  return fmt::format("{} motions, {:.3f} mm, {}", share.motions, share.length, seconds_text(share.time, 3));
+}
+
+// (1:02:03) of seconds, to the nearest.
 std::string clock_text(double seconds) {
+  if (!(seconds < beyond_clocks)) return "";
   const auto whole = static_cast<long long>(std::round(seconds));
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+  return fmt::format(" ({}:{:02}:{:02})", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
 std::string per_minute(double feed) { return fmt::format("{:.6g}", feed * 60.0); }
@@ -140,7 +149,7 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
   row("lines, motions, arcs",
       fmt::format("{}, {}, {}", program.lines, count_motions(program), count_arcs(program)));
   row("path length", fmt::format("{:.4f} mm", m.length));
-  row("time", fmt::format("{:.4f} s ({}){}{}", m.duration, clock_text(m.duration),
+  row("time", fmt::format("{}{}{}{}", seconds_text(m.duration, 4), clock_text(m.duration),
                           options.makes_samples() ? fmt::format(", {} samples", m.samples) : "",
                           m.completed ? "" : ", not to the end"));
   const Overview overview = overview_of(program, m, options.limits.velocity);

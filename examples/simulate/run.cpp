@@ -46,7 +46,7 @@ Run::Run(const Options& options, const support::Machine& file, const ProgramText
 void Run::sample(const std::function<void(const Sample&)>& take) {
   // A row is what the axes do: there is no other path to follow.
   const bool follows_path = file_.kinematics != support::Kinematics::tire_mold;
-  PathDistance distance;
+  PathDistance distance(program_);
   Sample row;
   double elsewhere = 0.0;
   {

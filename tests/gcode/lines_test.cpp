@@ -138,8 +138,7 @@ TEST_CASE("many comments on a line take time in proportion") {
   while (line.size() < 1000000) line += "(()";
   gcode::Reader reader;
   gcode::Item item;
-  CHECK_FALSE(
-      reader.read_line(line, &item));  // the end of the test is the check: quadratic, it takes minutes
+  CHECK(reader.read_line(line, &item));  // the end of the test is the check: quadratic, it takes minutes
 }
 
 TEST_CASE("a long program takes no memory") {

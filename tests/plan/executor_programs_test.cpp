@@ -36,6 +36,7 @@ TEST_CASE("programs of others take as long as their plans", "[executor]") {
     std::ifstream file(path);
     BlockReader reader(free);
     const auto executor = std::make_unique<Runner>(free, Runner::Options{.tolerance = tolerance});
+    executor->program_stop(false);
     int ticks = 0;
     const auto tick = [&] { return ++ticks, executor->tick(period); };
     for (std::string line; std::getline(file, line);) {

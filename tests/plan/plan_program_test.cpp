@@ -286,6 +286,26 @@ TEST_CASE("places that a mapped machine cannot reach are errors", "[program]") {
   CHECK(error_of("G1 X-250 Y10 F600\n", arm, {.start = {250, 10, 0}}) != "no error");
 }
 
+TEST_CASE("a tolerance that does not act under a map is told", "[program]") {
+  const MappedMachine<test::Scara> arm{
+      .map = {},
+      .axes = {{axis('J', AxisKind::rotary), axis('K', AxisKind::rotary), axis('Z')}},
+      .limits = {.velocity = 150, .acceleration = 2000, .jerk = 40000}};
+  const char* text = "G1 X260 F600\nY-170\nX255\n";
+  const auto within = plan_text(text, arm, {.tolerance = 0.01, .start = {250, -180, 0}});
+  REQUIRE(within);
+  REQUIRE(within->fallbacks().size() == 1);
+  const Fallback told = within->fallbacks()[0];
+  CHECK(told == Fallback{0, within->program().size() - 1, FallbackLevel::exact, FallbackReason::map});
+  REQUIRE(within->warnings().size() == 1);
+  CHECK(within->warnings()[0].find("a map has no smoothed paths") != std::string::npos);
+  const auto exact = plan_text(text, arm, {.tolerance = 0, .start = {250, -180, 0}});
+  REQUIRE(exact);
+  CHECK(exact->fallbacks().empty());
+  CHECK(exact->warnings().empty());
+  CHECK(exact->duration() == within->duration());
+}
+
 // From outside: what this project's simulator gave before trajectories were, with limits 30, 1000, 10000.
 TEST_CASE("the real programs take the time that they took before", "[program][slow]") {
   const auto shared = test::shared();
@@ -339,7 +359,7 @@ TEST_CASE("a program with parameters plans as the flat one", "[program]") {
   REQUIRE(flat);
   REQUIRE(with->blocks().size() == flat->blocks().size());
   CHECK(with->duration() == flat->duration());
-  CHECK(error_of("G1 F600\no1 if [1]\nX[1/0]\no1 endif\n", mill) == "3:4: error: / is not a finite number");
+  CHECK(error_of("G1 F600\no1 if [1]\nX[1/0]\no1 endif\n", mill) == "3:4: error: / divides by zero");
 }
 
 TEST_CASE("a file calls the files of its folder, and errors name the file", "[program]") {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cncplan/gcode/lines.hpp"
+#include "cncplan/plan/joint_jumps.hpp"
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/step_edges.hpp"

@@ -159,10 +159,10 @@ TEST_CASE("travel: end points, an arc's extremum, the offset included") {
   for (const auto& [program, error] : {
            Case{"G1 X10 Y5\nG1 X-5\n", ""},
            {"G1 X10.001\n", "1:4: error: axis X would move to 10.001, beyond its travel of -5 to 10"},
-           {"G1 X1\nY3 Z-2.5\n", "2:1: error: axis Z would move to -2.5, beyond its travel of -2 to 100"},
+           {"G1 X1\nY3 Z-2.5\n", "2:4: error: axis Z would move to -2.5, beyond its travel of -2 to 100"},
            {"G2 X8 I4\n", ""},
            {"G3 X8 I4\n", "1:7: error: axis Y would move to -4, beyond its travel of -1 to 5"},
-           {"G2 X10.2 I5.1\n", "1:10: error: axis X would move to 10.2, beyond its travel of -5 to 10"},
+           {"G2 X10.2 I5.1\n", "1:4: error: axis X would move to 10.2, beyond its travel of -5 to 10"},
            {"G2 X9 R5.2\n", ""},
            {"G2 X10 R5.01\nG55\nG1 X4\nX6\n",
             "4:1: error: axis X would move to 11, beyond its travel of -5 to 10"},

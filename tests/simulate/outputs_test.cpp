@@ -62,7 +62,7 @@ TEST_CASE("the summary has all keys, each of its kind") {
   const auto run = folder.run(test::example("pocket") +
                               " --json --count-steps --period 0.002 --vmax 25 --amax 900 --jmax 9000");
   REQUIRE(run.exit == 0);
-  CHECK(run.err.empty());
+  CHECK(run.err == test::pocket_warning);
   const auto json = run.json();
   for (const char* key : {"lines", "motions", "arcs", "samples", "junctions_limited", "warnings"}) {
     INFO(key);
@@ -70,7 +70,7 @@ TEST_CASE("the summary has all keys, each of its kind") {
     CHECK(json[key].is_number_unsigned());
   }
   for (const char* key : {"length_mm", "time_s", "corner_velocity_step", "end_error_mm", "contour_error_mm",
-                          "plan_s", "interpolate_s", "steps_s"}) {
+                          "plan_s", "measure_s", "interpolate_s", "steps_s"}) {
     INFO(key);
     REQUIRE(json.contains(key));
     CHECK(json[key].is_number_float());
@@ -96,6 +96,7 @@ TEST_CASE("the summary has all keys, each of its kind") {
   CHECK(json["limits"]["acceleration"] == 900.0);
   CHECK(json["limits"]["jerk"] == 9000.0);
   CHECK(json["lines"] == 26);
+  CHECK(json["warnings"] == 1);
   CHECK(json["motions"] == 19);
   CHECK(json["arcs"] == 7);
 }
@@ -209,7 +210,10 @@ TEST_CASE("axis peaks are no less than the samples of single arcs show") {
         speed = std::max(speed, std::abs(x[i + 1] - x[i - 1]) / 2e-5);
       for (std::size_t i = 200; i + 300 < x.size(); i += 100)  // third differences over a millisecond each
         jerk = std::max(jerk, std::abs(x[i + 200] - 3 * x[i + 100] + 3 * x[i] - x[i - 100]) / 1e-9);
-      CHECK(json["axis_peak"]["velocity"][name].get<double>() == Approx(speed).epsilon(1e-7));
+      // A peak is one that is attained, and 1e-6 of it may be missed (plan/peaks.hpp).
+      const double peak = json["axis_peak"]["velocity"][name];
+      CHECK(peak <= speed * (1.0 + 1e-7));
+      CHECK(peak >= speed * (1.0 - 1e-6));
       CHECK(json["axis_peak"]["jerk"][name].get<double>() >= jerk * (1.0 - 1e-3));
       CHECK(json["axis_peak"]["jerk"][name].get<double>() <= 10000.0 * (1.0 + 1e-9));
     }
@@ -236,11 +240,11 @@ TEST_CASE("a table for people, JSON for programs, nothing when quiet") {
   CHECK(table.exit == 0);
   CHECK(table.out.find("path length") != std::string::npos);
   CHECK(table.out.find("peak /s^2") != std::string::npos);
-  CHECK(table.err.empty());  // no bar where there is no terminal
+  CHECK(table.err == test::pocket_warning);  // no bar where there is no terminal
   const auto quiet = folder.run(test::example("pocket") + " --quiet");
   CHECK(quiet.exit == 0);
   CHECK(quiet.out.empty());
-  CHECK(quiet.err.empty());
+  CHECK(quiet.err == test::pocket_warning);
   const auto both = folder.run(test::example("pocket") + " --quiet --json");
   CHECK(both.json()["motions"] == 19);
   CHECK(folder.files().empty());

@@ -95,7 +95,12 @@ TEST_CASE("the table shows the tool and the axes against their limits, and the t
   CHECK(row_of(table, "X").find(" of 25") != std::string::npos);
   CHECK(row_of(table, "X").find(" of 500") != std::string::npos);
   CHECK(row_of(table, "X").find(" of 9000") != std::string::npos);
-  CHECK(row_of(table, "Y").find(" of ") == std::string::npos);
+  // Pulses of 2 us, high alone, are 500000 steps/s at most: 1250 mm/s at 400 steps/mm. No other limit is set.
+  const std::string of_y = row_of(table, "Y");
+  const std::size_t limit = of_y.find(" of 1250 ");
+  REQUIRE(limit != std::string::npos);
+  CHECK(of_y.find(" of ") == limit);
+  CHECK(of_y.find(" of ", limit + 1) == std::string::npos);
   CHECK(row_of(table, "off the path").find("tolerance 0.1") != std::string::npos);
   CHECK(row_of(table, "peak along").empty());
 
@@ -104,6 +109,16 @@ TEST_CASE("the table shows the tool and the axes against their limits, and the t
   const auto given = folder.run_text(corner, "--tolerance 0.02").out;
   CHECK(row_of(given, "off the path").find("tolerance 0.02") != std::string::npos);
   CHECK(row_of(given, "off the path").find(" to ") == std::string::npos);
+}
+
+TEST_CASE("a time beyond all clocks is told by its size") {
+  const test::Folder folder;
+  const auto run = folder.run_text("G1 X1\n", "--vmax 1e-300");  // 1 mm
+  REQUIRE(run.exit == 0);
+  INFO(run.out);
+  CHECK(row_of(run.out, "time").ends_with("  1e+300 s"));
+  CHECK(row_of(run.out, "cutting").ends_with("  1 motions, 1.000 mm, 1e+300 s"));
+  CHECK(row_of(folder.run_text("G4 P3725.5\n", "").out, "time").ends_with("  3725.5000 s (1:02:06)"));
 }
 
 TEST_CASE("the mean square error of a rotary axis is in square degrees") {

@@ -53,10 +53,10 @@ class PeakSearch {
   [[nodiscard]] Peaks search() {
     for_each_path([this](const auto& path, const auto& phase) {
       for (const Scalar share : {Scalar(0), Scalar(0.5), Scalar(1)})
-        (void)look(path, phase, share * phase.duration);
-      add_along(phase);
+        (void)this->look(path, phase, share * phase.duration);
+      this->add_along(phase);
     });
-    for_each_path([this](const auto& path, const auto& phase) { refine(path, phase); });
+    for_each_path([this](const auto& path, const auto& phase) { this->refine(path, phase); });
     Peaks peaks;
     peaks.velocity = found_.template segment<n>(0);
     peaks.acceleration = found_.template segment<n>(n);

@@ -90,7 +90,12 @@ template <MachineModel M, BlockModel B>
       merge_lines(std::span(blocks), machine, within);
       smoothing = plan::smoothing(std::span<const B>(blocks), machine, within, memory);
     }
-  return trajectory(std::move(blocks), machine, rules, SevenPhase{}, std::move(smoothing));
+  auto planned = trajectory(std::move(blocks), machine, rules, SevenPhase{}, std::move(smoothing));
+  if constexpr (MappedModel<M>)
+    if (planned && options.tolerance > 0 && !planned->program().empty())
+      planned->set_fallbacks(
+          {{{0, planned->program().size() - 1, FallbackLevel::exact, FallbackReason::map}}, memory});
+  return planned;
 }
 
 }  // namespace plan

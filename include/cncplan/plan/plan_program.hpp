@@ -55,6 +55,10 @@ void tell(T& trajectory, const ProgramRecord& program, bool smoothed) {
   for (const Problem& problem : program.problems()) warnings.push_back(to_text(problem));
   if (!smoothed)
     for (const Problem& problem : program.if_not_smoothed()) warnings.push_back(to_text(problem));
+  for (const Fallback& part : trajectory.fallbacks())
+    if (part.reason == FallbackReason::map)
+      warnings.push_back("the tolerance does not act, and the path is exact: " +
+                         std::string(text(part.reason)));
   trajectory.set_warnings(std::move(warnings));
 }
 

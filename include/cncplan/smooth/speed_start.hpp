@@ -107,6 +107,7 @@ class Plateaus {
   // joins the two. So levels in a row differ by a factor, and lowering one concerns only a few.
   Fit settle(std::size_t i) {
     constexpr S least_step = S(1.2);
+    constexpr S most_ramps = S(0.85);  // of the room: a run is cut where the speed stays as it is
     BasicPlateau<S>& at = all_[i];
     const bool left = all_[i - 1].speed_sq < at.speed_sq;
     const bool right = i + 1 < size_ && all_[i + 1].speed_sq < at.speed_sq;
@@ -121,11 +122,11 @@ class Plateaus {
     S level = S(0);
     if (left) level = all_[i - 1].speed_sq;
     if (right) level = std::max(level, all_[i + 1].speed_sq);
-    if (at.speed_sq > least_step * level && ramps(least_step * level) <= room) {
+    if (at.speed_sq > least_step * level && ramps(least_step * level) <= most_ramps * room) {
       S low = least_step * level, high = at.speed_sq;
       while (high > S(1.01) * low) {
         const S middle = std::sqrt(low * high);
-        (ramps(middle) <= room ? low : high) = middle;
+        (ramps(middle) <= most_ramps * room ? low : high) = middle;
       }
       at.speed_sq = low;
       return Fit::lowered;
@@ -163,7 +164,8 @@ class BasicDeparture {
                  const Shape& shape)
       : shape_(shape), speed_sq_(rest.speed * rest.speed), slope_(S(2) * rest.acceleration) {
     const S bend = S(2) * BasicGentleRamp<S>::share * limits.jerk / std::sqrt(S(8) * speed_sq_);
-    while (cells_ < most && length_ * bend < slope_) length_ += shape(cells_++).length;
+    do length_ += shape(cells_++).length;  // one at least: the slope at the first knot is given
+    while (cells_ < most && length_ * bend < slope_);
   }
 
   [[nodiscard]] std::size_t cells() const { return cells_; }
