@@ -98,7 +98,7 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
   std::vector<double> ends;  // mm of the program up to the end of each block
   for (const auto& block : blocks) ends.push_back((ends.empty() ? 0 : ends.back()) + block.path.length());
   const Mill& machine = c.program.machine;
-  TrajectoryExecutor executor(trajectory, machine);
+  TrajectoryExecutor executor(trajectory, machine, {.longest_hold = 1000});  // of any plan
   executor.program_stop(false);
   const auto share = [&](const Vector3& value, double rounding, double of_tool, auto of_axis) {
     double result = (value.norm() - rounding) / of_tool;
