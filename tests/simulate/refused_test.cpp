@@ -207,7 +207,8 @@ TEST_CASE("a full disk is noticed, whichever output meets it") {
 
 TEST_CASE("limits that are too small to plan with are bad input") {
   const test::Folder folder;
-  const std::string line = refused(folder, test::example("pocket") + " --quiet --amax 1e-300", 2, test::pocket_warning);
+  const std::string line =
+      refused(folder, test::example("pocket") + " --quiet --amax 1e-300", 2, test::pocket_warning);
   CHECK(line.find(".ngc:") != std::string::npos);  // wherever the first limit is too small for a number
   CHECK(line.find(": error: acceleration limit: 0 must be greater than zero") != std::string::npos);
 }

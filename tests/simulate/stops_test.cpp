@@ -102,6 +102,7 @@ TEST_CASE("a program's own G64 P wins over --tolerance") {
 TEST_CASE("G64 Q merges lines, of which each has its row, all within P") {
   constexpr std::size_t count = 120;
   constexpr double step = 0.05, P = 0.01;
+  constexpr double period = 1e-4;
   const std::string level = GENERATE("fast", "good", "best");
   const test::Folder folder;
   test::Random random;
@@ -113,7 +114,7 @@ TEST_CASE("G64 Q merges lines, of which each has its row, all within P") {
   }
   const auto run_with = [&](const std::string& mode) {
     const auto run = folder.run_text(mode + lines,
-                                     "--json --period 1e-3 --blocks b.csv --samples s.csv --smooth " + level);
+                                     "--json --period 1e-4 --blocks b.csv --samples s.csv --smooth " + level);
     REQUIRE(run.exit == 0);
     CHECK(run.err.empty());
     return run.json();
@@ -144,7 +145,10 @@ TEST_CASE("G64 Q merges lines, of which each has its row, all within P") {
     most = std::max(most, nearest);
   }
   CHECK(most <= P);
-  CHECK(most == Approx(with["deviation_mm"].get<double>()).margin(1e-9));
+  // Between samples, at up to 30 mm/s, paths that are at slopes of 0.08 at most part by no more than this.
+  constexpr double between = 30.0 * period / 2 * 2 * 0.08;
+  CHECK(with["deviation_mm"].get<double>() >= most - 1e-9);
+  CHECK(with["deviation_mm"].get<double>() <= most + between);
 }
 
 TEST_CASE("option --tolerance: within limits as samples show, within the tolerance, without a jump") {
