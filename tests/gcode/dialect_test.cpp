@@ -191,7 +191,8 @@ TEST_CASE("G70 and G71 are units in Mach3's dialect alone") {
     for (const auto& motion : reading.motions()) x.push_back(motion.end[0]);
     return x;
   };
-  CHECK(ends("G70 G0 X1\nG71 X2\nG70\nX3\nG21 X4\nG20 X1") == std::vector<double>{25.4, 2, 3 * 25.4, 4, 25.4});
+  CHECK(ends("G70 G0 X1\nG71 X2\nG70\nX3\nG21 X4\nG20 X1") ==
+        std::vector<double>{25.4, 2, 3 * 25.4, 4, 25.4});
   CHECK(test::read("G70 G21", mach3).error == "1:5: G21: words exclude each other (G20)");
   for (const char* control : {"linuxcnc", "grbl", "fanuc", "marlin"})
     for (const char* code : {"G70", "G71"})
