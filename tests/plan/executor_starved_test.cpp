@@ -102,7 +102,7 @@ TEST_CASE("an executor without more blocks runs all that it has, and rests once"
 
 TEST_CASE("blocks that come in time, one by one, are not let go", "[executor]") {
   const auto blocks = lines(400, 0.15);
-  for (const std::size_t every : {1, 3, 5}) {  // a block takes 7.5 ticks
+  for (const std::size_t every : {1U, 3U, 5U}) {  // a block takes 7.5 ticks
     const auto executor = std::make_unique<Mill>(mill, Mill::Options{.longest_wait = 0.4});
     std::size_t pushed = 0, ticks = 0;
     int rests = 0;
