@@ -140,9 +140,10 @@ TEST_CASE("the summary says which lines are planned at another level, and why") 
   const test::Folder folder;
   folder.write("mill.toml",
                "[[axis]]\nletter = \"X\"\n[[axis]]\nletter = \"Y\"\n[[axis]]\nletter = \"Z\"\n"
-               "[[axis]]\nletter = \"C\"\nkind = \"rotary\"\nvelocity = 60\nacceleration = 1000\n"
-               "jerk = 10000\n");
-  const std::string text = "F600\nG1 X3\nX5 Y2\nC-20\nC10\nX7 Y4\n";
+               "[[axis]]\nletter = \"A\"\nkind = \"rotary\"\nvelocity = 60\nacceleration = 1000\n"
+               "jerk = 10000\n[[axis]]\nletter = \"C\"\nkind = \"rotary\"\nvelocity = 60\n"
+               "acceleration = 1000\njerk = 10000\n");
+  const std::string text = "F600\nG1 X3\nX5 Y2\nA10 C-20\nA20 C-30\n";
   for (const std::string level : {"good", "best"}) {
     INFO(level);
     const auto json = folder.run_text(text, "--machine mill.toml --json --smooth " + level).json();
