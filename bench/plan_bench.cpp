@@ -125,7 +125,7 @@ BENCHMARK(plan_random)->Name("plan/random")->Unit(benchmark::kMillisecond);
 void pipeline_ball(benchmark::State& state) {
   std::int64_t samples = 0;
   for (auto _ : state) {
-    const auto trajectory = plan_text(ball(), bench::mill);
+    const auto trajectory = plan_text(ball(), bench::mill, {.tolerance = 0});
     if (!trajectory) return state.SkipWithError("the program has no plan");
     Eigen::Index written = 0;
     for (std::int64_t first = 0; first == 0 || written == bench::buffer_points; first += written) {

@@ -10,7 +10,7 @@ using namespace cncplan;
 
 // An item is a block; `seconds` is the motion's duration.
 void smooth_ball_fast(benchmark::State& state) {
-  const PlanOptions options{.tolerance = 0.01};
+  const PlanOptions options{.tolerance = 0.01, .level = SmoothLevel::fast};
   const auto program = read_text(bench::ball(), bench::mill, options);
   if (program.failed()) return state.SkipWithError("the program does not read");
   double seconds = 0;
@@ -26,7 +26,7 @@ BENCHMARK(smooth_ball_fast)->Name("smooth/ball/fast")->Unit(benchmark::kMillisec
 
 // The same without the speed: which junctions, and how large their kernels are.
 void smooth_ball_sizes(benchmark::State& state) {
-  const PlanOptions options{.tolerance = 0.01};
+  const PlanOptions options{.tolerance = 0.01, .level = SmoothLevel::fast};
   const auto program = read_text(bench::ball(), bench::mill, options);
   if (program.failed()) return state.SkipWithError("the program does not read");
   const std::span<const bench::Block> blocks(program.blocks());

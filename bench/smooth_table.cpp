@@ -21,7 +21,6 @@
 
 #include "cncplan/core/fixed_memory.hpp"
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 
 namespace {
 
@@ -159,9 +158,9 @@ struct Parts {
 };
 
 std::optional<Parts> plan_in_parts(const std::vector<Block>& blocks, const Mill& machine,
-                                   const PlanOptions& options, SmoothLevel level, std::size_t held,
+                                   const PlanOptions& options, std::size_t held,
                                    std::pmr::memory_resource* memory) {
-  SmoothStream<Mill, Block> stream(machine, options, level, held, memory);
+  SmoothStream<Mill, Block> stream(machine, options, held, memory);
   Parts parts;
   for (const Block& block : blocks) {
     if (!stream.push(block)) return std::nullopt;
@@ -179,17 +178,21 @@ bool print(const Case& c, const std::string& folder, std::size_t held) {
     std::fprintf(stderr, "%s: error: it does not read\n", c.file.c_str());
     return false;
   }
-  const PlanOptions exact{.junction_deviation = c.tolerance}, smooth{.tolerance = c.tolerance};
+  const PlanOptions exact{.tolerance = 0, .junction_deviation = c.tolerance};
+  const auto within = [&](SmoothLevel level) {
+    return PlanOptions{.tolerance = c.tolerance, .level = level};
+  };
   const Time jumping = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, exact); });
-  const Time fast = time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, smooth); });
+  const Time fast =
+      time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, within(SmoothLevel::fast)); });
   const auto smoothed = [&](SmoothLevel level) {
     const auto buffer = std::make_unique_for_overwrite<std::byte[]>(buffer_size);
     FixedMemory memory({buffer.get(), buffer_size});
     Time time =
         held == 0
-            ? time_of(blocks->size(), [&] { return plan_smooth(*blocks, machine, smooth, level, &memory); })
+            ? time_of(blocks->size(), [&] { return plan_blocks(*blocks, machine, within(level), &memory); })
             : time_of(blocks->size(),
-                      [&] { return plan_in_parts(*blocks, machine, smooth, level, held, &memory); });
+                      [&] { return plan_in_parts(*blocks, machine, within(level), held, &memory); });
     time.memory = 1e-6 * static_cast<double>(memory.most_used());
     return time;
   };

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ball.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
+#include "cncplan/plan/plan_blocks.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
 #include "latencies.hpp"
 #include "support/random.hpp"
@@ -22,9 +22,9 @@ int main(int argc, char** argv) {
   std::vector<bench::Block> blocks;
   if (!bench::read_blocks(bench::ball(), blocks))
     return std::fprintf(stderr, "the program does not read\n"), 1;
-  const PlanOptions options{.tolerance = 0.01};
-  const auto planned = plan_smooth(blocks, with_reserve(bench::mill, 0.05), options, SmoothLevel::good);
-  const auto without = plan_smooth(blocks, bench::mill, options, SmoothLevel::good);
+  const PlanOptions options{.tolerance = 0.01, .level = SmoothLevel::good};
+  const auto planned = plan_blocks(blocks, with_reserve(bench::mill, 0.05), options);
+  const auto without = plan_blocks(blocks, bench::mill, options);
   if (!planned || !without) return std::fprintf(stderr, "the program has no plan\n"), 1;
   std::printf("the program takes %.3f s, without a reserve %.3f s\n", planned->duration(),
               without->duration());

@@ -20,11 +20,13 @@ int main() {
     const auto planned = cncplan::plan_text(program, mill, {.tolerance = tolerance});
     if (!planned) return std::fprintf(stderr, "%s\n", to_text(planned.error()).c_str()), 2;
     double deviation = 0;
-    for (std::size_t block = 0; block < planned->program().size(); ++block) {
-      const auto driven = planned->path(block);
+    for (std::size_t piece = 0; piece < planned->piece_count(); ++piece) {
+      const auto driven = planned->path(piece);
+      const std::size_t block = planned->block_of(piece);
+      const double before = planned->piece_start(piece) - planned->start_length(block);
       for (int i = 0; i <= 1000; ++i) {
         const double s = driven.length() * i / 1000;
-        const auto programmed = planned->program()[block].path.position_at(s);
+        const auto programmed = planned->program()[block].path.position_at(before + s);
         deviation = std::max(deviation, (driven.position_at(s) - programmed).norm());
       }
     }

@@ -5,17 +5,17 @@
 #include <cstdio>
 
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
 
 int main() {
   const char* text = "G21 G90 F1800\nG1 X20\nY20\nX25 Y22\nG3 X30 Y10 R12\nG1 X0 Y0\n";
   const cncplan::Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  const cncplan::PlanOptions options{.tolerance = 0.01};
+  const cncplan::PlanOptions options{.tolerance = 0.01, .level = cncplan::SmoothLevel::best};
   const auto program = cncplan::read_text(text, mill, options);
   if (program.failed()) return std::fprintf(stderr, "%s\n", to_text(*program.first_error()).c_str()), 2;
-  auto best = cncplan::plan_smooth(program.blocks(), with_reserve(mill, 0.05), options);
-  const auto fast = cncplan::plan_blocks(program.blocks(), mill, options);
+  auto best = cncplan::plan_blocks(program.blocks(), with_reserve(mill, 0.05), options);
+  const auto fast =
+      cncplan::plan_blocks(program.blocks(), mill, {.tolerance = 0.01, .level = cncplan::SmoothLevel::fast});
   if (!best || !fast) return 2;
   best->set_words(timed_words(program, *best));
   std::printf("best with a reserve %.3f s, fast %.3f s\n\n", best->duration(), fast->duration());

@@ -21,14 +21,13 @@ int main() {
   }
   using Mill = cncplan::Machine<3>;
   const Mill mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  const cncplan::PlanOptions options{.tolerance = 0.01};
+  const cncplan::PlanOptions options{.tolerance = 0.01, .level = cncplan::SmoothLevel::good};
   const auto program = cncplan::read_text(text, mill, options);
   if (program.failed()) return std::fprintf(stderr, "%s\n", to_text(*program.first_error()).c_str()), 2;
 
   static std::byte buffer[8 << 20];
   cncplan::FixedMemory memory(buffer);
-  cncplan::SmoothStream<Mill, cncplan::ProgramBlock<Mill>> stream(mill, options, cncplan::SmoothLevel::good,
-                                                                  400, &memory);
+  cncplan::SmoothStream<Mill, cncplan::ProgramBlock<Mill>> stream(mill, options, 400, &memory);
   double time = 0;
   std::printf("%10s %8s %12s %14s\n", "time s", "line", "speed mm/s", "accel. mm/s^2");
   const auto take = [&] {

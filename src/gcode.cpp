@@ -7,6 +7,7 @@
 #include "cncplan/gcode/dialect-inl.hpp"
 #include "cncplan/gcode/language/control_word-inl.hpp"
 #include "cncplan/gcode/language/expression-inl.hpp"
+#include "cncplan/gcode/language/find_file-inl.hpp"
 #include "cncplan/gcode/language/flat_line-inl.hpp"
 #include "cncplan/gcode/language/machine_parameters-inl.hpp"
 #include "cncplan/gcode/language/modal_state-inl.hpp"

@@ -4,5 +4,6 @@
 namespace cncplan {
 
 CNCPLAN_PLAN_PROGRAM(, Machine<3>)
+CNCPLAN_PLAN_PROGRAM(, Machine<6>)
 
 }  // namespace cncplan

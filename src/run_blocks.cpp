@@ -3,7 +3,7 @@
 
 namespace cncplan {
 
-CNCPLAN_RUN_BLOCKS(, Machine<3>, ProgramBlock<Machine<3>>)
 CNCPLAN_RUN_BLOCKS(, Machine<3>, Block<3>)
+CNCPLAN_RUN_BLOCKS(, Machine<6>, Block<6>)
 
 }  // namespace cncplan

@@ -54,7 +54,7 @@ void put_samples(support::Gnuplot& plot, const char* name, const MillTrajectory&
 }  // namespace
 
 void figure7(support::Gnuplot* plot) {
-  const MillTrajectory ours = plan_text(five_arcs, mill).value();
+  const MillTrajectory ours = plan_text(five_arcs, mill, {.tolerance = 0}).value();
   const MillTrajectory published =
       published_plan({ours.program().begin(), ours.program().end()}, Lengths::in_space);
 

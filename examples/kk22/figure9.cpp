@@ -18,7 +18,7 @@ constexpr const char* six_helices =
     "G03 X20 Y0 Z10 R10\nX0 Y0 Z20 R10\nX20 Y0 Z30 R10\nX0 Y0 Z40 R10\nX20 Y0 Z50 R10\nX0 Y0 Z60 R10\n";
 
 MillTrajectory planned(const char* program, Lengths lengths) {
-  const MillTrajectory whole = plan_text(program, mill).value();
+  const MillTrajectory whole = plan_text(program, mill, {.tolerance = 0}).value();
   return published_plan({whole.program().begin(), whole.program().end()}, lengths);
 }
 

@@ -172,7 +172,8 @@ Run run(const std::vector<MillBlock>& blocks, const support::Machine& machine) {
   Table table;
   for (std::size_t i = 0; i < table.axes.size(); ++i) table.axes[i] = machine.axis(i);
   table.limits.velocity = limits.velocity;
-  const auto planned = plan_blocks(on_table(blocks, machine.smallest_radius.value_or(1.0)), table);
+  const auto planned =
+      plan_blocks(on_table(blocks, machine.smallest_radius.value_or(1.0)), table, {.tolerance = 0});
   if (!planned) throw support::Failure(support::Exit::other, to_text(planned.error()));
   Tracker tracker(*planned, machine);
   const auto axes = follow_steps(*planned, period, [&](const MotorEdge& edge) { tracker.take(edge); });

@@ -12,12 +12,12 @@
 
 namespace report {
 
-/// Blocks, and the phases that drive them; mm, rad and s.
+/// Pieces of a path, and the phases that drive them; mm, rad and s.
 class Driven {
  public:
   /// `along` counts from the program's start.
   struct Instant {
-    std::size_t block{};
+    std::size_t piece{};
     cncplan::State along;
   };
 
@@ -28,18 +28,19 @@ class Driven {
 
   [[nodiscard]] virtual double duration() const = 0;
   [[nodiscard]] virtual double length() const = 0;
-  [[nodiscard]] virtual std::span<const cncplan::plan::BasicBlockPhase<double>> phases() const = 0;
+  [[nodiscard]] virtual std::span<const cncplan::BasicPiecePhase<double>> phases() const = 0;
   [[nodiscard]] virtual Instant at(double time) const = 0;
-  [[nodiscard]] virtual std::size_t block_count() const = 0;
-  [[nodiscard]] virtual double block_length(std::size_t block) const = 0;
-  /// From the program's start to a block's, or to the end for the block behind the last one.
-  [[nodiscard]] virtual double start_length(std::size_t block) const = 0;
+  [[nodiscard]] virtual std::size_t piece_count() const = 0;
+  [[nodiscard]] virtual double piece_length(std::size_t piece) const = 0;
+  /// From the program's start to a piece's, and whether its length is counted so.
+  [[nodiscard]] virtual double piece_start(std::size_t piece) const = 0;
+  [[nodiscard]] virtual bool counts(std::size_t piece) const = 0;
   /// The speed that the program asks for; not finite where it asks for none.
-  [[nodiscard]] virtual double wanted_speed(std::size_t block) const = 0;
+  [[nodiscard]] virtual double wanted_speed(std::size_t piece) const = 0;
   /// What stands in the way of a higher speed, of each phase.
   [[nodiscard]] virtual std::vector<LimitedBy> limited_by() const = 0;
-  /// The tool and the axes where a block has been travelled so far.
-  [[nodiscard]] virtual ChannelPoint channels(std::size_t block, double s) const = 0;
+  /// The tool and the axes where a piece has been travelled so far.
+  [[nodiscard]] virtual ChannelPoint channels(std::size_t piece, double s) const = 0;
 };
 
 }  // namespace report

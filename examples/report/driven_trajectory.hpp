@@ -12,48 +12,63 @@
 
 namespace report {
 
-/// A trajectory, and the function that makes channels of a block's number and a length; both outlive it.
-template <class T, class ChannelsAt>
-class DrivenTrajectory final : public Driven {
+/// All of a `Driven`, or of what is derived from it, but its channels. The trajectory outlives it.
+template <class T, class Base = Driven>
+class DrivenTrajectory : public Base {
  public:
-  DrivenTrajectory(const T& trajectory, const ChannelsAt& channels_at)
-      : trajectory_(trajectory), channels_at_(channels_at) {}
+  explicit DrivenTrajectory(const T& trajectory) : driven_(trajectory) {}
 
-  [[nodiscard]] double duration() const override { return trajectory_.duration(); }
-  [[nodiscard]] double length() const override { return trajectory_.length(); }
-  [[nodiscard]] std::span<const cncplan::plan::BasicBlockPhase<double>> phases() const override {
-    return trajectory_.phases();
+  [[nodiscard]] double duration() const override { return driven_.duration(); }
+  [[nodiscard]] double length() const override { return driven_.length(); }
+  [[nodiscard]] std::span<const cncplan::BasicPiecePhase<double>> phases() const override {
+    return driven_.phases();
   }
-  [[nodiscard]] Instant at(double time) const override {
-    const auto point = trajectory_.at(time);
-    return {point.block, point.along};
+  [[nodiscard]] Driven::Instant at(double time) const override {
+    return {piece_at(time), driven_.at(time).along};
   }
-  [[nodiscard]] std::size_t block_count() const override { return trajectory_.program().size(); }
-  [[nodiscard]] double block_length(std::size_t block) const override {
-    return trajectory_.program()[block].path.length();
+  [[nodiscard]] std::size_t piece_count() const override { return driven_.piece_count(); }
+  [[nodiscard]] double piece_length(std::size_t piece) const override { return driven_.path(piece).length(); }
+  [[nodiscard]] double piece_start(std::size_t piece) const override { return driven_.piece_start(piece); }
+  [[nodiscard]] bool counts(std::size_t piece) const override {
+    const std::size_t block = driven_.block_of(piece);
+    return driven_.start_length(block + 1) > driven_.start_length(block);
   }
-  [[nodiscard]] double start_length(std::size_t block) const override {
-    return trajectory_.start_length(block);
+  [[nodiscard]] double wanted_speed(std::size_t piece) const override {
+    return wanted_speed_of(driven_, piece);
   }
-  [[nodiscard]] double wanted_speed(std::size_t block) const override {
-    return wanted_speed_of(trajectory_, block);
-  }
-  [[nodiscard]] std::vector<LimitedBy> limited_by() const override { return report::limited_by(trajectory_); }
-  [[nodiscard]] ChannelPoint channels(std::size_t block, double s) const override {
-    return channels_at_(block, s);
+  [[nodiscard]] std::vector<LimitedBy> limited_by() const override { return report::limited_by(driven_); }
+
+ protected:
+  [[nodiscard]] std::size_t piece_at(double time) const {
+    const auto phases = driven_.phases();
+    return phases.empty() ? driven_.piece_count() - 1 : phases[driven_.phase_at(time)].piece;
   }
 
  private:
-  const T& trajectory_;
+  const T& driven_;
+};
+
+/// With a function that makes channels of a piece's number and a length; it outlives this.
+template <class T, class ChannelsAt>
+class DrivenWithChannels final : public DrivenTrajectory<T> {
+ public:
+  DrivenWithChannels(const T& trajectory, const ChannelsAt& channels_at)
+      : DrivenTrajectory<T>(trajectory), channels_at_(channels_at) {}
+
+  [[nodiscard]] ChannelPoint channels(std::size_t piece, double s) const override {
+    return channels_at_(piece, s);
+  }
+
+ private:
   const ChannelsAt& channels_at_;
 };
 
-/// The columns of a trajectory. channels_at(number of a block, s): the channels and their derivatives by
+/// The columns of a trajectory. channels_at(number of a piece, s): the channels and their derivatives by
 /// length.
 template <class T, class ChannelsAt>
 [[nodiscard]] MotionData motion_data(const T& trajectory, const ChannelsAt& channels_at,
                                      const std::function<Place(std::size_t)>& place_of) {
-  return motion_data(DrivenTrajectory<T, ChannelsAt>(trajectory, channels_at), place_of);
+  return motion_data(DrivenWithChannels<T, ChannelsAt>(trajectory, channels_at), place_of);
 }
 
 }  // namespace report

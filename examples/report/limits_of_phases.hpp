@@ -13,10 +13,10 @@
 
 namespace report {
 
-/// The speed that a block of a trajectory is to have: mm/s, rad/s where only rotary axes move.
+/// The speed that a piece of a trajectory is to have: mm/s, rad/s where only rotary axes move.
 template <class T>
-[[nodiscard]] double wanted_speed_of(const T& trajectory, std::size_t block) {
-  const auto& own = trajectory.program()[block];
+[[nodiscard]] double wanted_speed_of(const T& trajectory, std::size_t piece) {
+  const auto& own = trajectory.program()[trajectory.block_of(piece)];
   const auto& machine = trajectory.machine();
   return cncplan::plan::wanted_speed(own, machine, cncplan::length_of(own.path, machine));
 }
@@ -28,7 +28,7 @@ namespace detail {
 template <class T>
 [[nodiscard]] bool near_feed(const T& trajectory, const typename T::Phase& at) {
   constexpr double near = 0.98;
-  return at.phase.at(at.phase.duration / 2).velocity >= near * wanted_speed_of(trajectory, at.block);
+  return at.phase.at(at.phase.duration / 2).velocity >= near * wanted_speed_of(trajectory, at.piece);
 }
 
 template <class T>
@@ -37,9 +37,9 @@ template <class T>
   const auto& machine = trajectory.machine();
   const double v = at.phase.velocity;
   if (!(v > 0.0)) return LimitedBy::rest;
-  if (v >= (1 - rounding) * wanted_speed_of(trajectory, at.block)) return LimitedBy::feed;
+  if (v >= (1 - rounding) * wanted_speed_of(trajectory, at.piece)) return LimitedBy::feed;
   const double middle = at.phase.at(at.phase.duration / 2).position;
-  const auto path = trajectory.path(at.block).point_at(middle);
+  const auto path = trajectory.path(at.piece).point_at(middle);
   for (int i = 0; i < path.first.size(); ++i) {
     const auto& axis = machine.axes[static_cast<std::size_t>(i)];
     if (std::abs(path.first[i]) * v >= (1 - rounding) * cncplan::least_velocity(axis))
@@ -47,17 +47,6 @@ template <class T>
   }
   if (near_feed(trajectory, at)) return LimitedBy::feed;
   return path.second.norm() > 0.0 ? LimitedBy::curvature : LimitedBy::look_ahead;
-}
-
-// Whether a block's path is bent by smoothing.
-template <class T>
-[[nodiscard]] bool smoothed(const T& trajectory, std::size_t block) {
-  if (!trajectory.path(block).exact()) return true;
-  const auto& made = trajectory.program()[block];
-  if constexpr (requires { made.source; })
-    return made.path.line() == nullptr && made.path.arc() == nullptr;
-  else
-    return false;
 }
 
 // The largest share that the tool's or an axis' acceleration or jerk takes of its limit.
@@ -77,9 +66,9 @@ template <class M, class V>
 // Half-way through a phase, by what the bend alone takes at that speed.
 template <class T>
 [[nodiscard]] bool limited_by_tolerance(const T& trajectory, const typename T::Phase& at) {
-  if (!smoothed(trajectory, at.block)) return false;
+  if (trajectory.path(at.piece).exact()) return false;
   const auto half = at.phase.at(at.phase.duration / 2);
-  const auto bend = cncplan::motion(trajectory.path(at.block).point_at(half.position),
+  const auto bend = cncplan::motion(trajectory.path(at.piece).point_at(half.position),
                                     cncplan::State{half.position, half.velocity, 0.0, 0.0});
   return share_of_limits(trajectory.machine(), bend) > 0.5;
 }
@@ -92,7 +81,7 @@ template <class T>
   const auto phases = trajectory.phases();
   std::vector<LimitedBy> result(phases.size());
   for (std::size_t i = phases.size(); i-- > 0;) {
-    const auto& [phase, block] = phases[i];
+    const auto& [phase, piece] = phases[i];
     const auto change = [](const cncplan::Phase& p) { return p.at(p.duration).velocity - p.velocity; };
     const bool steady = phase.acceleration == 0.0 && phase.jerk == 0.0;
     if (!steady && detail::near_feed(trajectory, phases[i])) {
@@ -106,9 +95,10 @@ template <class T>
     } else {  // where does it slow down to?
       const bool last = i + 1 == phases.size();
       const bool goes_on = !last && change(phases[i + 1].phase) < 0.0;
-      result[i] = goes_on                                ? result[i + 1]
-                  : last || phases[i + 1].block != block ? LimitedBy::junction
-                                                         : LimitedBy::look_ahead;
+      result[i] = goes_on ? result[i + 1]
+                  : last || trajectory.block_of(phases[i + 1].piece) != trajectory.block_of(piece)
+                      ? LimitedBy::junction
+                      : LimitedBy::look_ahead;
     }
   }
   return result;

@@ -30,18 +30,18 @@ std::uint32_t index_in(std::vector<double>& table, const Values& values) {
   if (phases.size() > most_phases) return false;
   PhaseColumns motion(phases);
   const auto limited = driven.limited_by();
-  for (std::size_t i = 0; i < phases.size(); ++i) motion.add(phases[i].phase, phases[i].block, limited[i]);
+  for (std::size_t i = 0; i < phases.size(); ++i) motion.add(phases[i].phase, phases[i].piece, limited[i]);
 
   PathColumns path(data.channels);
   std::vector<std::int64_t> line, kind, offset, wanted, counted;
-  for (std::size_t i = 0; i < driven.block_count(); ++i) {
+  for (std::size_t i = 0; i < driven.piece_count(); ++i) {
     const Place place = place_of(i);
     line.push_back(std::max(place.line, 0));
     kind.push_back(static_cast<std::int64_t>(place.kind));
     offset.push_back(index_in(data.offsets, place.offset));
     wanted.push_back(index_in(data.wanted, std::array{driven.wanted_speed(i)}));
-    counted.push_back(driven.start_length(i + 1) > driven.start_length(i) ? 1 : 0);
-    path.add(driven.block_length(i), [&](double s) { return driven.channels(i, s); });
+    counted.push_back(driven.counts(i) ? 1 : 0);
+    path.add(driven.piece_length(i), [&](double s) { return driven.channels(i, s); });
   }
   if (!motion.complete() || !path.complete()) return false;
   motion.put(data.columns);
@@ -70,8 +70,8 @@ void add_samples(MotionData& data, const Driven& driven, const PlaceOf& place_of
   samples.period = data.duration / static_cast<double>(count);
   const auto limited = driven.limited_by();
   const auto at = [&](const Driven::Instant& point) -> ChannelMotion {
-    const double within = point.along.position - driven.start_length(point.block);
-    return cncplan::motion(driven.channels(point.block, within), point.along);
+    const double within = point.along.position - driven.piece_start(point.piece);
+    return cncplan::motion(driven.channels(point.piece, within), point.along);
   };
   std::size_t phase = 0;
   std::optional<ChannelMotion> last;
@@ -79,11 +79,11 @@ void add_samples(MotionData& data, const Driven& driven, const PlaceOf& place_of
     const double time = samples.period * static_cast<double>(k);
     const Driven::Instant here = driven.at(time);
     while (phase + 1 < limited.size() && driven.phases()[phase + 1].phase.time <= time) ++phase;
-    const Place place = place_of(here.block);
+    const Place place = place_of(here.piece);
     samples.velocity.push_back(static_cast<float>(here.along.velocity));
     samples.acceleration.push_back(static_cast<float>(here.along.acceleration));
     samples.jerk.push_back(static_cast<float>(here.along.jerk));
-    samples.wanted.push_back(static_cast<float>(driven.wanted_speed(here.block)));
+    samples.wanted.push_back(static_cast<float>(driven.wanted_speed(here.piece)));
     samples.travelled.push_back(here.along.position);
     samples.line.push_back(static_cast<std::uint32_t>(std::max(place.line, 0)));
     samples.offset.push_back(index_in(data.offsets, place.offset));
@@ -106,7 +106,7 @@ MotionData motion_data(const Driven& driven, const PlaceOf& place_of) {
   MotionData data;
   data.duration = driven.duration();
   data.end_length = driven.length();
-  if (driven.block_count() > 0)
+  if (driven.piece_count() > 0)
     data.channels = static_cast<std::size_t>(driven.channels(0, 0.0).position.size());
   const MotionData empty = data;
   if (!add_whole(data, driven, place_of)) {

@@ -20,7 +20,7 @@ namespace report {
 /// state of its own: at rest, and where it would be found too far from where it should be.
 class PhaseColumns {
  public:
-  explicit PhaseColumns(std::span<const cncplan::plan::BasicBlockPhase<double>> phases) {
+  explicit PhaseColumns(std::span<const cncplan::BasicPiecePhase<double>> phases) {
     double longest = 0.0, end = 0.0;
     for (const auto& [phase, block] : phases) {
       end = std::max(end, phase.time + phase.duration);

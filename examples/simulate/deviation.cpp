@@ -12,7 +12,7 @@ namespace simulate {
 MotionPlaces::MotionPlaces(const ProgramText& program, const Plan& plan)
     : plan_(plan), starts_(program.motions.size(), 0.0) {
   for (std::size_t i = plan.motion_of.size(); i-- > 0;)
-    starts_[plan.motion_of[i]] = plan.motion->start_length(i);
+    starts_[plan.motion_of[i]] = plan.motion->block_start(i);
 }
 
 double largest_deviation(const ProgramText& program, const Plan& plan, const MotionPlaces& places) {
@@ -25,15 +25,15 @@ double largest_deviation(const ProgramText& program, const Plan& plan, const Mot
   const Planned& motion = *plan.motion;
   PathDistance distance(program);
   double largest = 0.0;
-  for (const auto& [phase, block] : motion.phases()) {
-    const double length = motion.block_length(block);
+  for (const auto& [phase, piece] : motion.phases()) {
+    const double length = motion.piece_length(piece);
     const double start = std::clamp(phase.position, 0.0, length);
     const double end = std::clamp(phase.at(phase.duration).position, 0.0, length);
-    if (!(end > start) || motion.as_programmed(block)) continue;
-    const auto at = [&, number = block](double s) {
-      const double along = motion.start_length(number) + s;
+    if (!(end > start) || motion.as_programmed(piece)) continue;
+    const auto at = [&, piece = piece, block = motion.block_of(piece)](double s) {
+      const double along = motion.piece_start(piece) + s;
       const double gap = distance(
-          {&program.motions[plan.motion_of[number]], motion.tool(number, s), places.within(number, along)});
+          {&program.motions[plan.motion_of[block]], motion.tool(piece, s), places.within(block, along)});
       largest = std::max(largest, gap);
       return gap;
     };

@@ -33,9 +33,10 @@ report::Deviation deviation_of(const Options& options, const ProgramText& progra
   const MotionPlaces places(program, plan);
   PathDistance distance(program);
   for (double k = 0.0; k <= count; ++k) {
-    const auto [block, along] = motion.at(k * result.period);
-    const double within = along.position - motion.start_length(block);
-    const PlaceBeside place{&program.motions[plan.motion_of[block]], motion.tool(block, within),
+    const auto [piece, along] = motion.at(k * result.period);
+    const std::size_t block = motion.block_of(piece);
+    const double within = along.position - motion.piece_start(piece);
+    const PlaceBeside place{&program.motions[plan.motion_of[block]], motion.tool(piece, within),
                             places.within(block, along.position)};
     for (const double gap : distance.gap(place)) result.vectors.push_back(static_cast<float>(gap));
   }
@@ -47,8 +48,8 @@ report::Deviation deviation_of(const Options& options, const ProgramText& progra
 report::Plan plan_of(const Options& options, const ProgramText& program, const Plan& plan, double deviation) {
   const std::string name =
       options.tolerance > 0.0 ? fmt::format("tolerance {} mm", options.tolerance) : std::string("exact path");
-  const auto place_of = [&](std::size_t block) {
-    const Origin& motion = program.motions[plan.motion_of[block]];
+  const auto place_of = [&](std::size_t piece) {
+    const Origin& motion = program.motions[plan.motion_of[plan.motion->block_of(piece)]];
     return report::Place{motion.line, motion.kind, motion.offset};
   };
   return {name, report::motion_data(*plan.motion, place_of), deviation_of(options, program, plan, deviation)};

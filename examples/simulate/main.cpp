@@ -14,6 +14,7 @@ namespace simulate {
 
 namespace {
 
+using cncplan::SmoothLevel;
 using support::Exit;
 using support::Failure;
 
@@ -21,7 +22,7 @@ using support::Failure;
 void settle_for_executor(Options& options) {
   if (options.corner_tolerance < 0.0)
     throw Failure(Exit::bad_input, "--serve passes corners by --tolerance: it goes without --junction");
-  if (options.tolerance > 0.0) options.smooth = Smooth::fast;
+  if (options.tolerance > 0.0) options.smooth = SmoothLevel::fast;
 }
 
 // Refuses what the options ask for and the machine cannot do.
@@ -44,7 +45,7 @@ void settle(Options& options, const support::Machine& machine) {
     refuse("--serve goes with --profile seven, --plan span and --interpolator exact only");
   if (options.compare.value_or(0.0) > 0.0 && (!as_planned || machine.kinematics != Kinematics::cartesian))
     refuse("--compare above 0 is for what --tolerance above 0 is for");
-  if (options.events && options.smooth.value_or(Smooth::fast) != Smooth::fast)
+  if (options.events && options.smooth.value_or(SmoothLevel::fast) != SmoothLevel::fast)
     refuse("--smooth good and best are for motion without events: its speed is planned as a whole");
   if (machine.kinematics != Kinematics::cartesian) {
     if (options.tolerance_given && options.tolerance > 0.0)

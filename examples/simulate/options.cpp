@@ -84,7 +84,9 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option_function<std::string>(
          "--smooth",
          [&options](const std::string& level) {
-           options.smooth = level == "best" ? Smooth::best : level == "good" ? Smooth::good : Smooth::fast;
+           options.smooth = level == "best"   ? cncplan::SmoothLevel::best
+                            : level == "good" ? cncplan::SmoothLevel::good
+                                              : cncplan::SmoothLevel::fast;
          },
          "with --tolerance, fast: closed form, as an executor does; best: the fastest motion; good: nearly "
          "that, with less work; best if not given, fast with --events")

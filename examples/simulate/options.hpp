@@ -3,9 +3,9 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "cncplan/core/limits.hpp"
+#include "cncplan/plan/smooth_level.hpp"
 #include "junction_choice.hpp"
 #include "serve/address.hpp"
 #include "support/arguments.hpp"
@@ -15,7 +15,6 @@ namespace simulate {
 enum class Law { five, seven };
 enum class Planning { span, block };
 enum class Interpolator { exact, taylor, constant };
-enum class Smooth { fast, good, best };
 
 struct Options : support::RunOptions {
   std::string program;
@@ -24,9 +23,10 @@ struct Options : support::RunOptions {
   Law law = Law::seven;
   Planning planning = Planning::span;
   Interpolator interpolator = Interpolator::exact;
-  double tolerance = 0.0;             ///< mm from the path, within which it is smoothed; 0: the exact path
-  bool tolerance_given = false;       ///< on the command line
-  std::optional<Smooth> smooth{};     ///< of the path within the tolerance; the best that goes, if not given
+  double tolerance = 0.0;        ///< mm from the path, within which it is smoothed; 0: the exact path
+  bool tolerance_given = false;  ///< on the command line
+  std::optional<cncplan::SmoothLevel>
+      smooth{};                       ///< of the path within the tolerance; the best that goes, if not given
   double corner_tolerance = -1.0;     ///< mm, of exact corners that count as rounded; negative: none do
   double rotary_tolerance = 0.05;     ///< degrees
   std::optional<double> tool_length;  ///< mm
@@ -42,10 +42,10 @@ struct Options : support::RunOptions {
   bool period_given = false;  ///< on the command line
 
   /// The level of smoothing that is asked for.
-  [[nodiscard]] std::string_view level() const {
-    if (!(tolerance > 0.0)) return "exact";
-    const Smooth asked = smooth.value_or(events ? Smooth::fast : Smooth::best);
-    return asked == Smooth::best ? "best" : asked == Smooth::good ? "good" : "fast";
+  [[nodiscard]] cncplan::SmoothLevel level() const {
+    using cncplan::SmoothLevel;
+    if (!(tolerance > 0.0)) return SmoothLevel::exact;
+    return smooth.value_or(events ? SmoothLevel::fast : SmoothLevel::best);
   }
   /// Samples are made.
   [[nodiscard]] bool makes_samples() const { return period_given || samples || plot || report; }

@@ -13,11 +13,11 @@
 namespace simulate {
 
 /// What drives cells from end to end. Throws `Failure` for what cannot be planned.
-[[nodiscard]] std::pmr::vector<cncplan::plan::BasicBlockPhase<double>> phases_of(
+[[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
     const Options& options, const cncplan::plan::BasicCells<double>& cells);
 /// The program played: nothing is known of the events before they come, but how far the feed goes. `blocks`:
 /// the cells as a player takes them. Throws `Failure` for what does not end.
-[[nodiscard]] std::pmr::vector<cncplan::plan::BasicBlockPhase<double>> played(
+[[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> played(
     const Options& options, const cncplan::plan::BasicCells<double>& cells,
     const std::vector<cncplan::plan::PlayedBlock>& blocks, const std::vector<Event>& events);
 

@@ -20,7 +20,7 @@ namespace simulate {
 /// Where everything is at an instant; mm, rad and s.
 struct SetPoint {
   double time{};
-  std::size_t block{};
+  std::size_t block{}, piece{};
   cncplan::Vector3 tool = cncplan::Vector3::Zero();
   PerAxis position, velocity, acceleration;  ///< of the axes
   cncplan::State along;
@@ -47,12 +47,17 @@ class Planned : public report::Driven {
   [[nodiscard]] virtual bool completed() const = 0;
   [[nodiscard]] virtual PlanPeaks peaks() const = 0;
   [[nodiscard]] virtual std::vector<BlockTiming> timings() const = 0;
+  [[nodiscard]] virtual std::size_t block_count() const = 0;
+  /// mm from the program's start to a block's.
+  [[nodiscard]] virtual double block_start(std::size_t block) const = 0;
   /// How far each axis is at a block's end from where it was at its start.
   [[nodiscard]] virtual PerAxis way(std::size_t block) const = 0;
-  /// Whether a block is driven as it was programmed, not smoothed and no part of a merged line.
-  [[nodiscard]] virtual bool as_programmed(std::size_t block) const = 0;
-  /// Where the tool is when so much of a block has been travelled.
-  [[nodiscard]] virtual cncplan::Vector3 tool(std::size_t block, double s) const = 0;
+  /// The block that a piece is part of.
+  [[nodiscard]] virtual std::size_t block_of(std::size_t piece) const = 0;
+  /// Whether a piece is driven as it was programmed, not smoothed and no part of a merged line.
+  [[nodiscard]] virtual bool as_programmed(std::size_t piece) const = 0;
+  /// Where the tool is when so much of a piece has been travelled.
+  [[nodiscard]] virtual cncplan::Vector3 tool(std::size_t piece, double s) const = 0;
   /// Hands all set points at k period, and one at the end, to `take`.
   virtual void sample(double period, const std::function<void(const SetPoint&)>& take) const = 0;
   /// Hands every step edge to `take`, and holds them against the rules of the drives; see

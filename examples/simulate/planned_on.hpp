@@ -15,7 +15,7 @@
 #include "machine.hpp"
 #include "planned.hpp"
 #include "report/channels.hpp"
-#include "report/limits_of_phases.hpp"
+#include "report/driven_trajectory.hpp"
 #include "report/tip_point.hpp"
 #include "taylor_follower.hpp"
 
@@ -23,37 +23,19 @@ namespace simulate {
 
 /// `file` outlives it. `taylor`: samples are those of Taylor steps.
 template <class M, class B>
-class PlannedOn final : public Planned {
+class PlannedOn final : public report::DrivenTrajectory<cncplan::Trajectory<M, B>, Planned> {
  public:
   using Trajectory = cncplan::Trajectory<M, B>;
 
   PlannedOn(const support::Machine& file, Trajectory&& trajectory, bool taylor = false)
-      : file_(file), channels_(channels_of(file)), taylor_(taylor), trajectory_(std::move(trajectory)) {}
+      : report::DrivenTrajectory<Trajectory, Planned>(trajectory_),
+        file_(file),
+        channels_(channels_of(file)),
+        taylor_(taylor),
+        trajectory_(std::move(trajectory)) {}
 
-  [[nodiscard]] double duration() const override { return trajectory_.duration(); }
-  [[nodiscard]] double length() const override { return trajectory_.length(); }
-  [[nodiscard]] std::span<const cncplan::plan::BasicBlockPhase<double>> phases() const override {
-    return trajectory_.phases();
-  }
-  [[nodiscard]] Instant at(double time) const override {
-    const auto point = trajectory_.at(time);
-    return {point.block, point.along};
-  }
-  [[nodiscard]] std::size_t block_count() const override { return trajectory_.program().size(); }
-  [[nodiscard]] double block_length(std::size_t block) const override {
-    return trajectory_.program()[block].path.length();
-  }
-  [[nodiscard]] double start_length(std::size_t block) const override {
-    return trajectory_.start_length(block);
-  }
-  [[nodiscard]] double wanted_speed(std::size_t block) const override {
-    return report::wanted_speed_of(trajectory_, block);
-  }
-  [[nodiscard]] std::vector<report::LimitedBy> limited_by() const override {
-    return report::limited_by(trajectory_);
-  }
-  [[nodiscard]] report::ChannelPoint channels(std::size_t block, double s) const override {
-    const auto path = trajectory_.path(block);
+  [[nodiscard]] report::ChannelPoint channels(std::size_t piece, double s) const override {
+    const auto path = trajectory_.path(piece);
     const auto axes = path.point_at(s);
     return report::channel_point(file_, channels_, tool_point(path, axes, s), axes);
   }
@@ -72,23 +54,22 @@ class PlannedOn final : public Planned {
       result.push_back({block.block, block.entry, block.peak, block.exit, block.duration});
     return result;
   }
+  [[nodiscard]] std::size_t block_count() const override { return trajectory_.program().size(); }
+  [[nodiscard]] double block_start(std::size_t block) const override {
+    return trajectory_.start_length(block);
+  }
   [[nodiscard]] PerAxis way(std::size_t block) const override {
     const auto& path = trajectory_.program()[block].path;
     if (!(path.length() > 0.0)) return PerAxis::Zero(count());
     return own((path.position_at(path.length()) - path.position_at(0.0)).cwiseAbs());
   }
-  [[nodiscard]] bool as_programmed(std::size_t block) const override {
-    const B& driven = trajectory_.program()[block];
-    if (!trajectory_.path(block).exact() || driven.merged > 0.0) return false;
-    if constexpr (requires { driven.source; }) {
-      const auto& path = driven.path;
-      return path.line() != nullptr || path.arc() != nullptr ||
-             path.template as<cncplan::path::Spline<M::axis_count>>() != nullptr;
-    }
-    return true;
+  [[nodiscard]] std::size_t block_of(std::size_t piece) const override { return trajectory_.block_of(piece); }
+  [[nodiscard]] bool as_programmed(std::size_t piece) const override {
+    return trajectory_.path(piece).exact() &&
+           !(trajectory_.program()[trajectory_.block_of(piece)].merged > 0.0);
   }
-  [[nodiscard]] cncplan::Vector3 tool(std::size_t block, double s) const override {
-    const auto path = trajectory_.path(block);
+  [[nodiscard]] cncplan::Vector3 tool(std::size_t piece, double s) const override {
+    const auto path = trajectory_.path(piece);
     return tool_point(path, path.point_at(s), s).position;
   }
 
@@ -97,8 +78,13 @@ class PlannedOn final : public Planned {
     if constexpr (std::is_same_v<B, BlockOf<Mill<3>>>)
       if (taylor_) follow.emplace(trajectory_);
     for (const auto& point : trajectory_.samples(period)) {
-      SetPoint here{point.time,          point.block,         tool_at(trajectory_.machine(), point),
-                    own(point.position), own(point.velocity), own(point.acceleration),
+      SetPoint here{point.time,
+                    point.block,
+                    this->piece_at(point.time),
+                    tool_at(trajectory_.machine(), point),
+                    own(point.position),
+                    own(point.velocity),
+                    own(point.acceleration),
                     point.along};
       if constexpr (std::is_same_v<B, BlockOf<Mill<3>>>)
         if (follow && point.time < trajectory_.duration()) here.tool = (*follow)(point);
@@ -128,8 +114,8 @@ class PlannedOn final : public Planned {
     if constexpr (std::is_same_v<M, Rows>)
       return report::tip_point(machine.tool_length, axes);
     else
-      return path.exact() ? cncplan::tool_point(path.programmed(), s, cncplan::tool_axes(machine))
-                          : path.tool_point_at(s);
+      return path.visit(
+          [&](const auto& inside) { return cncplan::tool_point(inside, s, cncplan::tool_axes(machine)); });
   }
 
   const support::Machine& file_;

@@ -68,7 +68,7 @@ void read_items(const Options& options, const cncplan::gcode::Dialect& dialect, 
   program.file = options.program;
   gcode::Reader reader(dialect);
   gcode::StreamLines text(stream);
-  KeptLines lines(text, reader, gcode::files_of(std::filesystem::path(options.program).parent_path()));
+  KeptLines lines(text, reader, gcode::files_beside(options.program));
   const ColumnOf column_of = [&lines](char letter) { return lines.column_of(letter); };
   gcode::read_program(
       lines, reader,

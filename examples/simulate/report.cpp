@@ -105,7 +105,7 @@ std::string json_summary(const ProgramText& program, const Options& options, con
                        {"acceleration", m.tool_peak.acceleration},
                        {"jerk", m.tool_peak.jerk}};
   json["tolerance_mm"] = options.tolerance;
-  json["level"] = options.level();
+  json["level"] = to_text(options.level());
   json["fallbacks"] = Json::array();
   for (const OtherLevel& part : m.other_levels)
     json["fallbacks"].push_back(

@@ -59,7 +59,7 @@ void Run::sample(const std::function<void(const Sample&)>& take) {
              point.velocity, point.acceleration,
              point.along,    follows_path ? places_.within(point.block, point.along.position) : 0.0};
       if (follows_path) {
-        const bool exact = plan_.motion->as_programmed(point.block);
+        const bool exact = plan_.motion->as_programmed(point.piece);
         double& largest = exact ? measures_.contour_error : measures_.deviation;
         largest = std::max(largest, distance({&motion, row.position, row.within}));
       }
@@ -78,7 +78,7 @@ void Run::step(const std::function<void(const cncplan::step::Edge&)>& take) {
   const auto reports = plan_.motion->step(
       options_.period, [&](const cncplan::MotorEdge& edge) { take(signals.signal(edge)); });
   if (!reports) {
-    const std::size_t block = plan_.motion->at(reports.error().time).block;
+    const std::size_t block = plan_.motion->block_of(plan_.motion->at(reports.error().time).piece);
     throw support::Failure(
         support::Exit::bad_input,
         fmt::format("{}: {}", program_.place(program_.motions[plan_.motion_of[block]]),

@@ -16,7 +16,7 @@ namespace {
 using namespace cncplan;
 
 // A feed of none, or one that is not told, is the rapid rate.
-cncplan::Block<3, path::Spline<3>> flat_block(const Move& move, int line) {
+cncplan::Block<3> flat_block(const Move& move, int line) {
   const double feed = move.feed == 0.0 ? std::numeric_limits<double>::infinity() : move.feed;
   return {.path = move.segment,
           .feed = feed,
@@ -58,7 +58,7 @@ WallProgram wall_program(const Artwork& artwork, const kinematics::Sidewall& sid
 }
 
 Motion plan_motion(const WallProgram& program, const Artwork& artwork, const Machine& machine) {
-  auto planned = plan_blocks(program.blocks, planned_machine(machine));
+  auto planned = plan_blocks(program.blocks, planned_machine(machine), {.tolerance = 0});
   if (planned) return std::move(*planned);
   planned.error().file = artwork.file;
   throw support::Failure(support::Exit::bad_input, to_text(planned.error()));

@@ -42,7 +42,7 @@ Summary summary(const std::vector<B>& blocks, const M& machine) {
               .template cast<double>());
     origin += length;
   }
-  const auto trajectory = plan_blocks(blocks, machine);
+  const auto trajectory = plan_blocks(blocks, machine, {.tolerance = 0});
   REQUIRE(trajectory);
   result.duration = static_cast<double>(trajectory->duration());
   return result;

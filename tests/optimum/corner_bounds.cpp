@@ -11,7 +11,6 @@
 
 #include "cncplan/path/line.hpp"
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 #include "optimum/motion_bound.hpp"
 
 namespace {
@@ -34,10 +33,10 @@ Losses losses(const Limits& limits, double tolerance, const std::vector<Vector3>
     straight += (points[i] - points[i - 1]).norm() / limits.velocity;
   }
   const PlanOptions options{.tolerance = tolerance};
-  const auto fast = plan_blocks(blocks, machine, options);
-  const auto best = plan_smooth(blocks, machine, options);
+  const auto fast = plan_blocks(blocks, machine, {.tolerance = tolerance, .level = SmoothLevel::fast});
+  const auto best = plan_blocks(blocks, machine, options);
   for (auto& block : blocks) block.exact_stop = true;
-  const auto stops = plan_blocks(blocks, machine, PlanOptions{});
+  const auto stops = plan_blocks(blocks, machine, {.tolerance = 0});
   if (!fast || !best || !stops) return {-1, -1, -1};
   return {best->duration() - straight, fast->duration() - straight, stops->duration() - straight};
 }

@@ -7,7 +7,6 @@
 
 #include "cncplan/core/state.hpp"
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
 #include "cncplan/state/velocity_change.hpp"
 #include "support/catch.hpp"
@@ -23,7 +22,7 @@ const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 1
 auto planned(const std::string& text, const Machine<3>& machine) {
   const auto program = read_text(text, machine);
   REQUIRE_FALSE(program.failed());
-  auto trajectory = plan_smooth(program.blocks(), machine, {.tolerance = 0.01}, SmoothLevel::good);
+  auto trajectory = plan_blocks(program.blocks(), machine, {.tolerance = 0.01, .level = SmoothLevel::good});
   REQUIRE(trajectory);
   return *std::move(trajectory);
 }

@@ -160,8 +160,8 @@ TEST_CASE("a machine that is none is refused by all that take one", "[executor]"
     CAPTURE(i);
     BlockReader reader(machine);
     CHECK_FALSE(reader.read_line("G1 X1 F600"));
-    CHECK_FALSE(plan_text("G1 X1 F600\n", machine));
-    CHECK_FALSE(plan_blocks(std::vector{line({0, 0, 0}, {1, 0, 0})}, machine));
+    CHECK_FALSE(plan_text("G1 X1 F600\n", machine, {.tolerance = 0}));
+    CHECK_FALSE(plan_blocks(std::vector{line({0, 0, 0}, {1, 0, 0})}, machine, {.tolerance = 0}));
     CHECK(read_text("G1 X1 F600\n", machine).failed());
     Mill executor(machine);
     CHECK(executor.error());

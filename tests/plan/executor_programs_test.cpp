@@ -31,7 +31,7 @@ TEST_CASE("programs of others take as long as their plans", "[executor]") {
        {"ball.nc", "ngc/3dtest.ngc", "ngc/51MeanderAve.ngc", "ngc/Cereal.ngc", "ngc/arcspiral.ngc",
         "ngc/cds.ngc", "ngc/lathe_pawn.ngc", "ngc/test_12mmflat.ngc", "ngc/tort.ngc"}) {
     const std::string path = *shared + "/data/" + name;
-    const auto planned = plan_file(path, free, {.tolerance = tolerance});
+    const auto planned = plan_file(path, free, {.tolerance = tolerance, .level = SmoothLevel::fast});
     REQUIRE(planned);
     std::ifstream file(path);
     BlockReader reader(free);

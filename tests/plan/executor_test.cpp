@@ -39,7 +39,7 @@ void check_duration(const std::vector<B>& blocks, const M& machine) {
   test::Random random;
   const auto faults = test::run<capacity>(machine, blocks, random, {});
   check(faults, 1e-9);
-  const auto planned = plan_blocks(blocks, machine);
+  const auto planned = plan_blocks(blocks, machine, {.tolerance = 0});
   REQUIRE(planned);
   CHECK(faults.duration == Approx(planned->duration()).epsilon(1e-3));
 }

@@ -31,7 +31,7 @@ const std::string program =
 
 template <class S>
 auto planned() {
-  auto trajectory = plan_text(program, mill<S>());
+  auto trajectory = plan_text(program, mill<S>(), {.tolerance = 0});
   INFO((trajectory ? std::string() : to_text(trajectory.error())));
   REQUIRE(trajectory);
   return std::move(*trajectory);

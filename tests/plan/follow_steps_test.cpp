@@ -67,7 +67,7 @@ TEST_CASE("what steps have done is what a count of the edges says, with backlash
   constexpr double period = 1e-3;
   for (const double backlash : {0.0, 0.1}) {
     CAPTURE(backlash);
-    const auto planned = plan_text(program, stepped(backlash));
+    const auto planned = plan_text(program, stepped(backlash), {.tolerance = 0});
     REQUIRE(planned);
     std::vector<MotorEdge> edges;
     const auto reports =
@@ -103,7 +103,7 @@ TEST_CASE("what steps have done is what a count of the edges says, with backlash
 TEST_CASE("the first edge that breaks a drive's rule ends the following of steps", "[follow_steps]") {
   Machine<3> machine = stepped(0);
   machine.axes[0].motors[0].max_rate = 1000;  // 12.5 mm/s, of 25
-  const auto planned = plan_text(program, machine);
+  const auto planned = plan_text(program, machine, {.tolerance = 0});
   REQUIRE(planned);
   double first = 0, before = 0;
   for (const MotorEdge& edge : planned->step_edges()) {
@@ -125,7 +125,7 @@ TEST_CASE("the first edge that breaks a drive's rule ends the following of steps
 }
 
 TEST_CASE("steps are not held against positions at no period", "[follow_steps]") {
-  const auto planned = plan_text(program, stepped(0));
+  const auto planned = plan_text(program, stepped(0), {.tolerance = 0});
   REQUIRE(planned);
   for (const double period : {0.0, -1.0, std::nan("")}) {
     int edges = 0;

@@ -25,7 +25,8 @@ auto planned(generate::Kind kind, int lines) {
   std::string line, part;
   for (int i = 1; i <= lines && std::getline(program, line); ++i)
     part += line + (i % 50 == 0 ? "\nG4 P0.0123\n" : "\n");
-  auto trajectory = plan_text(part + (kind == generate::Kind::pocket ? "G4 P0.5\n" : ""), mill);
+  auto trajectory =
+      plan_text(part + (kind == generate::Kind::pocket ? "G4 P0.5\n" : ""), mill, {.tolerance = 0});
   REQUIRE(trajectory);
   return *trajectory;
 }

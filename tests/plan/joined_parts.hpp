@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cncplan/plan/smooth_stream.hpp"
+#include "plan/at_level.hpp"
 
 namespace cncplan::test {
 
@@ -22,10 +23,22 @@ class JoinedParts {
     const Part part = stream.take();
     for (auto phase : part.phases()) {
       phase.phase.time += time_;
-      phase.block += blocks_.size();
+      phase.piece += pieces_.size();
       phases_.push_back(phase);
     }
+    for (auto piece : part.pieces()) {
+      piece.block += part.first_block();
+      pieces_.push_back(piece);
+    }
     for (std::size_t b = 0; b < part.program().size(); ++b) {
+      const std::size_t number = part.first_block() + b;
+      if (number < blocks_.size()) {  // it goes on in this part, which has its end
+        const auto word = blocks_[number].word;
+        blocks_[number] = part.program()[b];
+        blocks_[number].word = word;
+        continue;
+      }
+      blocks_.push_back(part.program()[b]);
       smoothing_.blocks.emplace_back();
       if (part.smoothing().blocks.empty()) continue;
       smoothing_.blocks.back() = part.smoothing().blocks[b];
@@ -33,7 +46,6 @@ class JoinedParts {
     }
     const auto& corrections = part.smoothing().corrections;
     smoothing_.corrections.insert(smoothing_.corrections.end(), corrections.begin(), corrections.end());
-    blocks_.insert(blocks_.end(), part.program().begin(), part.program().end());
     time_ += part.duration();
     ends_.push_back(time_);
   }
@@ -41,12 +53,13 @@ class JoinedParts {
   /// When each part ends.
   [[nodiscard]] const std::vector<double>& ends() const { return ends_; }
   [[nodiscard]] Part trajectory(const M& machine) const {
-    auto [blocks, phases, smoothing] = std::tuple(blocks_, phases_, smoothing_);
-    return {machine, std::move(blocks), std::move(phases), std::move(smoothing)};
+    auto [blocks, phases, smoothing, pieces] = std::tuple(blocks_, phases_, smoothing_, pieces_);
+    return {machine, std::move(blocks), std::move(phases), std::move(smoothing), std::move(pieces)};
   }
 
  private:
   std::pmr::vector<typename Part::Block> blocks_;
+  std::pmr::vector<typename Part::Piece> pieces_;
   std::pmr::vector<typename Part::Phase> phases_;
   typename Part::Smoothing smoothing_;
   double time_ = 0;
@@ -55,10 +68,11 @@ class JoinedParts {
 
 /// What a stream that holds so many blocks gives; into `ends` when each part ends.
 template <class B, MachineModel M>
-Expected<Trajectory<M, plan::SmoothBlockOf<B>>, ProgramError> plan_in_parts(
-    const std::vector<B>& given, const M& machine, const PlanOptions& options, SmoothLevel level,
-    std::size_t held, std::vector<double>* ends = nullptr) {
-  SmoothStream<M, B> stream(machine, options, level, held);
+Expected<Trajectory<M, B>, ProgramError> plan_in_parts(const std::vector<B>& given, const M& machine,
+                                                       const PlanOptions& options, SmoothLevel level,
+                                                       std::size_t held,
+                                                       std::vector<double>* ends = nullptr) {
+  SmoothStream<M, B> stream(machine, at_level(level, options), held);
   JoinedParts<B, M> parts;
   for (const B& block : given) {
     if (const auto ok = stream.push(block); !ok) return tl::unexpected(ok.error());

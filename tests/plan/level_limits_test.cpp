@@ -113,6 +113,7 @@ TEST_CASE("an executor that looks ahead over 64 cells takes the time of the plan
       if (++pushed == blocks.size()) executor->end_of_program();
     executor->tick(1e-3);
   }
-  const double planned = plan_blocks(blocks, mill, {.tolerance = 0.01})->duration();
+  const double planned =
+      plan_blocks(blocks, mill, {.tolerance = 0.01, .level = SmoothLevel::fast})->duration();
   CHECK_THAT(ticks * 1e-3, Catch::Matchers::WithinRel(planned, 1e-3));
 }

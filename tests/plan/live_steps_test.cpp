@@ -58,7 +58,7 @@ TEST_CASE("edges of an executor are those of the plan of the whole", "[live]") {
     const auto lines = test::random_lines(random, random.integer(1, 20), {0, 0, 0}, 20, "");
     const auto blocks = test::blocks_of(lines, machine);
     CAPTURE(sequence, test::literal(lines));
-    const auto planned = plan_blocks(blocks, machine);
+    const auto planned = plan_blocks(blocks, machine, {.tolerance = 0});
     REQUIRE(planned);
     std::array<std::vector<MotorEdge>, 4> expected, found;
     for (const MotorEdge& edge : planned->step_edges()) expected[edge.motor].push_back(edge);

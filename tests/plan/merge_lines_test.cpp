@@ -10,7 +10,7 @@
 #include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/merge_lines.hpp"
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
+#include "plan/at_level.hpp"
 #include "smoothed_motion.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 constexpr double tolerance = 0.01;
-const PlanOptions within{.tolerance = tolerance};
+const PlanOptions within{.tolerance = tolerance, .level = SmoothLevel::fast};
 
 template <MachineModel M>
 std::vector<ProgramBlock<M>> read(const std::string& text, const M& machine) {
@@ -94,7 +94,7 @@ TEST_CASE("merged lines take the time of one line", "[merge_lines]") {
   const auto with = read(noisy("G64 P0.01 Q0.004", 500, 0.1, 0.002), mill);
   const auto one = plan_text("F1800 G1 X50\n", mill, within);
   const auto slow = plan_blocks(without, mill, within), quick = plan_blocks(with, mill, within);
-  const auto best = plan_smooth(with, mill, within);
+  const auto best = plan_blocks(with, mill, test::at_level(SmoothLevel::best, within));
   REQUIRE((one && slow && quick && best));
   CHECK(quick->duration() < one->duration() * 1.001);
   CHECK(best->duration() < one->duration() * 1.001);
@@ -113,7 +113,7 @@ TEST_CASE("the motion stays within P of what is programmed, and the other way ro
       CHECK(test::farthest(program, motion) <= tolerance * (1 + 1e-9));
     };
     check(plan_blocks(blocks, mill, within));
-    check(plan_smooth(blocks, mill, within));
+    check(plan_blocks(blocks, mill, test::at_level(SmoothLevel::best, within)));
   }
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("merging and smoothing together stay within each axis' tolerance", "[m
     const auto blocks = read(joined(lines), machine);
     const auto planned = plan_blocks(blocks, machine, within);
     REQUIRE(planned);
-    CHECK(planned->length() == plan_blocks(blocks, machine)->length());
+    CHECK(planned->length() == plan_blocks(blocks, machine, {.tolerance = 0})->length());
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       merges += planned->program()[k].merged > 0 ? 1 : 0;
       const auto path = planned->path(k);
@@ -221,7 +221,7 @@ TEST_CASE("the level best merges as well, within the tolerance", "[merge_lines]"
     const auto lines = test::random_runs(random, 6, "", 20);
     CAPTURE(round, test::literal(lines));
     const auto blocks = read(joined(lines), mill);
-    const auto planned = plan_smooth(blocks, mill, within);
+    const auto planned = plan_blocks(blocks, mill, test::at_level(SmoothLevel::best, within));
     REQUIRE(planned);
     const auto program = test::programmed(blocks), motion = test::driven(*planned, 4);
     CHECK(test::farthest(motion, program) <= tolerance * (1 + 1e-9));

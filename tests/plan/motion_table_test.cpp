@@ -24,7 +24,7 @@ plan::BasicCells<double> cells_of(const std::vector<plan::BlockCaps>& caps) {
   return cells;
 }
 
-std::pmr::vector<plan::BasicBlockPhase<double>> phases_of(const std::vector<plan::BlockCaps>& caps) {
+std::pmr::vector<BasicPiecePhase<double>> phases_of(const std::vector<plan::BlockCaps>& caps) {
   const auto spans = test::spans_of(caps);
   return plan::block_phases(std::span<const plan::Span>(spans), cells_of(caps));
 }

@@ -92,7 +92,7 @@ TEST_CASE("peaks of any path are no lower than brute force finds and are reached
     Machine<4> machine{.limits = {.velocity = 60, .acceleration = 1000, .jerk = number(5e3, 1e5)}};
     machine.axes[3] = {
         .letter = 'A', .kind = AxisKind::rotary, .velocity = 3, .acceleration = 30, .jerk = 500};
-    const auto trajectory = plan_text(text, machine, {.tolerance = 0.01});
+    const auto trajectory = plan_text(text, machine, {.tolerance = 0.01, .level = SmoothLevel::fast});
     REQUIRE(trajectory);
     const Most<4> found = in_one(peaks(*trajectory)), seen = by_brute_force(*trajectory, 2000);
     for (int i = 0; i < found.size(); ++i) {
@@ -105,7 +105,7 @@ TEST_CASE("peaks of any path are no lower than brute force finds and are reached
 
 TEST_CASE("the search for peaks takes a few looks at each phase, in short and in long programs") {
   for (const int lines : {500, 4000}) {
-    const auto trajectory = plan_text(rings(lines), mill, {.tolerance = 0.01});
+    const auto trajectory = plan_text(rings(lines), mill, {.tolerance = 0.01, .level = SmoothLevel::fast});
     REQUIRE(trajectory);
     detail::PeakSearch search(*trajectory);
     const auto found = search.search();
@@ -119,12 +119,12 @@ TEST_CASE("the search for peaks takes a few looks at each phase, in short and in
 }
 
 TEST_CASE("a thousand turns have the peaks of a hundred") {
-  const auto trajectory = plan_text("F1800\nG2 I1 P1000\nG1 X1\n", mill);
+  const auto trajectory = plan_text("F1800\nG2 I1 P1000\nG1 X1\n", mill, {.tolerance = 0});
   REQUIRE(trajectory);
   detail::PeakSearch search(*trajectory);
   const auto found = search.search();
   CHECK(search.looks() <= 1000 * trajectory->phases().size());
-  const auto fewer = peaks(*plan_text("F1800\nG2 I1 P100\nG1 X1\n", mill));
+  const auto fewer = peaks(*plan_text("F1800\nG2 I1 P100\nG1 X1\n", mill, {.tolerance = 0}));
   CHECK(found.tool.velocity == Approx(fewer.tool.velocity).epsilon(1e-6));
   CHECK(found.tool.acceleration == Approx(fewer.tool.acceleration).epsilon(1e-6));
   CHECK(found.tool.jerk == Approx(fewer.tool.jerk).epsilon(1e-6));
@@ -137,7 +137,7 @@ TEST_CASE("peaks are no lower than dense samples, and hardly higher") {
   const std::vector<Block<3>> blocks{{.path = path::Line<3>({0, 0, 0}, {20, 0, 0})},
                                      {.path = *arc},
                                      {.path = path::Line<3>({20, 0, 4}, {40, 0, 4}), .feed = 10}};
-  const auto trajectory = plan_blocks(blocks, mill);
+  const auto trajectory = plan_blocks(blocks, mill, {.tolerance = 0});
   REQUIRE(trajectory);
   const auto found = peaks(*trajectory);
   Vector3 velocity = Vector3::Zero(), acceleration = Vector3::Zero(), jerk = Vector3::Zero();
@@ -170,7 +170,7 @@ G3 X3.19556 Y-2.50895 Z-1.0277 I-0.23921 J-0.09481 F2202.7
 M2)";
   for (const double jerk : {3000.0, 10000.0, 30000.0, 100000.0}) {
     const Machine<3> machine{.limits = {.velocity = 30, .acceleration = 1000, .jerk = jerk}};
-    const auto trajectory = plan_text(text, machine, {.tolerance = 0.01});
+    const auto trajectory = plan_text(text, machine, {.tolerance = 0.01, .level = SmoothLevel::fast});
     REQUIRE(trajectory);
     INFO("jerk " << jerk);
     CHECK(peaks(*trajectory).tool.jerk <= jerk * (1 + 1e-9));
@@ -182,11 +182,12 @@ TEST_CASE("the jump of velocity at a corner is the speed there times the jump of
   const std::vector<Block<3>> blocks{
       {.path = path::Line<3>({0, 0, 0}, {20, 0, 0})},
       {.path = path::Line<3>({20, 0, 0}, {20 + 20 * std::cos(angle), 20 * std::sin(angle), 0})}};
-  const auto trajectory = plan_blocks(blocks, mill, {.junction_deviation = 0.01});
+  const auto trajectory = plan_blocks(blocks, mill, {.tolerance = 0, .junction_deviation = 0.01});
   REQUIRE(trajectory);
   const double speed = trajectory->blocks()[1].entry;
   REQUIRE(speed > 1);
   const double jump = speed * std::max(std::sin(angle), 1 - std::cos(angle));
   CHECK(corner_velocity_step(*trajectory) == Approx(jump).epsilon(1e-9));
-  CHECK(corner_velocity_step(*plan_blocks(blocks, mill, {.junction_deviation = 0})) == 0);  // a stop
+  CHECK(corner_velocity_step(*plan_blocks(blocks, mill, {.tolerance = 0, .junction_deviation = 0})) ==
+        0);  // a stop
 }

@@ -22,7 +22,7 @@ constexpr double degree = std::numbers::pi / 180;
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
 template <class M>
-std::string error_of(std::string_view text, const M& machine, const PlanOptions& options = {}) {
+std::string error_of(std::string_view text, const M& machine, const PlanOptions& options = {.tolerance = 0}) {
   const auto planned = plan_text(text, machine, options);
   return planned ? "no error" : to_text(planned.error());
 }
@@ -30,7 +30,7 @@ std::string error_of(std::string_view text, const M& machine, const PlanOptions&
 // The highest speed along a block, mm/s or rad/s.
 template <class M>
 double peak(std::string_view text, const M& machine, std::size_t block = 0) {
-  const auto planned = plan_text(text, machine);
+  const auto planned = plan_text(text, machine, {.tolerance = 0});
   INFO((planned ? std::string() : to_text(planned.error())));
   REQUIRE(planned);
   return planned->blocks()[block].peak;
@@ -82,19 +82,20 @@ TEST_CASE("a start outside travel is an error, and one inside is where motion st
   // Also where nothing moves.
   CHECK(error_of("G4 P1\n", small, {.start = {60, 0, 0}}) != "no error");
   CHECK(error_of("", small, {.start = {60, 0, 0}}) != "no error");
-  const auto planned = plan_text("G1 X20 F600\n", small, {.start = {10, 4, -3}});
+  const auto planned = plan_text("G1 X20 F600\n", small, {.tolerance = 0, .start = {10, 4, -3}});
   REQUIRE(planned);
   CHECK(planned->at(0).position == Vector3(10, 4, -3));
   CHECK(planned->at(planned->duration()).position == Vector3(20, 4, -3));
   CHECK(planned->length() == 10);
-  const auto nothing = plan_text("M30\n", small, {.start = {10, 4, -3}});
+  const auto nothing = plan_text("M30\n", small, {.tolerance = 0, .start = {10, 4, -3}});
   REQUIRE(nothing);
   CHECK(nothing->at(0).position == Vector3(10, 4, -3));
   CHECK(nothing->duration() == 0);
 }
 
 TEST_CASE("a start in degrees of program coordinates is rad here", "[program]") {
-  const auto planned = plan_text("G1 C20 F600\n", trunnion, {.start = {1, 2, 3, 0.1, 10 * degree}});
+  const auto planned =
+      plan_text("G1 C20 F600\n", trunnion, {.tolerance = 0, .start = {1, 2, 3, 0.1, 10 * degree}});
   REQUIRE(planned);
   CHECK(planned->at(0).position[4] == Approx(10 * degree));
   CHECK(planned->at(1e9).position[4] == Approx(20 * degree));
@@ -132,14 +133,14 @@ TEST_CASE("an axis that moves alone without limits is named", "[program]") {
 
 TEST_CASE("a file that is missing or a folder is an error with its name", "[program]") {
   const auto folder = std::filesystem::temp_directory_path();
-  const auto missing = plan_file(folder / "cncplan_no_such_file.nc", mill);
+  const auto missing = plan_file(folder / "cncplan_no_such_file.nc", mill, {.tolerance = 0});
   REQUIRE(!missing);
   CHECK(to_text(missing.error()).find("cncplan_no_such_file.nc: error: file") != std::string::npos);
-  CHECK(!plan_file(folder, mill));
-  CHECK(!plan_file("/proc/self/mem", mill));  // it can be opened, and reading it fails
+  CHECK(!plan_file(folder, mill, {.tolerance = 0}));
+  CHECK(!plan_file("/proc/self/mem", mill, {.tolerance = 0}));  // it can be opened, and reading it fails
   const auto path = folder / "cncplan_plan_program_test.nc";
   std::ofstream(path) << "G1 X10 F600\nG1 Q\n";
-  const auto faulty = plan_file(path, mill);
+  const auto faulty = plan_file(path, mill, {.tolerance = 0});
   REQUIRE(!faulty);
   CHECK(to_text(faulty.error()).find("cncplan_plan_program_test.nc:2:4: error: ") != std::string::npos);
   std::filesystem::remove(path);
@@ -179,7 +180,7 @@ TEST_CASE("rapids and feed moves have their own highest speeds", "[program]") {
 
 TEST_CASE("machines of one and two axes", "[program]") {
   const Machine<2> plotter{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  const auto good = plan_text("G1 X10 Y5 F600\nG2 X20 Y-5 J-10\nG1 X0\nM30\n", plotter);
+  const auto good = plan_text("G1 X10 Y5 F600\nG2 X20 Y-5 J-10\nG1 X0\nM30\n", plotter, {.tolerance = 0});
   REQUIRE(good);
   CHECK(good->at(1e9).position == VectorN<double, 2>(0, -5));
   CHECK(good->length() == Approx(std::hypot(10, 5) + 5 * std::numbers::pi + 20));
@@ -193,7 +194,7 @@ TEST_CASE("machines of one and two axes", "[program]") {
 TEST_CASE("axes in another order move straight, and arcs are refused there", "[program]") {
   const Machine<3> lathe{.axes = {{axis('X'), axis('Z'), axis('Y')}},
                          .limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  const auto planned = plan_text("G1 X1 Y2 Z3 F600\n", lathe);
+  const auto planned = plan_text("G1 X1 Y2 Z3 F600\n", lathe, {.tolerance = 0});
   REQUIRE(planned);
   CHECK(planned->at(1e9).position == Vector3(1, 3, 2));
   CHECK(planned->at(1e9).tool == Vector3(1, 2, 3));
@@ -213,7 +214,8 @@ TEST_CASE("an axis with a letter that means something else is refused", "[progra
 TEST_CASE("words have the time at which the motion reaches them", "[program]") {
   const Machine<3> machine{.limits = {.velocity = 30, .acceleration = 100, .jerk = 1000}};
   const auto planned =
-      plan_text("M3 S1000\nG1 X50 F1200\nG4 P0.5\nM8\nG4 P0.25\nM9\nM6 T1\nG61 G1 X100\nM5\nM30\n", machine);
+      plan_text("M3 S1000\nG1 X50 F1200\nG4 P0.5\nM8\nG4 P0.25\nM9\nM6 T1\nG61 G1 X100\nM5\nM30\n", machine,
+                {.tolerance = 0});
   REQUIRE(planned);
   const double move = 50.0 / 20 + 20.0 / 100 + 0.1;
   CHECK(planned->duration() == Approx(2 * move + 0.75));
@@ -241,7 +243,8 @@ TEST_CASE("words have the time at which the motion reaches them", "[program]") {
 
 TEST_CASE("M3 M5 and S do not stop, T M0 and M1 do", "[program]") {
   const auto entry = [](std::string_view word) {
-    const auto planned = plan_text("G1 X50 F600\n" + std::string(word) + "\nG1 X100\n", mill);
+    const auto planned =
+        plan_text("G1 X50 F600\n" + std::string(word) + "\nG1 X100\n", mill, {.tolerance = 0});
     REQUIRE(planned);
     return planned->blocks().back().entry;
   };
@@ -251,7 +254,7 @@ TEST_CASE("M3 M5 and S do not stop, T M0 and M1 do", "[program]") {
 }
 
 TEST_CASE("what has no effect is told as a warning with its place", "[program]") {
-  const auto planned = plan_text("G21\nG64 P0.01\nG1 X10 F600\n", mill);
+  const auto planned = plan_text("G21\nG64 P0.01\nG1 X10 F600\n", mill, {.tolerance = 0});
   REQUIRE(planned);
   REQUIRE(planned->warnings().size() == 1);
   CHECK(planned->warnings()[0].substr(0, 2) == "2:");
@@ -261,8 +264,8 @@ TEST_CASE("what has no effect is told as a warning with its place", "[program]")
 TEST_CASE("work offsets shift the axes, arcs and the place of a dwell", "[program]") {
   gcode::Dialect dialect;
   dialect.work_offsets[1] = {100, 10, 1};
-  const auto planned =
-      plan_text("G55 G1 X0 Y0 Z0 F1200\nG4 P1\nG3 X20 Y0 R10\nG4 P1\n", mill, {.dialect = dialect});
+  const auto planned = plan_text("G55 G1 X0 Y0 Z0 F1200\nG4 P1\nG3 X20 Y0 R10\nG4 P1\n", mill,
+                                 {.tolerance = 0, .dialect = dialect});
   REQUIRE(planned);
   const auto motions = planned->blocks();
   CHECK(planned->at(motions[0].duration + 0.5).position == Vector3(100, 10, 1));
@@ -292,11 +295,12 @@ TEST_CASE("a tolerance that does not act under a map is told", "[program]") {
       .axes = {{axis('J', AxisKind::rotary), axis('K', AxisKind::rotary), axis('Z')}},
       .limits = {.velocity = 150, .acceleration = 2000, .jerk = 40000}};
   const char* text = "G1 X260 F600\nY-170\nX255\n";
-  const auto within = plan_text(text, arm, {.tolerance = 0.01, .start = {250, -180, 0}});
+  const auto within =
+      plan_text(text, arm, {.tolerance = 0.01, .level = SmoothLevel::fast, .start = {250, -180, 0}});
   REQUIRE(within);
   REQUIRE(within->fallbacks().size() == 1);
   const Fallback told = within->fallbacks()[0];
-  CHECK(told == Fallback{0, within->program().size() - 1, FallbackLevel::exact, FallbackReason::map});
+  CHECK(told == Fallback{0, within->program().size() - 1, SmoothLevel::exact, FallbackReason::map});
   REQUIRE(within->warnings().size() == 1);
   CHECK(within->warnings()[0].find("a map has no smoothed paths") != std::string::npos);
   const auto exact = plan_text(text, arm, {.tolerance = 0, .start = {250, -180, 0}});
@@ -327,7 +331,8 @@ TEST_CASE("the real programs take the time that they took before", "[program][sl
                             Program{"ngc/test_12mmflat.ngc", 61.7594},
                             Program{"ngc/tort.ngc", 566.1161}};
   for (const auto& [name, seconds] : programs) {
-    const auto planned = plan_file(*shared + "/data/" + name, mill, {.junction_deviation = 0.01});
+    const auto planned =
+        plan_file(*shared + "/data/" + name, mill, {.tolerance = 0, .junction_deviation = 0.01});
     INFO(name << ": " << (planned ? std::string() : to_text(planned.error())));
     REQUIRE(planned);
     CHECK(planned->duration() < seconds + 1e-3);
@@ -342,7 +347,7 @@ TEST_CASE("a feed of rotary axes alone counts degrees a minute, in inches too") 
   machine.axes[3].acceleration = 1000;
   machine.axes[3].jerk = 1e6;
   for (const char* program : {"G21 G1 A90 F600\n", "G20 G1 A90 F600\n", "G20 F600\nG21 G1 A90\n"}) {
-    const auto trajectory = plan_text(program, machine);
+    const auto trajectory = plan_text(program, machine, {.tolerance = 0});
     REQUIRE(trajectory);
     INFO(program);
     CHECK(trajectory->blocks().front().peak == Approx(10.0 * gcode::radians_per_degree).epsilon(1e-12));
@@ -353,8 +358,9 @@ TEST_CASE("a program with parameters plans as the flat one", "[program]") {
   const auto with = plan_text(
       "#<r>=5\nG1 F600 X[#<r>*2]\no1 repeat [2]\nG3 X[#5420-2*#<r>] I-#<r>\nG1 X[#5420+2*#<r>]\no1 "
       "endrepeat\n",
-      mill);
-  const auto flat = plan_text("\nG1 F600 X10\n\nG3 X0 I-5\nG1 X10\nG3 X0 I-5\nG1 X10\n", mill);
+      mill, {.tolerance = 0});
+  const auto flat =
+      plan_text("\nG1 F600 X10\n\nG3 X0 I-5\nG1 X10\nG3 X0 I-5\nG1 X10\n", mill, {.tolerance = 0});
   REQUIRE(with);
   REQUIRE(flat);
   REQUIRE(with->blocks().size() == flat->blocks().size());
@@ -367,17 +373,17 @@ TEST_CASE("a file calls the files of its folder, and errors name the file", "[pr
   folder.write("part.ngc", "G1 F600 X1\no<side> call [4]\nX20\no<far> call\n");
   folder.write("side.ngc", "o<side> sub\nX#1\no<side> endsub\n");
   folder.write("far.ngc", "o<far> sub\n\nX1000\no<far> endsub\n");
-  const auto planned = plan_file(folder / "part.ngc", mill);
+  const auto planned = plan_file(folder / "part.ngc", mill, {.tolerance = 0});
   REQUIRE(planned);
   REQUIRE(planned->blocks().size() == 4);
   Machine<3> small = mill;
   small.axes[0].high = 100;
-  const auto refused = plan_file(folder / "part.ngc", small);
+  const auto refused = plan_file(folder / "part.ngc", small, {.tolerance = 0});
   REQUIRE_FALSE(refused);
   CHECK(refused.error().file == (folder / "far.ngc").string());
   CHECK(refused.error().about.line == 3);
   folder.write("far.ngc", "o<far> sub\nX1 X2\no<far> endsub\n");
-  const auto wrong = plan_file(folder / "part.ngc", mill);
+  const auto wrong = plan_file(folder / "part.ngc", mill, {.tolerance = 0});
   REQUIRE_FALSE(wrong);
   CHECK(to_text(wrong.error()) == (folder / "far.ngc").string() + ":2:4: error: X: word given twice");
 }

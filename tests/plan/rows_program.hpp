@@ -57,14 +57,11 @@ void check_motion(const T& trajectory, const MillBlocks& blocks, const Machine<3
   CHECK((trajectory.at(0).position - path.front()).norm() < 1e-9);
   CHECK((trajectory.at(trajectory.duration()).position - path.back()).norm() < 1e-9);
   CHECK(trajectory.completed());
+  REQUIRE(trajectory.program().size() == blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) CHECK(trajectory.program()[i].line == blocks[i].line);
   std::vector<double> lengths(blocks.size(), 0);
-  std::size_t source = 0;
-  for (const auto& block : trajectory.program()) {
-    REQUIRE(block.source >= source);
-    source = block.source;
-    CHECK(block.line == blocks[source].line);
-    lengths[source] += block.path.length();
-  }
+  for (std::size_t p = 0; p < trajectory.piece_count(); ++p)
+    lengths[trajectory.block_of(p)] += trajectory.path(p).length();
   for (std::size_t i = 0; i < blocks.size(); ++i)
     CHECK(lengths[i] == Approx(blocks[i].path.length()).epsilon(1e-9).margin(1e-12));
 }

@@ -1,6 +1,4 @@
 // Programs planned at the levels good and best: limits by differences of positions, distances by brute force.
-#include "cncplan/plan/smooth_blocks.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/step_edges.hpp"
+#include "plan/at_level.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -36,29 +35,17 @@ std::vector<ProgramBlock<Machine<3>>> blocks_of(const std::string& text, const M
 }
 
 template <class T>
-bool is_cubic(const T& block) {
-  return block.path.template as<smooth::Cubic<3>>() != nullptr;
-}
-template <class T>
-std::ptrdiff_t cubics(const T& trajectory) {
-  const auto program = trajectory.program();
-  return std::count_if(program.begin(), program.end(), [](const auto& block) { return is_cubic(block); });
-}
-
-// When the motion comes to a block of the program.
-template <class T>
-double start_of(const T& trajectory, std::size_t source) {
-  const auto program = trajectory.program();
-  const auto piece =
-      std::find_if(program.begin(), program.end(), [&](const auto& block) { return block.source >= source; });
-  return trajectory.start_time(static_cast<std::size_t>(piece - program.begin()));
+std::ptrdiff_t curves(const T& trajectory) {
+  const auto pieces = trajectory.pieces();
+  return std::count_if(pieces.begin(), pieces.end(),
+                       [](const auto& piece) { return piece.curve.has_value(); });
 }
 
 void check_at(SmoothLevel level, const std::vector<ProgramBlock<Machine<3>>>& blocks, double tolerance,
               const Machine<3>& machine) {
   INFO("level " << (level == SmoothLevel::good ? "good" : "best"));
   const PlanOptions options{.tolerance = tolerance};
-  const auto smooth = plan_smooth(blocks, machine, options, level);
+  const auto smooth = plan_blocks(blocks, machine, at_level(level, options));
   REQUIRE(smooth);
   const Used most = used(*smooth, machine);
   CHECK(most.velocity <= 1 + 1e-6);
@@ -84,14 +71,12 @@ void check_at(SmoothLevel level, const std::vector<ProgramBlock<Machine<3>>>& bl
     before = block;
   }
   CHECK(smooth->duration() == Approx(time));
-  std::size_t source = 0;
-  for (const auto& block : smooth->program()) {
-    CHECK(block.source >= source);
-    source = block.source;
-    CHECK(block.line == blocks[source].line);
-    CHECK(block.rapid == blocks[source].rapid);
+  REQUIRE(smooth->program().size() == blocks.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    CHECK(smooth->program()[b].line == blocks[b].line);
+    CHECK(smooth->program()[b].rapid == blocks[b].rapid);
   }
-  const auto fast = plan_blocks(blocks, machine, options);
+  const auto fast = plan_blocks(blocks, machine, at_level(SmoothLevel::fast, options));
   REQUIRE(fast);
   CHECK(smooth->duration() <= fast->duration() * (1 + 1e-9));
 }
@@ -110,9 +95,9 @@ TEST_CASE("best: corners keep limits and tolerance, and are faster than smoothed
     check(blocks_of(std::string("F1800 G1 X50\n") + end + "\n"));
   }
   const auto blocks = blocks_of("F1800 G1 X50\nY50\n");
-  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  const auto best = plan_blocks(blocks, mill, {.tolerance = 0.01});
   REQUIRE(best);
-  CHECK(cubics(*best) == static_cast<std::ptrdiff_t>(best->program().size()));
+  CHECK(curves(*best) == static_cast<std::ptrdiff_t>(best->piece_count()));
   CHECK(best->duration() < 100.0 / 30 + 2 * std::sqrt(30 / 1e4) + 0.086);  // the study's table
 }
 
@@ -147,8 +132,8 @@ TEST_CASE("best: narrow bends at a high feed", "[smooth-blocks]") {
            << "\nG5.1 X" << 6 - 4 * radius << " I" << -2 * radius << " J" << radius << "\nG1 X-9\n";
       const auto blocks = blocks_of(text.str(), quick);
       check(blocks, tolerance, quick);
-      const auto best = plan_smooth(blocks, quick, {.tolerance = tolerance});
-      CHECK(cubics(*best) == static_cast<std::ptrdiff_t>(best->program().size()));
+      const auto best = plan_blocks(blocks, quick, {.tolerance = tolerance});
+      CHECK(curves(*best) == static_cast<std::ptrdiff_t>(best->piece_count()));
     }
 }
 
@@ -159,15 +144,15 @@ TEST_CASE("good and best: a velocity that is not reached changes nothing", "[smo
   for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
     INFO("level " << (level == SmoothLevel::good ? "good" : "best"));
     machine.limits.velocity = 30;
-    const auto reached = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+    const auto reached = plan_blocks(blocks, machine, {.tolerance = 0.01, .level = level});
     REQUIRE(reached);
     for (const double velocity : {40.0, 60.0, 80.0, 90.0, 100.0, 150.0, 200.0, 1000.0, 1e5}) {
       INFO("velocity " << velocity);
       machine.limits.velocity = velocity;
-      const auto planned = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+      const auto planned = plan_blocks(blocks, machine, {.tolerance = 0.01, .level = level});
       REQUIRE(planned);
       CHECK(planned->duration() <= reached->duration() * 1.002);
-      CHECK(cubics(*planned) > 0);
+      CHECK(curves(*planned) > 0);
     }
   }
 }
@@ -185,7 +170,7 @@ TEST_CASE("good and best: limits of the tool above what its axes reach change no
     INFO("level " << (level == SmoothLevel::good ? "good" : "best"));
     // The length of the vector of the axes' limits.
     machine.limits = {.velocity = 60, .acceleration = std::sqrt(3.0) * 1000, .jerk = std::sqrt(3.0) * 1e4};
-    const auto reached = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+    const auto reached = plan_blocks(blocks, machine, {.tolerance = 0.01, .level = level});
     REQUIRE(reached);
     CHECK(reached->fallbacks().empty());
     for (const double acceleration : {1e4, 1e6, infinity})
@@ -194,7 +179,7 @@ TEST_CASE("good and best: limits of the tool above what its axes reach change no
         CAPTURE(acceleration, jerk);
         machine.limits.acceleration = acceleration;
         machine.limits.jerk = jerk;
-        const auto planned = plan_smooth(blocks, machine, {.tolerance = 0.01}, level);
+        const auto planned = plan_blocks(blocks, machine, {.tolerance = 0.01, .level = level});
         REQUIRE(planned);
         CHECK(planned->duration() == Approx(reached->duration()).epsilon(1e-6));
         CHECK(planned->fallbacks().empty());
@@ -206,12 +191,12 @@ TEST_CASE("good and best: a level that is not the one asked for is told", "[smoo
   const auto blocks = blocks_of("F1800 G1 X10\nY10\nG4 P0.1\nX20\nG3 X30 Y20 J10\n");
   const auto told = [&](const Machine<3>& machine, const PlanOptions& options,
                         const std::vector<ProgramBlock<Machine<3>>>& program) {
-    const auto planned = plan_smooth(program, machine, options);
+    const auto planned = plan_blocks(program, machine, options);
     REQUIRE(planned);
     return std::vector<Fallback>(planned->fallbacks().begin(), planned->fallbacks().end());
   };
   const auto whole = [&](FallbackReason reason) {
-    return std::vector<Fallback>{{0, blocks.size() - 1, FallbackLevel::fast, reason}};
+    return std::vector<Fallback>{{0, blocks.size() - 1, SmoothLevel::fast, reason}};
   };
   CHECK(told(mill, {.tolerance = 0.01}, blocks).empty());
   CHECK(told(mill, {.tolerance = 0}, blocks).empty());
@@ -227,12 +212,12 @@ TEST_CASE("good and best: a level that is not the one asked for is told", "[smoo
   machine = mill;
   machine.axes[1].low = 0;
   const auto wall = blocks_of("F1800 G1 X10 Y0\nX11 Y0.1\nX12 Y0\nX20\nG4 P0.1\nG1 Y10\nX30\n", machine);
-  const auto planned = plan_smooth(wall, machine, {.tolerance = 0.01});
+  const auto planned = plan_blocks(wall, machine, {.tolerance = 0.01});
   if (planned) {
     REQUIRE(planned->fallbacks().size() == 1);
     const Fallback fallback = planned->fallbacks()[0];
     CHECK(fallback.reason == FallbackReason::travel);
-    CHECK(fallback.level == FallbackLevel::fast);
+    CHECK(fallback.level == SmoothLevel::fast);
     CHECK(planned->program()[fallback.first].line == 1);
     CHECK(planned->program()[fallback.last].line == 4);
   }
@@ -250,8 +235,8 @@ TEST_CASE("best: dense lines with noise come up to speed", "[smooth-blocks]") {
       text << "G1 X" << radius * std::cos(angle) - 20 << " Y" << radius * std::sin(angle) << "\n";
     }
     const auto blocks = blocks_of(text.str());
-    const auto jumping = plan_blocks(blocks, mill, {.junction_deviation = 0.01});
-    const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+    const auto jumping = plan_blocks(blocks, mill, {.tolerance = 0, .junction_deviation = 0.01});
+    const auto best = plan_blocks(blocks, mill, {.tolerance = 0.01});
     REQUIRE(jumping);
     REQUIRE(best);
     CAPTURE(round, jumping->duration());
@@ -264,10 +249,9 @@ TEST_CASE("best: stops, pauses and exact blocks divide the program", "[smooth-bl
       "F1800 G1 X10\nX20 Y5\nX30\nG4 P0.25\nX40 Y5\nX50\nY0\nG61.1 X60\nY10\nG61 X70\nX75\nG64 X80\nX90 "
       "Y0\n");
   check(blocks);
-  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  const auto best = plan_blocks(blocks, mill, {.tolerance = 0.01});
   REQUIRE(best);
-  const auto program = best->program();
-  CHECK(cubics(*best) > 0);
+  CHECK(curves(*best) > 0);
   // At rest where the program stops, and there exactly.
   double rest = 0;
   for (const auto& [phase, block] : best->phases())
@@ -275,21 +259,21 @@ TEST_CASE("best: stops, pauses and exact blocks divide the program", "[smooth-bl
   CHECK(rest == Approx(0.25));
   for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
     if (!blocks[b].exact_stop && !(blocks[b].pause > 0)) continue;
-    const auto point = best->at(start_of(*best, b + 1));
+    const auto point = best->at(best->start_time(b + 1));
     INFO("behind block " << b);
     CHECK(point.velocity.norm() < 1e-6);
     CHECK((point.position - blocks[b].path.end()).norm() < 1e-9);
   }
-  for (const auto& block : program)
-    if (blocks[block.source].exact_path || blocks[block.source].path.length() == 0) CHECK(!is_cubic(block));
+  for (const auto& piece : best->pieces())
+    if (blocks[piece.block].exact_path || blocks[piece.block].path.length() == 0) CHECK(!piece.curve);
 }
 
 TEST_CASE("best: the way back is exact", "[smooth-blocks]") {
   const auto blocks = blocks_of("F1800 G1 X5\nX10 Z-10\nX5 Z0\nX0\n");
   check(blocks);
-  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  const auto best = plan_blocks(blocks, mill, {.tolerance = 0.01});
   REQUIRE(best);
-  const auto there = best->at(start_of(*best, 2));
+  const auto there = best->at(best->start_time(2));
   CHECK((there.position - Vector3(10, 0, -10)).norm() < 1e-9);
   CHECK(there.velocity.norm() < 1e-6);
 }
@@ -301,11 +285,11 @@ TEST_CASE("best: what has no such plan is planned as plan_blocks does", "[smooth
   far_axes.axes[0].letter = 'Y';
   far_axes.axes[1].letter = 'X';
   const auto same = [&](const Machine<3>& machine, const PlanOptions& options) {
-    const auto best = plan_smooth(blocks, machine, options);
-    const auto fast = plan_blocks(blocks, machine, options);
+    const auto best = plan_blocks(blocks, machine, options);
+    const auto fast = plan_blocks(blocks, machine, at_level(SmoothLevel::fast, options));
     REQUIRE(best.has_value() == fast.has_value());
     if (!best) return;
-    CHECK(cubics(*best) == 0);
+    CHECK(curves(*best) == 0);
     REQUIRE(best->duration() == fast->duration());
     for (double t = 0; t < fast->duration(); t += 0.01)
       CHECK((best->at(t).position - fast->at(t).position).norm() < 1e-12);
@@ -317,7 +301,7 @@ TEST_CASE("best: what has no such plan is planned as plan_blocks does", "[smooth
   Machine<3> narrow = mill;
   narrow.axes[1].low = 0;
   const auto wall = blocks_of("F1800 G1 X10 Y0\nX11 Y0.1\nX12 Y0\nX20\n", narrow);
-  const auto planned = plan_smooth(wall, narrow, {.tolerance = 0.01});
+  const auto planned = plan_blocks(wall, narrow, {.tolerance = 0.01});
   if (planned)
     for (const auto& point : planned->samples(1e-3)) CHECK(point.position[1] > -1e-9);
 }
@@ -325,9 +309,9 @@ TEST_CASE("best: what has no such plan is planned as plan_blocks does", "[smooth
 TEST_CASE("best: lines straight on run as on the exact path", "[smooth-blocks]") {
   std::string straight = "F1800\n";
   for (int i = 1; i <= 50; ++i) straight += "G1 X" + std::to_string(i * 0.2) + "\n";
-  const auto line = plan_smooth(blocks_of(straight), mill, {.tolerance = 0.01});
+  const auto line = plan_blocks(blocks_of(straight), mill, {.tolerance = 0.01});
   REQUIRE(line);
-  CHECK(cubics(*line) == 0);
+  CHECK(curves(*line) == 0);
   // 10 mm from rest to rest: ramps of J t^2 = 30, and a cruise
   const double ramp = std::sqrt(30.0 / 10000.0);
   CHECK(line->duration() == Approx(10.0 / 30.0 + 2 * ramp).epsilon(1e-9));
@@ -338,7 +322,7 @@ TEST_CASE("best: errors say the block", "[smooth-blocks]") {
       {.path = path::Line<3>(Vector3(0, 0, 0), Vector3(1, 0, 0)), .feed = 10, .line = 1},
       {.path = path::Line<3>(Vector3(1, 0, 0), Vector3(2, 1, 0)), .feed = 10, .line = 2},
       {.path = path::Line<3>(Vector3(3, 1, 0), Vector3(4, 0, 0)), .feed = 10, .line = 3}};
-  const auto planned = plan_smooth(apart, mill, {.tolerance = 0.01});
+  const auto planned = plan_blocks(apart, mill, {.tolerance = 0.01});
   REQUIRE(!planned);
   CHECK(planned.error().error().code == ErrorCode::discontinuous);
   CHECK(planned.error().block == 2u);
@@ -367,7 +351,7 @@ TEST_CASE("best: step edges end where the program does", "[smooth-blocks]") {
   Machine<3> machine = mill;
   for (auto& axis : machine.axes) axis.motors = {{.steps_per_unit = 100}};
   const auto blocks = blocks_of("F1800 G1 X10\nX13 Y5\nG3 X23 Y5 I5\nG1 X30 Y1 Z-2\n", machine);
-  const auto best = plan_smooth(blocks, machine, {.tolerance = 0.01});
+  const auto best = plan_blocks(blocks, machine, {.tolerance = 0.01});
   REQUIRE(best);
   std::array<int, 3> steps{};
   double time = 0;
@@ -395,10 +379,10 @@ TEST_CASE("good and best: a real program takes no longer than a prototype did", 
     block.pause = block.merge = 0;
     block.tolerance.reset();
   }
-  const auto best = plan_smooth(blocks, mill, {.tolerance = 0.01});
+  const auto best = plan_blocks(blocks, mill, {.tolerance = 0.01});
   REQUIRE(best);
   CHECK(best->duration() < 218.4);
-  const auto good = plan_smooth(blocks, mill, {.tolerance = 0.01}, SmoothLevel::good);
+  const auto good = plan_blocks(blocks, mill, {.tolerance = 0.01, .level = SmoothLevel::good});
   REQUIRE(good);
   CHECK(good->duration() < 220.07 * 1.005);  // the prototype's before its second round
   CHECK(good->duration() > best->duration());

@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "cncplan/core/fixed_memory.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
+#include "cncplan/plan/plan_blocks.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
+#include "plan/at_level.hpp"
 #include "plan/joined_parts.hpp"
 #include "plan/rows_program.hpp"
 #include "support/catch.hpp"
@@ -67,7 +68,7 @@ TEST_CASE("a stream lives in the memory of its caller", "[smooth-memory]") {
     double time = 0;
     const std::size_t requests = heap_allocations_of([&] {
       FixedMemory memory(buffer);
-      Stream stream(mill, within, level, 100, &memory);
+      Stream stream(mill, at_level(level, within), 100, &memory);
       const auto take = [&] {
         if (!stream.ready()) return;
         const Stream::Part part = stream.take();
@@ -93,15 +94,15 @@ TEST_CASE("a plan as a whole lives in the memory of its caller", "[smooth-memory
   RefusingMemory memory;
   {
     std::size_t requests = 0;
-    const auto planned = plan_smooth(blocks, mill, within, SmoothLevel::good, &memory);
+    const auto planned = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within), &memory);
     REQUIRE(planned);
     CHECK(memory.used() > 0);
     requests = heap_allocations_of([&] {
       static_cast<void>(
-          plan_smooth(blocks, mill, within, SmoothLevel::good, std::pmr::null_memory_resource()));
+          plan_blocks(blocks, mill, at_level(SmoothLevel::good, within), std::pmr::null_memory_resource()));
     });
     CHECK(requests == 0);  // not even where it is refused
-    const auto usual = plan_smooth(blocks, mill, within, SmoothLevel::good);
+    const auto usual = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
     REQUIRE(usual);
     CHECK(std::equal(planned->phases().begin(), planned->phases().end(), usual->phases().begin(),
                      usual->phases().end()));
@@ -116,7 +117,7 @@ TEST_CASE("a plan as a whole for which memory gives out is an error", "[smooth-m
   for (int most = 0; refused == most; ++most) {
     granted = 0;
     memory.refuses = [&](std::size_t) { return ++granted > most; };
-    const auto planned = plan_smooth(blocks, mill, within, SmoothLevel::good, &memory);
+    const auto planned = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within), &memory);
     if (planned) continue;
     ++refused;
     CHECK(planned.error().error().code == ErrorCode::no_memory);
@@ -137,7 +138,7 @@ TEST_CASE("where memory gives out at times nothing is lost", "[smooth-memory]") 
       return std::exchange(once, false) || (refusing && random.integer(0, odds) == 0);
     };
     {
-      Stream stream(mill, within, SmoothLevel::good, 60, &memory);
+      Stream stream(mill, at_level(SmoothLevel::good, within), 60, &memory);
       JoinedParts<MillBlock, Machine<3>> parts;
       // Some calls in the end meet with no refusal.
       const auto again = [&](const auto& call) {
@@ -174,7 +175,7 @@ TEST_CASE("with little memory a plan is slower, with less there is none", "[smoo
   // The duration of a plan in so many bytes; 0 where there is none.
   const auto duration_in = [&](std::size_t bytes, RefusingMemory& memory) {
     memory.refuses = [&memory, bytes](std::size_t more) { return memory.used() + more > bytes; };
-    Stream stream(mill, within, SmoothLevel::good, 60, &memory);
+    Stream stream(mill, at_level(SmoothLevel::good, within), 60, &memory);
     JoinedParts<MillBlock, Machine<3>> parts;
     const auto given = [&](const Expected<void, ProgramError>& ok) {
       if (!ok) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -42,7 +41,7 @@ double seconds(const std::string& text, const Mill& machine, double tolerance, S
   auto program = read_text(text, machine);
   REQUIRE_FALSE(program.failed());
   const auto planned =
-      plan_smooth(std::move(program).take_blocks(), machine, {.tolerance = tolerance}, level);
+      plan_blocks(std::move(program).take_blocks(), machine, {.tolerance = tolerance, .level = level});
   REQUIRE(planned);
   return planned->duration();
 }

@@ -1,5 +1,6 @@
 // Programs that are planned in parts: limits by differences, the path by brute force, the time of the whole.
 #include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/plan/plan_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "cncplan/plan/smooth_blocks.hpp"
+#include "plan/at_level.hpp"
 #include "plan/joined_parts.hpp"
 #include "plan/rows_program.hpp"
 #include "support/catch.hpp"
@@ -46,7 +47,7 @@ TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the t
     Machine<3> machine = mill;
     machine.limits.velocity = feed / 60;
     const MillBlocks blocks = blocks_of(rows(8, 50, feed), machine);
-    const auto whole = plan_smooth(blocks, machine, within, level);
+    const auto whole = plan_blocks(blocks, machine, at_level(level, within));
     REQUIRE(whole);
     std::vector<double> ends;
     const auto parts = plan_in_parts(blocks, machine, within, level, held, &ends);
@@ -70,7 +71,7 @@ TEST_CASE("stream: the level best", "[smooth-stream]") {
 
 TEST_CASE("stream: a part goes on as the one before ended", "[smooth-stream]") {
   const MillBlocks blocks = blocks_of(rows(6, 60));
-  Stream stream(mill, within, SmoothLevel::good, 80);
+  Stream stream(mill, at_level(SmoothLevel::good, within), 80);
   Vector3 position = Vector3::Zero(), velocity = Vector3::Zero(), acceleration = Vector3::Zero();
   int parts = 0;
   const auto take = [&] {
@@ -105,20 +106,20 @@ TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]")
   std::string text = rows(3, 60) + "G61\n" + rows(3, 60) + "G64\n";
   for (int i = 0; i < 200; ++i) text += "M8\n";
   const MillBlocks blocks = blocks_of(text + rows(3, 60));
-  Stream stream(mill, within, SmoothLevel::good, held);
+  Stream stream(mill, at_level(SmoothLevel::good, within), held);
   std::size_t pushed = 0, out = 0;
   for (const MillBlock& block : blocks) {
     REQUIRE(stream.push(block));
     ++pushed;
     if (!stream.ready()) continue;
     const auto part = stream.take();
-    out = part.program().back().source;
+    out = part.first_block() + part.program().size() - 1;
     CHECK(pushed - out <= held + 1);
   }
   CHECK(pushed - out <= held + 1);
   REQUIRE(stream.finish());
   const auto last = stream.take();
-  CHECK(last.program().back().source + 1 == blocks.size());
+  CHECK(last.first_block() + last.program().size() == blocks.size());
 }
 
 TEST_CASE("stream: words behind every line are told once", "[smooth-stream]") {
@@ -136,7 +137,7 @@ TEST_CASE("stream: words behind every line are told once", "[smooth-stream]") {
     }
     const std::size_t held = 120;
     CAPTURE(words);
-    Stream stream(mill, within, SmoothLevel::good, held);
+    Stream stream(mill, at_level(SmoothLevel::good, within), held);
     JoinedParts<MillBlock, Machine<3>> parts;
     std::size_t out = 0, most = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -144,7 +145,7 @@ TEST_CASE("stream: words behind every line are told once", "[smooth-stream]") {
       if (stream.ready()) {
         parts.take(stream);
         const auto all = parts.trajectory(mill);
-        out = all.program().back().source;
+        out = all.program().size() - 1;
       }
       most = std::max(most, i + 1 - out);
     }
@@ -164,14 +165,15 @@ TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole"
   std::string text = rows(2, 60) + "M8\nG4 P0.25\n" + rows(2, 60) + "M0\nG61.1\n" + rows(1, 10) + "G61\n" +
                      rows(1, 10) + "G64\nM9\n" + rows(1, 80) + "G1 X3\nX9 Y4\nM5\nX0\nM30\n";
   const MillBlocks blocks = blocks_of(text);
-  const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
+  const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
   const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, 50);
   REQUIRE(whole);
   REQUIRE(parts);
   const auto words = [](const auto& trajectory) {
     std::vector<std::pair<std::size_t, int>> result;
-    for (const auto& block : trajectory.program())
-      if (block.word.letter != '\0') result.emplace_back(block.source, static_cast<int>(block.word.number));
+    for (std::size_t b = 0; b < trajectory.program().size(); ++b)
+      if (const auto& word = trajectory.program()[b].word; word.letter != '\0')
+        result.emplace_back(b, static_cast<int>(word.number));
     return result;
   };
   CHECK(words(*parts) == words(*whole));
@@ -184,8 +186,8 @@ TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole"
   CHECK(rest(*parts) == Approx(rest(*whole)));
   const auto stops = [](const auto& trajectory) {
     std::vector<std::size_t> result;
-    for (const auto& block : trajectory.program())
-      if (block.exact_stop || block.pause > 0) result.push_back(block.source);
+    for (std::size_t b = 0; b < trajectory.program().size(); ++b)
+      if (trajectory.program()[b].exact_stop || trajectory.program()[b].pause > 0) result.push_back(b);
     return result;
   };
   CHECK(stops(*parts) == stops(*whole));
@@ -213,7 +215,7 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
         least = std::min(least, point.velocity.norm());
     return least;
   };
-  const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
+  const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
   REQUIRE(whole);
   for (const std::size_t held : {60u, 61u, 62u, 63u}) {
     const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
@@ -227,16 +229,15 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
 TEST_CASE("stream: merged lines", "[smooth-stream]") {
   const MillBlocks blocks = blocks_of("G64 P0.01 Q0.004\n" + rows(4, 200));
   const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, 60);
-  const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
+  const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
   REQUIRE(parts);
   REQUIRE(whole);
   check_motion(*parts, blocks);
   const auto merged = [](const auto& trajectory) {
-    std::vector<std::size_t> sources;
-    for (const auto& block : trajectory.program())
-      if (block.merged > 0 && (sources.empty() || sources.back() != block.source))
-        sources.push_back(block.source);
-    return sources;
+    std::vector<std::size_t> numbers;
+    for (std::size_t b = 0; b < trajectory.program().size(); ++b)
+      if (trajectory.program()[b].merged > 0) numbers.push_back(b);
+    return numbers;
   };
   CHECK(merged(*parts).size() > blocks.size() / 2);
   CHECK(merged(*parts) == merged(*whole));
@@ -289,7 +290,7 @@ TEST_CASE("stream: cuts do not become slower from part to part", "[smooth-stream
     for (int i = 1; i <= lines; ++i) text << "G1 X" << step * i << " Y" << bend * std::sin(0.3 * i) << "\n";
     const MillBlocks blocks = blocks_of(text.str());
     const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
-    const auto whole = plan_smooth(blocks, mill, within, SmoothLevel::good);
+    const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
     REQUIRE(parts);
     REQUIRE(whole);
     CAPTURE(step, held);
@@ -301,7 +302,7 @@ TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-str
   Machine<3> machine = mill;
   machine.axes[0].high = 20;
   MillBlocks blocks = blocks_of(rows(1, 60), machine);
-  Stream stream(machine, within, SmoothLevel::good, 40);
+  Stream stream(machine, at_level(SmoothLevel::good, within), 40);
   for (const MillBlock& block : blocks) REQUIRE(stream.push(block));
   MillBlock apart = blocks.back();
   apart.path = path::Line<3>(Vector3(5, 5, 5), Vector3(6, 5, 5));
@@ -329,12 +330,12 @@ TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-str
   }
   REQUIRE(stream.finish());
   const auto last = stream.take();
-  CHECK(last.program().back().source + 1 == blocks.size());
+  CHECK(last.first_block() + last.program().size() == blocks.size());
   CHECK(last.at(last.duration()).velocity.norm() == 0);
 }
 
 TEST_CASE("stream: nothing, and more behind a finish", "[smooth-stream]") {
-  Stream stream(mill, within, SmoothLevel::good, 60);
+  Stream stream(mill, at_level(SmoothLevel::good, within), 60);
   REQUIRE(stream.finish());
   CHECK(!stream.ready());
   const MillBlocks blocks = blocks_of(rows(4, 60));
@@ -344,7 +345,7 @@ TEST_CASE("stream: nothing, and more behind a finish", "[smooth-stream]") {
     if (i + 1 != blocks.size() / 2 && i + 1 != blocks.size()) continue;
     REQUIRE(stream.finish());
     const auto part = stream.take();
-    CHECK(part.program().back().source == i);
+    CHECK(part.first_block() + part.program().size() == i + 1);
     CHECK((part.at(part.duration()).position - blocks[i].path.position_at(blocks[i].path.length())).norm() <
           1e-9);
     CHECK(part.at(part.duration()).velocity.norm() == 0);

@@ -82,12 +82,12 @@ Polyline programmed(const Blocks& blocks) {
   }
   return result;
 }
-/// Each block by so many chords.
+/// Each piece by so many chords.
 template <class T>
 Polyline driven(const T& trajectory, int parts) {
   Polyline result;
-  for (std::size_t b = 0; b < trajectory.program().size(); ++b) {
-    const auto path = trajectory.path(b);
+  for (std::size_t p = 0; p < trajectory.piece_count(); ++p) {
+    const auto path = trajectory.path(p);
     for (int i = 0; i <= parts; ++i)
       result.push_back(path.position_at(path.length() * i / parts).template head<3>());
   }

@@ -51,7 +51,7 @@ std::string polyline(const std::vector<std::array<double, 2>>& points, double fe
 }
 
 auto smoothed(const std::string& program, double tolerance = 0.01) {
-  return plan_text(program, mill, {.tolerance = tolerance});
+  return plan_text(program, mill, {.tolerance = tolerance, .level = SmoothLevel::fast});
 }
 
 }  // namespace
@@ -88,8 +88,9 @@ TEST_CASE("corners are smooth, within the tolerance and the limits", "[smoothing
           smoothed(polyline({{50, 0}, {50 + 50 * std::cos(a), 50 * std::sin(a)}}), tolerance);
       check(planned, mill, tolerance);
       // No slower than to stop there.
-      const auto stop = plan_text(
-          polyline({{50, 0}}) + "G4 P0\n" + polyline({{50 + 50 * std::cos(a), 50 * std::sin(a)}}), mill);
+      const auto stop =
+          plan_text(polyline({{50, 0}}) + "G4 P0\n" + polyline({{50 + 50 * std::cos(a), 50 * std::sin(a)}}),
+                    mill, {.tolerance = 0});
       REQUIRE(stop);
       CHECK(planned->duration() <= stop->duration() + 1e-6);
     }
@@ -132,13 +133,14 @@ TEST_CASE("the interior of an arc stays exact", "[smoothing]") {
 }
 
 TEST_CASE("the tool stops where it turns back, and where it must be exact", "[smoothing]") {
-  const auto exit_of_first = [](const std::string& program,
-                                const PlanOptions& options = {.tolerance = 0.01}) {
-    const auto planned = plan_text(program, mill, options);
-    REQUIRE(planned);
-    CHECK(planned->at(planned->start_time(1)).position == planned->program()[0].path.end());
-    return planned->blocks()[0].exit;
-  };
+  const auto exit_of_first =
+      [](const std::string& program,
+         const PlanOptions& options = {.tolerance = 0.01, .level = SmoothLevel::fast}) {
+        const auto planned = plan_text(program, mill, options);
+        REQUIRE(planned);
+        CHECK(planned->at(planned->start_time(1)).position == planned->program()[0].path.end());
+        return planned->blocks()[0].exit;
+      };
   const auto rests = Approx(0).margin(1e-6);
   CHECK(exit_of_first("F1800 G1 Z-10\nZ0\n") == rests);
   CHECK(exit_of_first("F1800 G61.1 G1 X10\nX20\n") == rests);
@@ -181,15 +183,18 @@ double left_by(const std::string& program, const PlanOptions& options) {
 
 TEST_CASE("G64 P sets the tolerance, block by block", "[smoothing]") {
   const std::string corner = "G1 X20\nX40 Y1\n";
-  const double usual = left_by("F1800 " + corner, {.tolerance = 0.01});
+  const double usual = left_by("F1800 " + corner, {.tolerance = 0.01, .level = SmoothLevel::fast});
   CHECK(usual > 0.004);
   CHECK(usual <= 0.01);
-  CHECK(left_by("F1800 G64 P0.002 " + corner, {.tolerance = 0.01}) <= 0.002 * (1 + 1e-12));
-  CHECK(left_by("F1800 G64 P0.002 " + corner, {.tolerance = 0.01}) > 0.0015);
-  CHECK(left_by("G20 F70 G64 P0.0001 G1 X1\nX2 Y0.1\n", {.tolerance = 0.01}) <= 0.00254 * (1 + 1e-12));
-  CHECK(left_by("F1800 G64 P0.002 G1 X20\nG64 X40 Y1\n", {.tolerance = 0.01}) <=
+  CHECK(left_by("F1800 G64 P0.002 " + corner, {.tolerance = 0.01, .level = SmoothLevel::fast}) <=
+        0.002 * (1 + 1e-12));
+  CHECK(left_by("F1800 G64 P0.002 " + corner, {.tolerance = 0.01, .level = SmoothLevel::fast}) > 0.0015);
+  CHECK(left_by("G20 F70 G64 P0.0001 G1 X1\nX2 Y0.1\n", {.tolerance = 0.01, .level = SmoothLevel::fast}) <=
+        0.00254 * (1 + 1e-12));
+  CHECK(left_by("F1800 G64 P0.002 G1 X20\nG64 X40 Y1\n", {.tolerance = 0.01, .level = SmoothLevel::fast}) <=
         0.002 * (1 + 1e-12));  // the lower of both
-  CHECK(left_by("F1800 G64 P0.002\nG64 " + corner, {.tolerance = 0.01}) == Approx(usual));
+  CHECK(left_by("F1800 G64 P0.002\nG64 " + corner, {.tolerance = 0.01, .level = SmoothLevel::fast}) ==
+        Approx(usual));
   CHECK(left_by("F1800 " + corner, {.tolerance = 0}) == 0);
   const auto planned = smoothed("G64 P0.02\nF600 G1 X1\n");
   REQUIRE(planned);
@@ -223,7 +228,8 @@ TEST_CASE("limits of six axes hold on smooth paths, with a tolerance for rotary 
     }
     INFO("seed " << test::seed() << " round " << round);
     const double rotary = 1e-3;
-    const auto planned = plan_blocks(blocks, machine, {.tolerance = 0.02, .rotary_tolerance = rotary});
+    const auto planned = plan_blocks(
+        blocks, machine, {.tolerance = 0.02, .level = SmoothLevel::fast, .rotary_tolerance = rotary});
     check(planned, machine, 0.02);
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (int i = 0; i <= 50; ++i) {
@@ -270,8 +276,8 @@ TEST_CASE("random programs keep limits and tolerance", "[smoothing]") {
 TEST_CASE("steps of a smoothed program follow its curve", "[smoothing]") {
   Machine<3> machine = mill;
   for (Axis& axis : machine.axes) axis.motors = {{.steps_per_unit = 400}};
-  const auto planned =
-      plan_text("F1800 G1 X10\nX12 Y5\nX3 Y6\nG3 X3 Y10 J2\nG1 X0 Y0\n", machine, {.tolerance = 0.02});
+  const auto planned = plan_text("F1800 G1 X10\nX12 Y5\nX3 Y6\nG3 X3 Y10 J2\nG1 X0 Y0\n", machine,
+                                 {.tolerance = 0.02, .level = SmoothLevel::fast});
   REQUIRE(planned);
   std::array<long, 3> count{};
   double last = 0, worst = 0;

@@ -108,7 +108,7 @@ Machine<3> stepped(double x, double y, double z) {
 TEST_CASE("edges of lines, arcs and helices are where the axes pass their boundaries", "[edges]") {
   const auto planned = plan_text(
       "G1 X7.3 Y-2 Z1 F1500\nG2 X12 Y3 R6\nG4 P0.3\nG3 X20 Y3 Z4 I4 J0 P2\nG1 X19.99\nG1 X0 Y0\nM0\nG0 Z-3\n",
-      stepped(80, 123.4, 400));
+      stepped(80, 123.4, 400), {.tolerance = 0});
   INFO((planned ? std::string() : to_text(planned.error())));
   REQUIRE(planned);
   auto edges = edges_of(*planned);
@@ -120,7 +120,7 @@ TEST_CASE("edges of lines, arcs and helices are where the axes pass their bounda
 TEST_CASE("two motors of an axis step alike, numbered in the order of axes", "[edges]") {
   Machine<3> gantry = stepped(80, 80, 400);
   gantry.axes[1].motors = {drive(80), drive(200)};
-  const auto planned = plan_text("G1 X5 Y3 F900\nG3 X9 Y7 R4\nG1 Y0 Z1\n", gantry);
+  const auto planned = plan_text("G1 X5 Y3 F900\nG3 X9 Y7 R4\nG1 Y0 Z1\n", gantry, {.tolerance = 0});
   REQUIRE(planned);
   CHECK(planned->step_edges().motor_count() == 4);
   auto edges = edges_of(*planned);
@@ -136,7 +136,7 @@ TEST_CASE("two motors of an axis step alike, numbered in the order of axes", "[e
 TEST_CASE("steps go on through pauses and begin where the motion starts", "[edges]") {
   const auto planned =
       plan_text("G4 P0.2\nG1 X10 F600\nG4 P0.5\nG4 P0.1\nG1 X10.003\nG4 P0.1\nG1 X4\nG4 P1\n",
-                stepped(100, 1, 1), {.start = {2.504, 0, 0}});
+                stepped(100, 1, 1), {.tolerance = 0, .start = {2.504, 0, 0}});
   REQUIRE(planned);
   auto edges = edges_of(*planned);
   check_motor(*planned, edges[0], 0, 100);
@@ -161,7 +161,7 @@ TEST_CASE("edges on a curve of one's own and on spirals of several cells", "[edg
   const std::vector<B> blocks{{.path = path::Line<3>({0, 0, 0}, {20, 0, 0}), .feed = 30},
                               {.path = *curve, .feed = 30},
                               {.path = path::Arc(g), .feed = 30}};
-  const auto planned = plan_blocks(blocks, stepped(80, 200, 1));
+  const auto planned = plan_blocks(blocks, stepped(80, 200, 1), {.tolerance = 0});
   REQUIRE(planned);
   auto edges = edges_of(*planned);
   check_motor(*planned, edges[0], 0, 80);
@@ -181,7 +181,7 @@ TEST_CASE("edges of joints behind a map, rapids among them", "[edges]") {
   arm.axes[2].motors = {drive(50)};
   const auto planned =
       plan_text("G1 F6000 X260 Y-100\nG4 P0.2\nG3 X160 Y0 Z20 R100\nG0 X250 Y-180 Z0\nG1 Y100\n", arm,
-                {.start = {250, -180, 0}});
+                {.tolerance = 0, .start = {250, -180, 0}});
   REQUIRE(planned);
   auto edges = edges_of(*planned);
   const auto fine = [&](std::size_t motor, int axis, double steps) {
@@ -205,10 +205,10 @@ TEST_CASE("edges of joints behind a map, rapids among them", "[edges]") {
 // The oracle: the edges without backlash, with so many more at each change of direction.
 TEST_CASE("backlash is taken up where an axis turns round, and nowhere else", "[edges]") {
   constexpr std::string_view text = "G1 X10 F900\nG1 X4\nG4 P0.2\nG1 X2\nG4 P0.2\nG1 X7\nG1 X9\n";
-  const auto without = plan_text(text, stepped(100, 1, 1));
+  const auto without = plan_text(text, stepped(100, 1, 1), {.tolerance = 0});
   Machine<3> slack = stepped(100, 1, 1);
   slack.axes[0].motors[0].backlash = 0.05;
-  const auto with = plan_text(text, slack);
+  const auto with = plan_text(text, slack, {.tolerance = 0});
   REQUIRE(without);
   REQUIRE(with);
   const auto plain = edges_of(*without)[0], taken = edges_of(*with)[0];
@@ -237,7 +237,7 @@ TEST_CASE("rotary axes and a machine of one axis step", "[edges]") {
   table.axes[0].motors = {drive(636.6)};
   const std::vector<Block<1>> blocks{{.path = path::Line<1>(V(0), V(3), 3, 0)},
                                      {.path = path::Line<1>(V(3), V(-0.5), 3.5, 0), .pause = 0.5}};
-  const auto planned = plan_blocks(blocks, table);
+  const auto planned = plan_blocks(blocks, table, {.tolerance = 0});
   REQUIRE(planned);
   auto edges = edges_of(*planned);
   check_motor(*planned, edges[0], 0, 636.6);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
@@ -26,7 +25,7 @@ template <int N = 3>
 auto planned(const std::string& text, const Machine<N>& machine, SmoothLevel level = SmoothLevel::good) {
   const auto program = read_text(text, machine);
   REQUIRE_FALSE(program.failed());
-  auto trajectory = plan_smooth(program.blocks(), machine, {.tolerance = 0.01}, level);
+  auto trajectory = plan_blocks(program.blocks(), machine, {.tolerance = 0.01, .level = level});
   REQUIRE(trajectory);
   trajectory->set_words(timed_words(program, *trajectory));
   return *std::move(trajectory);
@@ -231,7 +230,8 @@ TEST_CASE("trajectory executor: a level that an executor has, and axes that turn
   machine.axes[3].jerk = 200;
   const auto program = read_text("F1800 G1 X20 A30\nY5 A0\nA90\nG2 X30 I5\n", machine);
   REQUIRE_FALSE(program.failed());
-  const auto trajectory = plan_blocks(program.blocks(), machine, {.tolerance = 0.01});
+  const auto trajectory =
+      plan_blocks(program.blocks(), machine, {.tolerance = 0.01, .level = SmoothLevel::fast});
   REQUIRE(trajectory);
   TrajectoryExecutor executor(*trajectory, machine);
   int ticks = 0;
@@ -287,7 +287,8 @@ TEST_CASE("a machine with a reserve", "[trajectory-executor]") {
 }
 
 TEST_CASE("trajectory executor: a part of a longer motion is refused", "[trajectory-executor]") {
-  SmoothStream<Machine<3>, ProgramBlock<Machine<3>>> stream(mill, {.tolerance = 0.01}, SmoothLevel::good, 40);
+  SmoothStream<Machine<3>, ProgramBlock<Machine<3>>> stream(
+      mill, {.tolerance = 0.01, .level = SmoothLevel::good}, 40);
   std::string lines = "F1800 G91\n";
   for (int i = 0; i < 150; ++i) lines += i % 2 == 0 ? "G1 X1\n" : "G1 X1 Y0.2\n";
   const auto program = read_text(lines, mill);

@@ -149,7 +149,7 @@ Jumps jumps(const T& trajectory) {
 }  // namespace
 
 TEST_CASE("no blocks are a trajectory of no time", "[trajectory]") {
-  const auto none = plan_blocks(std::vector<Block<3>>{}, mill);
+  const auto none = plan_blocks(std::vector<Block<3>>{}, mill, {.tolerance = 0});
   REQUIRE(none);
   CHECK(none->duration() == 0);
   CHECK(none->length() == 0);
@@ -163,7 +163,8 @@ TEST_CASE("no blocks are a trajectory of no time", "[trajectory]") {
 
 TEST_CASE("no samples where the period is none, and why", "[trajectory]") {
   const std::vector<Block<3>> blocks{{.path = line({0, 0, 0}, {10, 0, 0})}};
-  for (const auto& planned : {plan_blocks(blocks, mill), plan_blocks(std::vector<Block<3>>{}, mill)}) {
+  for (const auto& planned : {plan_blocks(blocks, mill, {.tolerance = 0}),
+                              plan_blocks(std::vector<Block<3>>{}, mill, {.tolerance = 0})}) {
     REQUIRE(planned);
     for (const double period : {0.0, -0.0, -1.0, -1e-300, -std::numeric_limits<double>::infinity(),
                                 std::numeric_limits<double>::infinity(), std::nan("")}) {
@@ -189,7 +190,7 @@ TEST_CASE("no samples where the period is none, and why", "[trajectory]") {
 // Closed form: a line long enough to reach every limit takes L/v + v/a + a/j.
 TEST_CASE("one line takes the time of its profile's closed form", "[trajectory]") {
   const std::vector<Block<3>> blocks{{.path = line({1, 2, 3}, {101, 2, 3}), .feed = 25, .line = 7}};
-  const auto one = plan_blocks(blocks, Machine<3>{.limits = {30, 100, 1000}});
+  const auto one = plan_blocks(blocks, Machine<3>{.limits = {30, 100, 1000}}, {.tolerance = 0});
   REQUIRE(one);
   CHECK(one->duration() == Approx(100.0 / 25 + 25.0 / 100 + 100.0 / 1000).epsilon(1e-13));
   CHECK(one->length() == 100);
@@ -221,7 +222,8 @@ TEST_CASE("pauses at the start, in the middle, in a row and at the end", "[traje
   std::vector<Block<3>> moving{blocks[2], blocks[3], blocks[7]};
   moving[1].exact_stop = true;
   moving[1].pause = 0;
-  const auto with = plan_blocks(blocks, mill), without = plan_blocks(moving, mill);
+  const auto with = plan_blocks(blocks, mill, {.tolerance = 0}),
+             without = plan_blocks(moving, mill, {.tolerance = 0});
   REQUIRE(with);
   REQUIRE(without);
   CHECK(with->duration() == Approx(without->duration() + 0.25 + 0.5 + 0.125 + 1 + 2 + 0.75).epsilon(1e-12));
@@ -250,7 +252,7 @@ TEST_CASE("pauses at the start, in the middle, in a row and at the end", "[traje
 TEST_CASE("pauses alone are a trajectory", "[trajectory]") {
   const std::vector<Block<3>> blocks{{.path = line({1, 2, 3}, {1, 2, 3}), .pause = 0.5, .line = 1},
                                      {.path = line({1, 2, 3}, {1, 2, 3}), .pause = 0.25, .line = 2}};
-  const auto rest = plan_blocks(blocks, mill);
+  const auto rest = plan_blocks(blocks, mill, {.tolerance = 0});
   REQUIRE(rest);
   CHECK(rest->duration() == 0.75);
   CHECK(rest->at(0.6).line == 2);
@@ -261,9 +263,9 @@ TEST_CASE("pauses alone are a trajectory", "[trajectory]") {
 TEST_CASE("exact stops are at rest, and joints that are smooth are not", "[trajectory]") {
   std::vector<Block<3>> blocks{{.path = line({0, 0, 0}, {20, 0, 0}), .feed = 20},
                                {.path = line({20, 0, 0}, {40, 0, 0}), .feed = 20}};
-  const auto through = plan_blocks(blocks, mill);
+  const auto through = plan_blocks(blocks, mill, {.tolerance = 0});
   blocks[0].exact_stop = true;
-  const auto stops = plan_blocks(blocks, mill);
+  const auto stops = plan_blocks(blocks, mill, {.tolerance = 0});
   REQUIRE(through);
   REQUIRE(stops);
   CHECK(through->blocks()[1].entry == Approx(20));
@@ -287,7 +289,7 @@ TEST_CASE("where the unit of length changes the motion stops", "[trajectory]") {
   };
   const std::vector<Block<5>> blocks{block(a, b, 20), block(b, c, 2), block(c, d, 2),
                                      block(d, e, 5),  block(e, f, 2), block(f, g, 20)};
-  const auto planned = plan_blocks(blocks, machine);
+  const auto planned = plan_blocks(blocks, machine, {.tolerance = 0});
   REQUIRE(planned);
   CHECK(planned->length() == Approx(10 + 8 + 20).epsilon(1e-14));
   const auto motions = planned->blocks();
@@ -309,7 +311,7 @@ TEST_CASE("a rotary axis that turns back slows down to what its limits allow", "
     machine.axes[3].jerk = 4000;
     const std::vector<Block<4>> blocks{{.path = path::Line<4>(V(0, 0, 0, 0), V(0, 0, 0, 2))},
                                        {.path = path::Line<4>(V(0, 0, 0, 2), V(0, 0, 0, 0))}};
-    const auto planned = plan_blocks(blocks, machine, {.rotary_tolerance = 1e-3});
+    const auto planned = plan_blocks(blocks, machine, {.tolerance = 0, .rotary_tolerance = 1e-3});
     REQUIRE(planned);
     const double speed = planned->blocks()[0].exit;
     // At a blend of half length l = 4 tolerance / 2: v^2 2 / (2 l) = A, or v^3 2 / l^2 = J.
@@ -325,7 +327,7 @@ TEST_CASE("an axis beside the tool slows down where it alone changes its rate", 
   machine.axes[3] = {.letter = 'U', .velocity = 100, .acceleration = 300, .jerk = 4000};
   const std::vector<Block<4>> blocks{{.path = path::Line<4>(V(0, 0, 0, 0), V(50, 0, 0, 0)), .feed = 30},
                                      {.path = path::Line<4>(V(50, 0, 0, 0), V(99, 0, 0, 49)), .feed = 30}};
-  const auto planned = plan_blocks(blocks, machine, {.junction_deviation = 0.02});
+  const auto planned = plan_blocks(blocks, machine, {.tolerance = 0, .junction_deviation = 0.02});
   REQUIRE(planned);
   // At a blend of half length l = 4 tolerance / d with d = 1: v^2 d / (2 l) = A.
   CHECK(planned->blocks()[0].exit == Approx(std::sqrt(2 * 0.08 * 300)).epsilon(1e-9));
@@ -334,7 +336,7 @@ TEST_CASE("an axis beside the tool slows down where it alone changes its rate", 
 TEST_CASE("blocks that do not meet are refused, with the axis", "[trajectory]") {
   std::vector<Block<3>> blocks{{.path = line({0, 0, 0}, {20, 0, 0}), .feed = 20},
                                {.path = line({20, 0.5, 0}, {40, 0, 0}), .feed = 20}};
-  const auto jump = plan_blocks(blocks, mill);
+  const auto jump = plan_blocks(blocks, mill, {.tolerance = 0});
   REQUIRE(!jump);
   CHECK(jump.error().block == 1);
   CHECK(jump.error().error().code == ErrorCode::discontinuous);
@@ -346,19 +348,19 @@ TEST_CASE("errors of blocks made by hand name the block", "[trajectory]") {
   small.axes[1].high = 5;
   const std::vector<Block<3>> blocks{{.path = line({0, 0, 0}, {20, 0, 0}), .feed = 20},
                                      {.path = line({20, 0, 0}, {20, 6, 0}), .feed = 20}};
-  const auto beyond = plan_blocks(blocks, small);
+  const auto beyond = plan_blocks(blocks, small, {.tolerance = 0});
   REQUIRE(!beyond);
   CHECK(to_text(beyond.error()) == "block 1: error: axis Y: 6 is above the limit 5");
   auto slow = blocks;
   slow[0].feed = 0;
-  REQUIRE(!plan_blocks(slow, mill));
-  CHECK(plan_blocks(slow, mill).error().error().code == ErrorCode::not_positive);
+  REQUIRE(!plan_blocks(slow, mill, {.tolerance = 0}));
+  CHECK(plan_blocks(slow, mill, {.tolerance = 0}).error().error().code == ErrorCode::not_positive);
   const Machine<3> unlimited;
-  REQUIRE(!plan_blocks(blocks, unlimited));
-  CHECK(plan_blocks(blocks, unlimited).error().error().code == ErrorCode::not_finite);
+  REQUIRE(!plan_blocks(blocks, unlimited, {.tolerance = 0}));
+  CHECK(plan_blocks(blocks, unlimited, {.tolerance = 0}).error().error().code == ErrorCode::not_finite);
   Machine<3> wrong = mill;
   wrong.axes[2].jerk = -1;
-  CHECK(plan_blocks(blocks, wrong).error().error().code == ErrorCode::not_positive);
+  CHECK(plan_blocks(blocks, wrong, {.tolerance = 0}).error().error().code == ErrorCode::not_positive);
 }
 
 namespace {
@@ -384,7 +386,7 @@ TEST_CASE("blocks of several cells move without jumps", "[trajectory]") {
   const std::vector<B> blocks{{.path = line({0, 0, 0}, {20, 0, 0}), .feed = 30},
                               {.path = *curve, .feed = 30, .pause = 0.2},
                               {.path = quarter({60, 0, 0}, 30, 1, 7.5), .feed = 30}};
-  const auto planned = plan_blocks(blocks, mill);
+  const auto planned = plan_blocks(blocks, mill, {.tolerance = 0});
   REQUIRE(planned);
   std::array<std::size_t, 3> phases{};
   for (const auto& phase : planned->phases()) ++phases[phase.block];
@@ -402,7 +404,7 @@ TEST_CASE("a mapped machine's trajectory moves without jumps and tells the tool"
       .limits = {.velocity = 150, .acceleration = 2000, .jerk = 40000}};
   const auto planned =
       plan_text("G4 P0.1\nG1 F6000 X260 Y-100\nG4 P0.2\nG3 X160 Y0 Z20 R100\nG0 X250 Y-180 Z0\nG4 P0.3\n",
-                arm, {.start = {250, -180, 0}});
+                arm, {.tolerance = 0, .start = {250, -180, 0}});
   REQUIRE(planned);
   check_motion(*planned, 1e-4);
   double worst = 0;
@@ -494,7 +496,7 @@ void check_limits() {
   for (int program = 0; program < programs; ++program) {
     const auto blocks = random_blocks<N>(random);
     const auto machine = random_machine<N>(random);
-    const auto planned = plan_blocks(blocks, machine);
+    const auto planned = plan_blocks(blocks, machine, {.tolerance = 0});
     INFO("program " << program << ", axes " << N << ": "
                     << (planned ? std::string() : to_text(planned.error())));
     REQUIRE(planned);
@@ -571,7 +573,7 @@ TEST_CASE("a machine of one axis moves", "[trajectory]") {
   const Machine<1> slide{.axes = {{{.letter = 'X', .velocity = 20, .acceleration = 200, .jerk = 2000}}}};
   const std::vector<Block<1>> blocks{{.path = path::Line<1>(V(0), V(10))},
                                      {.path = path::Line<1>(V(10), V(4)), .pause = 0.5}};
-  const auto planned = plan_blocks(blocks, slide);
+  const auto planned = plan_blocks(blocks, slide, {.tolerance = 0});
   REQUIRE(planned);
   CHECK(planned->length() == Approx(16));
   CHECK(planned->at(planned->duration()).position[0] == 4);

@@ -19,7 +19,7 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   const auto whole = plan_text(
       "G03 X20 Y0 Z10 R10\nX0 Y0 Z20 R10\nX20 Y0 Z30 R10\nX0 Y0 Z40 R10\nX20 Y0 Z50 R10\nX0 Y0 Z60 R10\n"
       "G01 X-10\nG03 X-20 Y-10 R10\n",
-      mill);
+      mill, {.tolerance = 0});
   REQUIRE(whole);
   const std::vector<ProgramBlock<Machine<3>>> blocks(whole->program().begin(), whole->program().end());
   const std::span<const ProgramBlock<Machine<3>>> all(blocks);

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
+#include "plan/at_level.hpp"
 #include "plan/joined_parts.hpp"
 #include "soak/smooth_program.hpp"
 #include "soak/worst.hpp"
@@ -75,14 +75,12 @@ void examine_motion(const T& motion, const Mill& machine, Errors& errors) {
 template <class T>
 double deviation(const T& motion, const Blocks& blocks) {
   double worst = 0, at = 0;
-  std::size_t source = 0;
-  for (std::size_t b = 0; b < motion.program().size(); ++b) {
-    const auto path = motion.path(b);
-    std::size_t now = b;  // the level fast keeps blocks, best makes pieces of them
-    if constexpr (requires { motion.program()[b].source; }) now = motion.program()[b].source;
-    if (now != source) at = 0;
-    source = now;
-    const auto& programmed = blocks[source].path;
+  std::size_t block = 0;
+  for (std::size_t piece = 0; piece < motion.piece_count(); ++piece) {
+    const auto path = motion.path(piece);
+    if (motion.block_of(piece) != block) at = 0;
+    block = motion.block_of(piece);
+    const auto& programmed = blocks[block].path;
     const int steps = std::clamp(static_cast<int>(path.length() / 0.02), 8, 5000);
     for (int i = 0; i <= steps; ++i) {
       const double x = path.length() * i / steps;
@@ -115,11 +113,11 @@ bool examine(const Case& c, Level level, std::size_t held, Errors& errors) {
            static_cast<double>(blocks.size());
   };
   auto start = std::clock();
-  const auto fast = plan_blocks(blocks, c.machine, options);
+  const auto fast = plan_blocks(blocks, c.machine, test::at_level(SmoothLevel::fast, options));
   errors.cost = ms_a_block(start);
   Blocks stopping = blocks;
   for (auto& block : stopping) block.exact_stop = true;
-  const auto stops = plan_blocks(stopping, c.machine, PlanOptions{});
+  const auto stops = plan_blocks(stopping, c.machine, {.tolerance = 0});
   if (!fast || !stops) return false;
   if (level == Level::fast) {
     errors.over_stops = fast->duration() / stops->duration() - 1;
@@ -130,7 +128,7 @@ bool examine(const Case& c, Level level, std::size_t held, Errors& errors) {
   const auto smooth_level = level == Level::good ? SmoothLevel::good : SmoothLevel::best;
   std::vector<double> ends;
   const auto smooth = held > 0 ? test::plan_in_parts(blocks, c.machine, options, smooth_level, held, &ends)
-                               : plan_smooth(blocks, c.machine, options, smooth_level);
+                               : plan_blocks(blocks, c.machine, test::at_level(smooth_level, options));
   errors.cost = ms_a_block(start);
   if (!smooth) return false;
   for (const double end : ends)

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_blocks.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
+#include "plan/at_level.hpp"
 #include "soak/smooth_program.hpp"
 #include "soak/worst.hpp"
 
@@ -171,7 +171,7 @@ bool examine(const Case& c, Errors& errors) {
   const Mill planned_for = with_reserve(c.program.machine, c.reserve);
   const auto program = read_text(c.program.program, planned_for, options);
   if (program.failed()) return false;
-  auto trajectory = plan_smooth(program.blocks(), planned_for, options, c.level);
+  auto trajectory = plan_blocks(program.blocks(), planned_for, test::at_level(c.level, options));
   if (!trajectory) return false;
   trajectory->set_words(timed_words(program, *trajectory));
   examine(*trajectory, program.blocks(), c, errors);

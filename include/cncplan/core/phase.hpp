@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <span>
 
 #include "cncplan/core/monotone_cubic.hpp"
@@ -66,5 +67,15 @@ struct BasicPhase {
 };
 
 using Phase = BasicPhase<double>;
+
+/// A phase along one of the pieces of a path: its time counts from the start of all, its position from the
+/// piece's.
+template <std::floating_point S>
+struct BasicPiecePhase {
+  BasicPhase<S> phase;
+  std::size_t piece{};
+
+  friend bool operator==(const BasicPiecePhase&, const BasicPiecePhase&) = default;
+};
 
 }  // namespace cncplan

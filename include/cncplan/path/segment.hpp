@@ -35,6 +35,14 @@ class BasicSegment {
   template <class Kind>
     requires(std::same_as<Kind, Line> || std::same_as<Kind, Arc> || (std::same_as<Kind, Curves> || ...))
   BasicSegment(const Kind& kind) : shape_(kind) {}  // NOLINT(google-explicit-constructor)
+  /// One of fewer kinds.
+  template <class... Fewer>
+    requires(sizeof...(Fewer) < sizeof...(Curves) &&
+             (std::constructible_from<std::variant<Line, Arc, Curves...>, std::in_place_type_t<Fewer>,
+                                      const Fewer&> &&
+              ...))
+  BasicSegment(const BasicSegment<S, N, Fewer...>& other)  // NOLINT(google-explicit-constructor)
+      : shape_(other.visit([](const auto& kind) -> Shape { return kind; })) {}
 
   /// The path inside if it is of this kind, else nullptr.
   template <class Kind>

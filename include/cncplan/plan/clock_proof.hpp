@@ -110,8 +110,8 @@ class ClockProof {
   // One interval of a part of the clock's motion, within one phase.
   [[nodiscard]] Answer look(std::size_t index, const BasicAxisState<S>& from, const BasicJerkPhase<S>& part,
                             S low, S high) const {
-    const auto& [phase, block] = trajectory_->phases()[index];
-    return trajectory_->path(block).visit(
+    const auto& [phase, piece] = trajectory_->phases()[index];
+    return trajectory_->path(piece).visit(
         [&, &phase = phase](const auto& path) { return look(path, phase, from, part, low, high); });
   }
   template <Path P>

@@ -5,22 +5,19 @@
 #include <cstdint>
 #include <string_view>
 
+#include "cncplan/plan/smooth_level.hpp"
+
 namespace cncplan {
 
-/// How a part of a program is planned in place of the levels `good` and `best`.
-enum class FallbackLevel : std::uint8_t {
-  exact,  ///< on the exact path
-  fast,   ///< as `plan_blocks` does
-  slow    ///< on a curve within the tolerance, at the slow motion with which a search for speeds begins
-};
-
 enum class FallbackReason : std::uint8_t {
-  map,             ///< there is no level for machines behind a map
+  map,             ///< there is no smoothing for machines behind a map
+  path,            ///< a path of a kind of its own has no enclosures
   tool_limits,     ///< the tool has a limit that is infinite
   axes,            ///< X Y Z are not the first axes
   backlash,        ///< backlash takes time
   other_axes,      ///< only rotary axes move
   no_motion,       ///< the search found no motion within tolerance and limits
+  slow_motion,     ///< on the curve, at the slow motion with which the search for speeds begins
   travel,          ///< the smoothed path would leave the travel of an axis
   fast_is_faster,  ///< the level `fast` takes less time
   memory           ///< the memory gave out
@@ -30,30 +27,19 @@ enum class FallbackReason : std::uint8_t {
 struct Fallback {
   std::size_t first{};
   std::size_t last{};
-  FallbackLevel level{};
+  SmoothLevel level{};
   FallbackReason reason{};
 
   friend bool operator==(const Fallback&, const Fallback&) = default;
 };
 
-/// "exact", "fast" or "slow".
-[[nodiscard]] constexpr std::string_view name(FallbackLevel level) {
-  switch (level) {
-    case FallbackLevel::exact:
-      return "exact";
-    case FallbackLevel::fast:
-      return "fast";
-    case FallbackLevel::slow:
-      return "slow";
-  }
-  return {};
-}
-
 /// A reason as a clause, as "backlash takes time".
-[[nodiscard]] constexpr std::string_view text(FallbackReason reason) {
+[[nodiscard]] constexpr std::string_view to_text(FallbackReason reason) {
   switch (reason) {
     case FallbackReason::map:
       return "a map has no smoothed paths";
+    case FallbackReason::path:
+      return "a path of a kind of its own has no enclosures";
     case FallbackReason::tool_limits:
       return "the tool has a limit that is infinite";
     case FallbackReason::axes:
@@ -64,6 +50,8 @@ struct Fallback {
       return "axes move, but not X Y Z";
     case FallbackReason::no_motion:
       return "the search found no motion within tolerance and limits";
+    case FallbackReason::slow_motion:
+      return "the search found no speeds, and the slow motion that it begins with is driven";
     case FallbackReason::travel:
       return "the smoothed path would leave the travel of an axis";
     case FallbackReason::fast_is_faster:

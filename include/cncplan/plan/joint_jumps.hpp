@@ -10,7 +10,7 @@
 
 namespace cncplan {
 
-/// What jumps at the joints between blocks.
+/// What jumps at the joints between pieces.
 template <std::floating_point S, int N>
 struct BasicJointJumps {
   VectorN<S, N> velocity = VectorN<S, N>::Zero();  ///< of each axis, at most
@@ -27,10 +27,10 @@ template <MachineModel M, BlockModel B>
   BasicJointJumps<S, M::axis_count> jumps;
   const auto phases = trajectory.phases();
   for (std::size_t i = 1; i < phases.size(); ++i) {
-    const auto& [before, block] = phases[i - 1];
+    const auto& [before, piece] = phases[i - 1];
     const auto& [after, next] = phases[i];
-    if (block == next || !(after.velocity > S(0))) continue;
-    const auto left = trajectory.path(block), entered = trajectory.path(next);
+    if (piece == next || !(after.velocity > S(0))) continue;
+    const auto left = trajectory.path(piece), entered = trajectory.path(next);
     if (!(left.length() > S(0) && entered.length() > S(0))) continue;
     const BasicState<S> along{S(0), after.velocity, after.acceleration, S(0)};
     const auto end = motion(left.point_at(left.length()), along);

@@ -7,6 +7,7 @@
 
 #include "cncplan/gcode/word.hpp"
 #include "cncplan/path/segment.hpp"
+#include "cncplan/path/spline.hpp"
 
 namespace cncplan {
 
@@ -37,8 +38,7 @@ struct BasicBlock {
   template <class... More>
   operator BasicBlock<S, N, Curves..., More...>() const {  // NOLINT: nothing is lost
     BasicBlock<S, N, Curves..., More...> block;
-    block.path =
-        path.visit([](const auto& kind) -> path::BasicSegment<S, N, Curves..., More...> { return kind; });
+    block.path = path;
     block.feed = feed;
     block.pause = pause;
     block.exact_stop = exact_stop;
@@ -58,8 +58,9 @@ struct BasicBlock {
   friend bool operator==(const BasicBlock&, const BasicBlock&) = default;
 };
 
+/// Lines, arcs and pieces of splines, as the programs of a machine have them, and curves of the user's.
 template <int N, class... Curves>
-using Block = BasicBlock<double, N, Curves...>;
+using Block = BasicBlock<double, N, path::Spline<N>, Curves...>;
 
 /// Any block: what `plan_blocks` takes.
 template <class B>

@@ -14,21 +14,12 @@
 
 namespace cncplan::plan {
 
-/// A phase within one block: its time counts from the start of the program, its position from the block's.
-template <std::floating_point S>
-struct BasicBlockPhase {
-  BasicPhase<S> phase;
-  std::size_t block{};
-
-  friend bool operator==(const BasicBlockPhase&, const BasicBlockPhase&) = default;
-};
-
 /// Cuts planned spans of cells into phases that each lie within one block, in the memory that the cells have.
 /// Every block that moves has one.
 template <std::floating_point S>
-[[nodiscard]] std::pmr::vector<BasicBlockPhase<S>> block_phases(std::span<const BasicSpan<S>> spans,
+[[nodiscard]] std::pmr::vector<BasicPiecePhase<S>> block_phases(std::span<const BasicSpan<S>> spans,
                                                                 const BasicCells<S>& cells) {
-  std::pmr::vector<BasicBlockPhase<S>> table(cells.caps.get_allocator());
+  std::pmr::vector<BasicPiecePhase<S>> table(cells.caps.get_allocator());
   table.reserve(cells.caps.size() + 7 * spans.size());
   S start = S(0);
   S travelled = S(0);  // of the block that goes on, in the spans before

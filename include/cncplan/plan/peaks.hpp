@@ -78,13 +78,10 @@ class PeakSearch {
 
   template <class F>
   void for_each_path(const F& f) const {
-    for (const auto& [phase, block] : trajectory_.phases()) {
-      const auto path = trajectory_.path(block);
-      if (!(phase.duration > Scalar(0) && path.length() > Scalar(0))) continue;
-      if (path.exact())
-        f(path.programmed(), phase);
-      else
-        f(path, phase);
+    for (const auto& [phase, piece] : trajectory_.phases()) {
+      const auto path = trajectory_.path(piece);
+      if (phase.duration > Scalar(0) && path.length() > Scalar(0))
+        path.visit([&, &phase = phase](const auto& inside) { f(inside, phase); });
     }
   }
 

@@ -2,24 +2,17 @@
 #pragma once
 
 #include <concepts>
-#include <iterator>
+#include <limits>
 #include <memory_resource>
+#include <new>
 #include <ranges>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "cncplan/junction/deviation.hpp"
-#include "cncplan/plan/cells.hpp"
-#include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/merge_lines.hpp"
-#include "cncplan/plan/motion_table.hpp"
-#include "cncplan/plan/plan_options.hpp"
-#include "cncplan/plan/program_error.hpp"
-#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/plan/look_ahead_plan.hpp"
+#include "cncplan/plan/smooth_stream.hpp"
 #include "cncplan/plan/step_edges.hpp"
-#include "cncplan/plan/trajectory.hpp"
 
 namespace cncplan {
 
@@ -39,72 +32,43 @@ template <class R>
     return {std::ranges::begin(blocks), std::ranges::end(blocks), memory};
 }
 
-/// A place in a program of blocks, for an error in one of them.
-template <BlockModel B>
-[[nodiscard]] ProgramError error_in(std::span<const B> blocks, const BlockFault& fault) {
-  const B& block = blocks[fault.block];
-  return {{fault.error, block.line, block.column, {}}, {}, fault.block};
-}
-
-/// The rules for smoothing that a program's options say.
-template <std::floating_point S>
-[[nodiscard]] SmoothingRules<S> smoothing_rules(const PlanOptions& options) {
-  return {static_cast<S>(options.tolerance), static_cast<S>(options.rotary_tolerance),
-          options.exact_between_rapids_and_feeds};
-}
-
-/// The trajectory of blocks under rules for their joints and a law for changes of speed. All memory is that
-/// of the blocks.
-template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar> Law>
-[[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
-    std::pmr::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
-    const Law& law, BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
-  using S = typename M::Scalar;
-  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
-  const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing, memory);
-  if (!cells) return tl::unexpected(error_in(std::span<const B>(blocks), cells.error()));
-  std::pmr::vector<BasicSpan<S>> spans(memory);
-  std::pmr::vector<BasicWaypoint<S>> waypoints(cells->caps.size() + 1, memory);
-  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(waypoints),
-                                  std::back_inserter(spans));
-  if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
-  auto phases = block_phases(std::span<const BasicSpan<S>>(spans), *cells);
-  return Trajectory<M, B>(machine, std::move(blocks), std::move(phases), std::move(smoothing));
-}
-
 /// What `plan_blocks` gives for blocks that it may change and keep. All memory is theirs.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_own_blocks(std::pmr::vector<B>&& blocks,
                                                                        const M& machine,
                                                                        const PlanOptions& options) {
-  using S = typename M::Scalar;
-  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
-  if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
-  const auto deviation = static_cast<S>(options.junction_deviation);
-  const JointRules<S, junction::BasicDeviation<S>> rules{
-      {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
-  BasicSmoothing<S, M::axis_count> smoothing(memory);
-  if constexpr (EnclosedPath<typename B::Path> && !MappedModel<M>)
-    if (options.tolerance > 0) {
-      const auto within = smoothing_rules<S>(options);
-      merge_lines(std::span(blocks), machine, within);
-      smoothing = plan::smoothing(std::span<const B>(blocks), machine, within, memory);
+  if constexpr (!without_smoothing<M, B>())
+    if (level_of(options) > SmoothLevel::fast) {
+      constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+      SmoothStream<M, B> stream(machine, options, all, blocks.get_allocator().resource());
+      for (const B& block : blocks)
+        if (const auto ok = stream.push(block); !ok) return tl::unexpected(ok.error());
+      if (const auto ok = stream.finish(); !ok) return tl::unexpected(ok.error());
+      try {
+        return stream.take();
+      } catch (const std::bad_alloc&) {
+        return tl::unexpected(no_memory());
+      }
     }
-  auto planned = trajectory(std::move(blocks), machine, rules, SevenPhase{}, std::move(smoothing));
-  if constexpr (MappedModel<M>)
-    if (planned && options.tolerance > 0 && !planned->program().empty())
-      planned->set_fallbacks(
-          {{{0, planned->program().size() - 1, FallbackLevel::exact, FallbackReason::map}}, memory});
-  return planned;
+  return plan_by_look_ahead(std::move(blocks), machine, options);
 }
 
 }  // namespace plan
 
 /// The fastest motion along blocks, end to end, from rest to rest, such that the tool and each axis keep
-/// their limits. Within the tolerance of the options lines are merged and the path is smoothed. Joints that
-/// are left exact are passed as fast as ones rounded within the junction deviation would be, where the
-/// velocity jumps; under a map all joints are. Plan and trajectory lie in `memory`. Errors: those of
-/// `validate` for the machine; a block that leaves the travel of an axis or that no limit bounds.
+/// their limits. Plan and trajectory lie in `memory`.
+///
+/// Within the tolerance of the options lines are merged and the path is smoothed, at the level that they ask
+/// for: at `fast` by corrections of corners; at `good` and `best` runs of blocks are driven along the fastest
+/// curve within their tolerances, at the fastest speed along it, as far as the level searches for it. A run
+/// ends at a stop, a pause, a block that is to be exact, a turn by more than 175 degrees, and where the unit
+/// of length changes. In a run that has rapids and feed moves the tool's velocity may be that of rapids.
+/// Corners that are left exact are passed as fast as ones rounded within the junction deviation would be,
+/// where the velocity jumps; under a map all are.
+///
+/// Where a level cannot be had, a lower one takes its place, and `fallbacks` of the trajectory says where and
+/// why: `FallbackReason` lists it. Errors: those of `validate` for the machine; a block that leaves the
+/// travel of an axis or that no limit bounds; too little of `memory`.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(

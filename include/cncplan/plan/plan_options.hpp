@@ -8,14 +8,16 @@
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
+#include "cncplan/plan/smooth_level.hpp"
 
 namespace cncplan {
 
 /// What holds for a whole program.
 struct PlanOptions {
   /// mm, >= 0: how far the tool may leave the programmed path, so that it moves without a jump of velocity or
-  /// acceleration; 0: the exact path
-  double tolerance = 0;
+  /// acceleration; 0: the level `exact`
+  double tolerance = 0.01;
+  SmoothLevel level = SmoothLevel::best;           ///< how closely smoothing comes to the fastest motion
   double rotary_tolerance = 8.726646259971648e-4;  ///< rad, > 0: the same for rotary axes; 0.05 degrees
   /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
   double junction_deviation = 0.01;
@@ -26,6 +28,11 @@ struct PlanOptions {
   gcode::FindFile subprograms{};            ///< files of subprograms; those in the program's folder if empty
   bool flat{};  ///< parameters, expressions, O-words and calls are errors, as for `BlockReader`
 };
+
+/// The level that the options ask for: `exact` where there is no tolerance.
+[[nodiscard]] constexpr SmoothLevel level_of(const PlanOptions& options) {
+  return options.tolerance > 0 ? options.level : SmoothLevel::exact;
+}
 
 /// Where a program starts, as its reader has it.
 [[nodiscard]] inline gcode::Position start_position(const PlanOptions& options) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,19 +18,10 @@ namespace cncplan {
 /// its blocks, of all of them, comes to it: for `Trajectory::set_words`.
 template <class T>
 [[nodiscard]] std::vector<TimedWord> timed_words(const ProgramRecord& program, const T& trajectory) {
-  const auto blocks = trajectory.program();
-  const auto first_of = [&](std::size_t source) {
-    if constexpr (requires { blocks[0].source; })
-      return static_cast<std::size_t>(
-          std::ranges::lower_bound(blocks, source, {}, [](const auto& block) { return block.source; }) -
-          blocks.begin());
-    else
-      return source;
-  };
   std::vector<TimedWord> words;
   words.reserve(program.words().size());
   for (const ProgramWord& word : program.words())
-    words.push_back({word.word, static_cast<double>(trajectory.start_time(first_of(word.block)))});
+    words.push_back({word.word, static_cast<double>(trajectory.start_time(word.block))});
   return words;
 }
 
@@ -58,7 +48,7 @@ void tell(T& trajectory, const ProgramRecord& program, bool smoothed) {
   for (const Fallback& part : trajectory.fallbacks())
     if (part.reason == FallbackReason::map)
       warnings.push_back("the tolerance does not act, and the path is exact: " +
-                         std::string(text(part.reason)));
+                         std::string(to_text(part.reason)));
   trajectory.set_warnings(std::move(warnings));
 }
 
@@ -82,14 +72,14 @@ template <MachineModel M, class Plan>
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(
     const Program<M>& program, const M& machine, const PlanOptions& options = {}) {
-  return plan::planned<M>(program, options.start, options.tolerance > 0 && !MappedModel<M>,
+  return plan::planned<M>(program, options.start, level_of(options) != SmoothLevel::exact && !MappedModel<M>,
                           [&] { return plan_blocks(program.blocks(), machine, options); });
 }
 /// The same, with the blocks of the program itself.
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(
     Program<M>&& program, const M& machine, const PlanOptions& options = {}) {
-  return plan::planned<M>(program, options.start, options.tolerance > 0 && !MappedModel<M>,
+  return plan::planned<M>(program, options.start, level_of(options) != SmoothLevel::exact && !MappedModel<M>,
                           [&] { return plan_blocks(std::move(program).take_blocks(), machine, options); });
 }
 
@@ -115,7 +105,7 @@ template <MachineModel M>
 /// Plans a file, with the files of its folder as subprograms: `read_file` and `plan_program`.
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_file(
-    const std::filesystem::path& file, const M& machine, const PlanOptions& options = {}) {
+    const std::string& file, const M& machine, const PlanOptions& options = {}) {
   return plan_program(read_file(file, machine, options), machine, options);
 }
 

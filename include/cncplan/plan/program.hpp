@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -235,33 +233,16 @@ template <MachineModel M>
   return Program<M>(text, machine, options);
 }
 
-namespace plan {
-
-/// The bytes of a file; nothing for one that cannot be read, or not to its end.
-[[nodiscard]] inline std::optional<std::string> text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(file, ignored)) return std::nullopt;
-  std::string text;
-  std::array<char, 1U << 16U> piece;
-  while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0)
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-  return stream.bad() ? std::nullopt : std::optional(std::move(text));
-}
-
-}  // namespace plan
-
 /// The same for a file, with the files of its folder as subprograms. One that cannot be read, or not to its
 /// end, is a program with that problem.
 template <MachineModel M>
-[[nodiscard]] Program<M> read_file(const std::filesystem::path& file, const M& machine,
+[[nodiscard]] Program<M> read_file(const std::string& file, const M& machine,
                                    const PlanOptions& options = {}) {
-  const auto text = plan::text_of(file);
-  if (!text)
-    return Program<M>(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file.string()});
+  const auto text = gcode::text_of(file);
+  if (!text) return Program<M>(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file});
   PlanOptions here = options;
-  if (!here.subprograms) here.subprograms = gcode::files_of(file.parent_path());
-  return Program<M>(*text, machine, here, file.string());
+  if (!here.subprograms) here.subprograms = gcode::files_beside(file);
+  return Program<M>(*text, machine, here, file);
 }
 
 }  // namespace cncplan

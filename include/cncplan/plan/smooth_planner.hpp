@@ -13,8 +13,8 @@
 
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/plan/block_checks.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/smooth_level.hpp"
+#include "cncplan/plan/curve_limits.hpp"
+#include "cncplan/plan/look_ahead_plan.hpp"
 #include "cncplan/smooth/smooth_run.hpp"
 
 namespace cncplan::plan {
@@ -33,20 +33,20 @@ class SmoothPlanner {
  public:
   using S = typename M::Scalar;
   static constexpr int n = M::axis_count;
-  using Out = SmoothBlockOf<B>;
-  using Part = Trajectory<M, Out>;
+  using Part = Trajectory<M, B>;
 
   /// `most`: blocks that are held at once. The machine is to stay. Everything lies in `memory`. Where there
   /// is too little of that, what throws std::bad_alloc can be called again; nothing is lost.
-  SmoothPlanner(const M& machine, const PlanOptions& options, SmoothLevel level, std::size_t most,
+  SmoothPlanner(const M& machine, const PlanOptions& options, std::size_t most,
                 std::pmr::memory_resource* memory)
       : machine_(machine),
         options_(options),
         rules_(smoothing_rules<S>(options)),
-        work_(level == SmoothLevel::good ? smooth::good_smoothing<S> : smooth::BasicSmoothOptions<S>{}),
+        work_(options.level == SmoothLevel::good ? smooth::good_smoothing<S>
+                                                 : smooth::BasicSmoothOptions<S>{}),
         limits_(motion_limits(machine)),
-        impossible_(options.tolerance > 0 ? without_curve_level(machine) : std::nullopt),
-        possible_(options.tolerance > 0 && !impossible_),
+        impossible_(level_of(options) > SmoothLevel::fast ? without_curve_level(machine) : std::nullopt),
+        possible_(level_of(options) > SmoothLevel::fast && !impossible_),
         most_(most),
         memory_(memory) {}
 
@@ -70,7 +70,9 @@ class SmoothPlanner {
   [[nodiscard]] Part take() {
     BasicSmoothing<S, n> none(memory_);
     Part part(machine_, std::move(out_), std::move(phases_),
-              std::move(smoothing_.corrections.empty() ? none : smoothing_));
+              std::move(smoothing_.corrections.empty() ? none : smoothing_), std::move(pieces_));
+    part.set_first_block(out_first_);
+    part.set_level(options_.level);
     part.set_fallbacks(std::move(fallbacks_));
     fallbacks_.clear();
     smoothing_.blocks.clear();
@@ -185,7 +187,7 @@ class SmoothPlanner {
   }
 
   // What was planned since there were so many blocks has another level than was asked for. There is room.
-  void tell(std::size_t before, FallbackLevel level, FallbackReason reason) {
+  void tell(std::size_t before, SmoothLevel level, FallbackReason reason) {
     if (out_.size() == before) return;
     const Fallback next{before, out_.size() - 1, level, reason};
     if (!fallbacks_.empty() && fallbacks_.back().last + 1 == before && fallbacks_.back().level == level &&
@@ -222,31 +224,33 @@ class SmoothPlanner {
     if (planned_ == end) return {};
     if (!reason) reason = why_fast(end);
     make_room(fallbacks_, 1);
-    auto planned = plan_blocks(given(end), machine_, options_, memory_);
+    auto planned = fast(end);
     if (!planned) {
       if (planned.error().block) *planned.error().block += first_source_ + planned_;
       return tl::unexpected(planned.error());
     }
     const std::size_t corrections = smoothing_.corrections.size(), before = out_.size();
+    const std::size_t pieces = pieces_.size();
     const auto& own = planned->smoothing();
     make_room(smoothing_.corrections, own.corrections.size());
-    make_room_for(end - planned_, planned->phases().size());
+    make_room_for(end - planned_, end - planned_, planned->phases().size());
     smoothing_.corrections.insert(smoothing_.corrections.end(), own.corrections.begin(),
                                   own.corrections.end());
     for (std::size_t i = planned_; i < end; ++i) {
       add_block(i);
+      add_piece();
       if (own.blocks.empty()) continue;
       smoothing_.blocks.back() = own.blocks[i - planned_];
       smoothing_.blocks.back().first += corrections;
     }
-    for (BasicBlockPhase<S> phase : planned->phases()) {
+    for (BasicPiecePhase<S> phase : planned->phases()) {
       phase.phase.time += time_;
-      phase.block += before;
+      phase.piece += pieces;
       phases_.push_back(phase);
     }
     time_ += planned->duration();
     planned_ = end;
-    if (reason) tell(before, MappedModel<M> ? FallbackLevel::exact : FallbackLevel::fast, *reason);
+    if (reason) tell(before, SmoothLevel::fast, *reason);
     return {};
   }
 
@@ -257,7 +261,7 @@ class SmoothPlanner {
       reason = add_curve(end);
       if (!reason) return {};
       if (cut_) {
-        if (const auto why = add_curve(known_)) add_slow(known_, *why);
+        if (add_curve(known_)) add_slow(known_);
         return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
       }
     }
@@ -278,13 +282,13 @@ class SmoothPlanner {
     return FallbackReason::memory;
   }
   // From a cut to rest along blocks of which it was proven that they allow it.
-  void add_slow(std::size_t end, FallbackReason reason) {
+  void add_slow(std::size_t end) {
     const RunBlocks given = run_blocks(0, end);
     const RunPlan planned = Run(given.blocks, given.limits, work_, cut_, memory_).slow_plan();
     make_room(fallbacks_, 1);
     const std::size_t before = out_.size();
     add_pieces(planned, given.sources, end);
-    tell(before, FallbackLevel::slow, reason);
+    tell(before, options_.level, FallbackReason::slow_motion);
   }
 
   // The first part of a run, up to where it is cut; false where it cannot be.
@@ -318,8 +322,8 @@ class SmoothPlanner {
         make_room(fallbacks_, 1);
         const std::size_t before = out_.size();
         add_pieces(planned, given.sources, at);
-        if (!fastest) tell(before, FallbackLevel::slow, FallbackReason::no_motion);
-        begun_ = out_.back().source == first_source_ + at;
+        if (!fastest) tell(before, options_.level, FallbackReason::slow_motion);
+        begun_ = out_.size() > before && out_first_ + out_.size() - 1 == first_source_ + at;
         approach_ = std::move(planned.approach);
         cut_ = next;
         cut_->approach = &approach_;
@@ -354,9 +358,17 @@ class SmoothPlanner {
   }
   [[nodiscard]] bool works(const RunPlan& plan) const { return found(plan) && has_room(plan); }
 
+  // Blocks that have no plan, at the level `fast`.
+  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end) const {
+    const auto blocks = given(end);
+    PlanOptions options = options_;
+    options.level = SmoothLevel::fast;
+    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), machine_, options);
+  }
+
   // Whether the level `fast` takes less time.
   [[nodiscard]] bool fast_is_faster(S duration, std::size_t end) const {
-    const auto planned = plan_blocks(given(end), machine_, options_, memory_);
+    const auto planned = fast(end);
     return planned && planned->duration() < duration;
   }
 
@@ -378,29 +390,28 @@ class SmoothPlanner {
 
   // Pieces of a run that end within a block, or behind the last one before it.
   void add_pieces(const RunPlan& run, std::span<const std::size_t> sources, std::size_t end) {
-    make_room_for(run.pieces.size() + end - planned_, run.phases.size() + 1);
+    make_room_for(end + 1 - planned_, run.pieces.size() + end - planned_, run.phases.size() + 1);
     std::pmr::vector<std::size_t> places(memory_);  // of each piece
     places.reserve(run.pieces.size());
     std::size_t next = planned_;  // the first block that is not there yet
-    for (std::size_t i = 0; i < run.pieces.size(); ++i) {
-      const std::size_t source = sources[run.pieces[i].block];
-      for (; next < source; ++next)
-        if (!moves(next)) add_block(next);
-      const std::size_t after = i + 1 < run.pieces.size() ? sources[run.pieces[i + 1].block] : end;
-      Out& block = add_block(source);
-      block.path = run.pieces[i].path;
-      block.straight_on = false;
-      if ((std::exchange(begun_, false) && source == planned_) || next != source) block.word = {};
-      next = source + 1;
-      block.goes_on = after == source;
-      if (block.goes_on) {
-        block.exact_stop = false;
-        block.pause = S(0);
+    for (const auto& [path, block, from] : run.pieces) {
+      const std::size_t source = sources[block];
+      for (; next < source; ++next) add_whole(next);
+      if (next == source) {
+        add_block(next++);
+        if (std::exchange(begun_, false) && source == planned_) out_.back().word = {};
       }
-      places.push_back(out_.size() - 1);
+      places.push_back(pieces_.size());
+      pieces_.push_back({out_.size() - 1, from, path});
     }
-    for (; next < end; ++next)
-      if (!moves(next)) add_block(next);
+    if (next > end) {  // the last block goes on in what follows
+      B& cut = out_.back();
+      cut.goes_on = true;
+      cut.exact_stop = false;
+      cut.pause = S(0);
+    }
+    const S pause = out_.back().pause;
+    for (; next < end; ++next) add_whole(next);
     for (auto [phase, piece] : run.phases) {
       phase.time += time_;
       phases_.push_back({phase, places[piece]});
@@ -408,22 +419,30 @@ class SmoothPlanner {
     time_ += run.duration;
     planned_ = end;
     cut_.reset();
-    const Out& last = out_[places.back()];
-    if (!(last.pause > S(0))) return;
-    phases_.push_back({{time_, last.pause, last.path.length(), S(0), S(0), S(0)}, places.back()});
-    time_ += last.pause;
+    if (!(pause > S(0))) return;
+    const S length = pieces_[places.back()].curve->length();
+    phases_.push_back({{time_, pause, length, S(0), S(0), S(0)}, places.back()});
+    time_ += pause;
   }
 
-  void make_room_for(std::size_t blocks, std::size_t phases) {
+  void make_room_for(std::size_t blocks, std::size_t pieces, std::size_t phases) {
     make_room(out_, blocks);
     make_room(smoothing_.blocks, blocks);
+    make_room(pieces_, pieces);
     make_room(phases_, phases);
   }
-  // A block as it is, without phases.
-  Out& add_block(std::size_t i) {
-    Out block{blocks_[i], first_source_ + i};
+  // A block as it is.
+  void add_block(std::size_t i) {
+    if (out_.empty()) out_first_ = first_source_ + i;
     smoothing_.blocks.emplace_back();
-    return out_.emplace_back(block);
+    out_.push_back(blocks_[i]);
+  }
+  // The last block as a piece of the path.
+  void add_piece() { pieces_.push_back({out_.size() - 1, S(0), std::nullopt}); }
+  // A block among those of a curve that has no piece of it, or that stands.
+  void add_whole(std::size_t i) {
+    add_block(i);
+    if (!moves(i)) add_piece();
   }
 
   const M& machine_;
@@ -445,8 +464,10 @@ class SmoothPlanner {
   std::size_t known_ = 0;
   bool begun_ = false;  // a piece of the block in which it goes on is planned
   // What is planned.
-  std::pmr::vector<Out> out_{memory_};
-  std::pmr::vector<BasicBlockPhase<S>> phases_{memory_};
+  std::pmr::vector<B> out_{memory_};
+  std::size_t out_first_ = 0;  // the program's number of the first of them
+  std::pmr::vector<typename Part::Piece> pieces_{memory_};
+  std::pmr::vector<BasicPiecePhase<S>> phases_{memory_};
   std::pmr::vector<Fallback> fallbacks_{memory_};
   BasicSmoothing<S, n> smoothing_{memory_};
   S time_{};  // s

@@ -28,7 +28,7 @@ namespace plan {
 /// is longer is cut on little curved path. A slow motion from there to rest, along blocks that are known, is
 /// proven before a part goes out, so no later block can break a limit. At the cut the curve's position,
 /// tangent and curvature are those with which the search began, so the motion takes some milliseconds longer;
-/// the speed is searched for again with what follows, through the cut. The work is that of `plan_smooth`,
+/// the speed is searched for again with what follows, through the cut. The work is that of `plan_blocks`,
 /// which holds the program as a whole. A part that does not end at rest is nothing for a
 /// `TrajectoryExecutor`.
 ///
@@ -37,28 +37,26 @@ namespace plan {
 /// also, a call says so; nothing is lost then, and the call can be made again. Parts are to be destroyed
 /// before `memory`, and, unless that is made for several threads, not while the stream works.
 ///
-/// What is not smoothed (see `plan_smooth`) is planned as `plan_blocks` does, from rest to rest: where more
+/// What is no run of curves is planned at the level `fast`, from rest to rest: where more
 /// than `most_blocks` of such blocks follow each other without a stop, the motion rests in between.
 template <MachineModel M, BlockModel B>
 class SmoothStream {
  public:
   using Scalar = typename M::Scalar;
-  using Block = plan::SmoothBlockOf<B>;
-  using Part = Trajectory<M, Block>;
+  using Part = Trajectory<M, B>;
 
   static constexpr std::size_t least_blocks = 40;
 
-  explicit SmoothStream(const M& machine, const PlanOptions& options = {},
-                        SmoothLevel level = SmoothLevel::best, std::size_t most_blocks = 4000,
+  explicit SmoothStream(const M& machine, const PlanOptions& options = {}, std::size_t most_blocks = 4000,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : machine_(machine),
         merger_(machine_, plan::smoothing_rules<Scalar>(options)),
-        planner_(machine_, options, level, std::max(most_blocks, least_blocks), memory),
+        planner_(machine_, options, std::max(most_blocks, least_blocks), memory),
         merging_(memory) {}
   SmoothStream(const SmoothStream&) = delete;
   SmoothStream& operator=(const SmoothStream&) = delete;
 
-  /// Takes the next block. Errors as for `plan_smooth`. After one the block is not taken, and nothing is
+  /// Takes the next block. Errors as for `plan_blocks`. After one the block is not taken, and nothing is
   /// lost: those before it can be finished, and where memory gave out it can be pushed again when there is
   /// more.
   [[nodiscard]] Expected<void, ProgramError> push(const B& block) try {
@@ -87,8 +85,8 @@ class SmoothStream {
   /// Whether a part is there to be taken.
   [[nodiscard]] bool ready() const { return planner_.ready(); }
   /// What was planned since the last call, in a time that begins at 0; no blocks where that is nothing.
-  /// `Block::source` counts all blocks that were pushed. Throws std::bad_alloc where the memory gives out;
-  /// the part can be taken later then.
+  /// `first_block` of it counts all blocks that were pushed before; one that was cut is in two parts. Throws
+  /// std::bad_alloc where the memory gives out; the part can be taken later then.
   [[nodiscard]] Part take() { return planner_.take(); }
 
  private:

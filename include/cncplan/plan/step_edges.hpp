@@ -41,9 +41,9 @@ class MotorSteps {
   }
 
   [[nodiscard]] std::optional<step::BasicEdge<Scalar>> next() {
-    while (cursor_ || open_block()) {
+    while (cursor_ || open_piece()) {
       if (auto edge = cursor_->next()) {
-        // rounding may put a first edge a bit before the last one of the block before
+        // rounding may put a first edge a bit before the last one of the piece before
         edge->time = time_ = std::max(edge->time, time_);
         direction_ = edge->direction;
         return edge;
@@ -58,22 +58,23 @@ class MotorSteps {
   using Segment = plan::SteppableSegment<typename T::DrivenPath>;
   using Clock = step::PhaseClock<Scalar>;
 
-  // Goes on to the next block that moves; false behind the last.
-  bool open_block() {
+  // Goes on to the next piece that moves; false behind the last.
+  bool open_piece() {
     const auto phases = trajectory_->phases();
     while (phase_ < phases.size()) {
-      const std::size_t block = phases[phase_].block;
-      of_block_.clear();
-      for (; phase_ < phases.size() && phases[phase_].block == block; ++phase_)
-        of_block_.push_back(phases[phase_].phase);
-      path_ = trajectory_->path(block);
+      const std::size_t piece = phases[phase_].piece;
+      of_piece_.clear();
+      for (; phase_ < phases.size() && phases[phase_].piece == piece; ++phase_)
+        of_piece_.push_back(phases[phase_].phase);
+      path_ = trajectory_->path(piece);
       if (!(path_.length() > Scalar(0))) continue;
       segment_ = Segment(path_);
-      const auto& programmed = path_.programmed();
-      const bool curve = !path_.exact() || (programmed.line() == nullptr && programmed.arc() == nullptr);
+      const auto* programmed = path_.programmed();
+      const bool curve =
+          programmed == nullptr || (programmed->line() == nullptr && programmed->arc() == nullptr);
       // where curves meet, the start of one is the end of the one before but for rounding
       const bool goes_on = phase_ < phases.size() && curve;
-      cursor_.emplace(segment_, Clock(std::span<const BasicPhase<Scalar>>(of_block_)), axis_, scale_, count_,
+      cursor_.emplace(segment_, Clock(std::span<const BasicPhase<Scalar>>(of_piece_)), axis_, scale_, count_,
                       goes_on, step::Reversal<Scalar>{direction_, hysteresis_});
       return true;
     }
@@ -88,7 +89,7 @@ class MotorSteps {
   int direction_ = 0;
   Scalar time_ = Scalar(0);
   std::size_t phase_ = 0;
-  std::vector<BasicPhase<Scalar>> of_block_;
+  std::vector<BasicPhase<Scalar>> of_piece_;
   typename T::DrivenPath path_;
   Segment segment_;  // of that
   std::optional<step::StepCursor<Segment, Clock>> cursor_;

@@ -238,7 +238,7 @@ class TrajectoryExecutor {
       else
         rests.back().to = std::max(rests.back().to, to);
     };
-    for (const auto& [phase, block] : trajectory.phases())
+    for (const auto& [phase, piece] : trajectory.phases())
       if (phase.velocity == Scalar(0) && phase.acceleration == Scalar(0))
         stand(phase.time, phase.time + (phase.jerk == Scalar(0) ? phase.duration : Scalar(0)));
     stand(trajectory.duration(), trajectory.duration());

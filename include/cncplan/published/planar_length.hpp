@@ -59,7 +59,7 @@ void to_plane(std::span<const B> blocks, plan::BasicCells<S>& cells) {
 
 /// Makes the phases of a plan in the plane ones along the blocks' paths in space.
 template <BlockModel B, std::floating_point S>
-void to_space(std::span<const B> blocks, std::span<plan::BasicBlockPhase<S>> phases) {
+void to_space(std::span<const B> blocks, std::span<BasicPiecePhase<S>> phases) {
   for (auto& [phase, block] : phases) {
     const S share = space_over_plane(blocks[block]);
     for (S* value : {&phase.position, &phase.velocity, &phase.acceleration, &phase.jerk}) *value *= share;

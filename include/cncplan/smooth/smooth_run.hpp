@@ -30,13 +30,7 @@ template <std::floating_point S, int N>
 struct BasicSmoothPiece {
   BasicCubic<S, N> path;
   std::size_t block{};
-};
-
-/// A phase within one piece: its time counts from the run's start, its position from the piece's.
-template <std::floating_point S>
-struct BasicPiecePhase {
-  BasicPhase<S> phase;
-  std::size_t piece{};
+  S from{};  ///< mm of the block before it
 };
 
 template <std::floating_point S>
@@ -283,7 +277,8 @@ class SmoothRun {
       const S until =
           block + 1 < blocks_.size() ? band_.block_start(block + 1) - speed_.start(cell) : cells[cell].length;
       const S to = std::min(until, cells[cell].length);
-      plan.pieces.push_back({speed_.curve(cell).part(from, to), block});
+      const S before = speed_.start(cell) + from - band_.block_start(block);
+      plan.pieces.push_back({speed_.curve(cell).part(from, to), block, std::max(before, S(0))});
       piece_from = from;
       return to;
     };

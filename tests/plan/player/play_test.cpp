@@ -33,7 +33,7 @@ std::pair<double, double> durations(const std::string& text, double tolerance) {
   REQUIRE(exact);
   std::vector<Block> blocks(exact->program().begin(), exact->program().end());
   merge_lines(std::span(blocks), mill, plan::SmoothingRules<double>{tolerance, 1e-3});
-  const auto planned = plan_blocks(blocks, mill, {.tolerance = tolerance});
+  const auto planned = plan_blocks(blocks, mill, {.tolerance = tolerance, .level = SmoothLevel::fast});
   REQUIRE(planned);
   const std::span<const Block> all(blocks);
   plan::BasicSmoothing<double, 3> smoothing;

@@ -1,14 +1,12 @@
-// Files of subprograms (set-up).
+// Files of programs and of their subprograms (set-up).
 #pragma once
 
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
+
+#include "cncplan/core/compiled.hpp"
 
 namespace cncplan::gcode {
 
@@ -21,20 +19,14 @@ struct ProgramFile {
 /// case as it stands in < >.
 using FindFile = std::function<std::optional<ProgramFile>(std::string_view name)>;
 
-/// NAME.ngc, .nc or .gcode in a folder. A name that leads out of it finds nothing.
-[[nodiscard]] inline FindFile files_of(std::filesystem::path folder) {
-  return [folder = std::move(folder)](std::string_view name) -> std::optional<ProgramFile> {
-    if (name.empty() || name.front() == '.' || name.find_first_of("/\\:") != std::string_view::npos)
-      return std::nullopt;
-    for (const char* extension : {".ngc", ".nc", ".gcode"}) {
-      const std::filesystem::path path = folder / (std::string(name) + extension);
-      std::ifstream stream(path, std::ios::binary);
-      std::error_code ignored;
-      if (stream && std::filesystem::is_regular_file(path, ignored))
-        return ProgramFile{path.string(), {std::istreambuf_iterator<char>(stream), {}}};
-    }
-    return std::nullopt;
-  };
-}
+/// The bytes of a file; nothing for one that cannot be read, or not to its end.
+[[nodiscard]] std::optional<std::string> text_of(const std::string& file);
+
+/// NAME.ngc, .nc or .gcode beside a file. A name that leads out of its folder finds nothing.
+[[nodiscard]] FindFile files_beside(const std::string& file);
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/language/find_file-inl.hpp"
+#endif

@@ -52,7 +52,7 @@ class PlayRecord {
     open_ = {time, lasts, along, now.velocity, now.acceleration, now.jerk};
   }
 
-  [[nodiscard]] std::pmr::vector<BasicBlockPhase<double>> finish() {
+  [[nodiscard]] std::pmr::vector<BasicPiecePhase<double>> finish() {
     close();
     return std::move(phases_);
   }
@@ -89,7 +89,7 @@ class PlayRecord {
 
   std::span<const PlayedBlock> cells_;
   std::vector<Place> places_;
-  std::pmr::vector<BasicBlockPhase<double>> phases_;
+  std::pmr::vector<BasicPiecePhase<double>> phases_;
   std::size_t cell_ = 0;
   Phase open_{};
 };
@@ -100,7 +100,7 @@ class PlayRecord {
 /// requests, in order of time, come at their exact times. It ends where the program does, where it is
 /// stopped, or where it rests and nothing is to come. `blocks` are those of the cells. Error: above_limit for
 /// what takes more than `most_ticks`.
-[[nodiscard]] inline Expected<std::pmr::vector<BasicBlockPhase<double>>> play(
+[[nodiscard]] inline Expected<std::pmr::vector<BasicPiecePhase<double>>> play(
     std::span<const PlayedBlock> cells, std::span<const std::size_t> blocks,
     std::span<const TimedRequest> requests, double period, double most_ticks = 1e10) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -167,7 +167,7 @@ template <BlockModel B, std::invocable<const B&> Feed>
 
 /// Both at once.
 template <BlockModel B, std::invocable<const B&> Feed>
-[[nodiscard]] Expected<std::pmr::vector<BasicBlockPhase<double>>> play(std::span<const B> blocks,
+[[nodiscard]] Expected<std::pmr::vector<BasicPiecePhase<double>>> play(std::span<const B> blocks,
                                                                        BasicCells<double> cells,
                                                                        std::span<const TimedRequest> requests,
                                                                        double period, Feed&& feed_of,

@@ -1,4 +1,4 @@
-// What `plan_blocks` does, for the files that define it for one kind of machine each.
+// What `plan` does, for the files that define it for one kind of machine each.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/compiled.hpp"
+#include "cncplan/gcode/work_coordinates.hpp"
 #include "cncplan/plan/cells.hpp"
 #include "cncplan/plan/merge_lines.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
@@ -20,6 +22,7 @@
 #include "phases.hpp"
 #include "plan.hpp"
 #include "planned_on.hpp"
+#include "stopwatch.hpp"
 #include "support/failure.hpp"
 
 namespace simulate {
@@ -67,11 +70,30 @@ template <class M>
   return std::move(*cells);
 }
 
-}  // namespace detail
-
+/// By the library's own door, at the levels good and best.
 template <class M>
-Plan plan_blocks(const Options& options, const support::Machine& file, const M& machine,
-                 const Program<M>& program) {
+[[nodiscard]] Plan plan_smooth(const Options& options, const support::Machine& file, const M& machine,
+                               const Program<M>& program) {
+  auto planned = cncplan::plan_blocks(
+      program.blocks, machine,
+      {.tolerance = options.tolerance,
+       .level = options.level(),
+       .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree});
+  if (!planned) refuse(planned.error(), program.file);
+  Plan result;
+  result.motion_of = program.motion_of;
+  const auto blocks = planned->program();
+  for (const cncplan::Fallback& part : planned->fallbacks())
+    result.other_levels.push_back({blocks[part.first].line, blocks[part.last].line, to_text(part.level),
+                                   to_text(part.reason)});
+  result.motion = std::make_unique<PlannedOn<M, BlockOf<M>>>(file, std::move(*planned));
+  return result;
+}
+
+/// On the exact path, at the level fast, or with events.
+template <class M>
+[[nodiscard]] Plan plan_look_ahead(const Options& options, const support::Machine& file, const M& machine,
+                                   const Program<M>& program) {
   namespace plan = cncplan::plan;
   using Block = BlockOf<M>;
   using Trajectory = cncplan::Trajectory<M, Block>;
@@ -88,13 +110,13 @@ Plan plan_blocks(const Options& options, const support::Machine& file, const M& 
       cncplan::merge_lines(std::span(driven), machine, within);
       smoothing = plan::smoothing(std::span<const Block>(driven), machine, within);
     }
-  std::pmr::vector<plan::BasicBlockPhase<double>> phases;
+  std::pmr::vector<cncplan::BasicPiecePhase<double>> phases;
   if (options.events) {  // limits are made for the highest feed
     const std::vector<Event> events = read_events(*options.events);
     std::pmr::vector<Block> fastest = driven;
     for (Block& block : fastest) block.feed *= highest_feed(events);
-    auto cells = detail::cells_of(options, machine, program, std::span<const Block>(fastest), smoothing);
-    result.junctions_limited = detail::count_limited(cells, machine, program);
+    auto cells = cells_of(options, machine, program, std::span<const Block>(fastest), smoothing);
+    result.junctions_limited = count_limited(cells, machine, program);
     const auto feed_of = [&](const Block& block) {
       if (block.rapid) return rapid_speed(machine);
       return std::isfinite(block.feed) ? block.feed : feed_speed(machine);
@@ -102,13 +124,29 @@ Plan plan_blocks(const Options& options, const support::Machine& file, const M& 
     const auto blocks = plan::played_blocks(std::span<const Block>(program.blocks), cells, feed_of);
     phases = played(options, cells, blocks, events);
   } else {
-    const auto cells = detail::cells_of(options, machine, program, std::span<const Block>(driven), smoothing);
-    result.junctions_limited = detail::count_limited(cells, machine, program);
+    const auto cells = cells_of(options, machine, program, std::span<const Block>(driven), smoothing);
+    result.junctions_limited = count_limited(cells, machine, program);
     phases = phases_of(options, cells);
   }
   result.motion = std::make_unique<PlannedOn<M, Block>>(
       file, Trajectory(machine, std::move(driven), std::move(phases), std::move(smoothing)),
       options.interpolator == Interpolator::taylor);
+  return result;
+}
+
+}  // namespace detail
+
+template <class M>
+Plan plan(const Options& options, const support::Machine& file, const M& machine, const Program<M>& program) {
+  double seconds = 0.0;
+  Plan result = [&] {
+    const Stopwatch watch(seconds);
+    if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
+      if (options.level() > cncplan::SmoothLevel::fast && !options.events)
+        return detail::plan_smooth(options, file, machine, program);
+    return detail::plan_look_ahead(options, file, machine, program);
+  }();
+  result.seconds = seconds;
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Planning along blocks made by hand at the levels good and best.
+// Planning at the levels good and best, on machines of 3 axes.
 #include "cncplan/compiled.hpp"
 
 namespace cncplan {

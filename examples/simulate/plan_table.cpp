@@ -1,0 +1,7 @@
+#include "plan_of.hpp"
+
+namespace simulate {
+
+template Plan plan(const Options&, const support::Machine&, const Table&, const Program<Table>&);
+
+}  // namespace simulate

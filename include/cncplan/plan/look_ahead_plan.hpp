@@ -1,0 +1,94 @@
+// Plans blocks by look-ahead, at the levels `exact` and `fast` of smoothing (set-up).
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <iterator>
+#include <memory_resource>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/plan/cells.hpp"
+#include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/merge_lines.hpp"
+#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/plan/trajectory.hpp"
+
+namespace cncplan::plan {
+
+/// A place in a program of blocks, for an error in one of them.
+template <BlockModel B>
+[[nodiscard]] ProgramError error_in(std::span<const B> blocks, const BlockFault& fault) {
+  const B& block = blocks[fault.block];
+  return {{fault.error, block.line, block.column, {}}, {}, fault.block};
+}
+
+/// The rules for smoothing that a program's options say.
+template <std::floating_point S>
+[[nodiscard]] SmoothingRules<S> smoothing_rules(const PlanOptions& options) {
+  return {static_cast<S>(options.tolerance), static_cast<S>(options.rotary_tolerance),
+          options.exact_between_rapids_and_feeds};
+}
+
+/// Why a program of blocks cannot be smoothed at any level, if it cannot.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] constexpr std::optional<FallbackReason> without_smoothing() {
+  if (MappedModel<M>) return FallbackReason::map;
+  if (!EnclosedPath<typename B::Path>) return FallbackReason::path;
+  return std::nullopt;
+}
+
+/// The trajectory of blocks under rules for their joints and a law for changes of speed. All memory is that
+/// of the blocks.
+template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar> Law>
+[[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
+    std::pmr::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
+    const Law& law, BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
+  using S = typename M::Scalar;
+  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
+  const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing, memory);
+  if (!cells) return tl::unexpected(error_in(std::span<const B>(blocks), cells.error()));
+  std::pmr::vector<BasicSpan<S>> spans(memory);
+  std::pmr::vector<BasicWaypoint<S>> waypoints(cells->caps.size() + 1, memory);
+  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(waypoints),
+                                  std::back_inserter(spans));
+  if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
+  auto phases = block_phases(std::span<const BasicSpan<S>>(spans), *cells);
+  return Trajectory<M, B>(machine, std::move(blocks), std::move(phases), std::move(smoothing));
+}
+
+/// Blocks that it may change and keep, at the level `exact` or `fast`. All memory is theirs.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_by_look_ahead(std::pmr::vector<B>&& blocks,
+                                                                          const M& machine,
+                                                                          const PlanOptions& options) {
+  using S = typename M::Scalar;
+  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
+  if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+  const auto deviation = static_cast<S>(options.junction_deviation);
+  const JointRules<S, junction::BasicDeviation<S>> rules{
+      {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
+  BasicSmoothing<S, M::axis_count> smoothing(memory);
+  const SmoothLevel asked = level_of(options);
+  const auto other = asked == SmoothLevel::exact ? std::nullopt : without_smoothing<M, B>();
+  if constexpr (!without_smoothing<M, B>())
+    if (asked != SmoothLevel::exact) {
+      const auto within = smoothing_rules<S>(options);
+      merge_lines(std::span(blocks), machine, within);
+      smoothing = plan::smoothing(std::span<const B>(blocks), machine, within, memory);
+    }
+  auto planned = trajectory(std::move(blocks), machine, rules, SevenPhase{}, std::move(smoothing));
+  if (!planned) return planned;
+  planned->set_level(asked);
+  if (other && !planned->program().empty())
+    planned->set_fallbacks({{{0, planned->program().size() - 1, SmoothLevel::exact, *other}}, memory});
+  return planned;
+}
+
+}  // namespace cncplan::plan

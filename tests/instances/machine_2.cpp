@@ -1,0 +1,7 @@
+#include "instances/instances.hpp"
+
+namespace cncplan {
+
+CNCPLAN_MACHINE(, Machine<2>)
+
+}  // namespace cncplan
