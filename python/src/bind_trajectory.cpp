@@ -13,30 +13,29 @@ namespace cncplan::python {
 
 namespace {
 
-PlanOptions options_of(double tolerance, double rotary_tolerance, double junction_deviation,
+PlanOptions options_of(double tolerance, int level, double rotary_tolerance, double junction_deviation,
                        const std::vector<double>& start) {
-  PlanOptions options{
-      .tolerance = tolerance, .rotary_tolerance = rotary_tolerance, .junction_deviation = junction_deviation};
+  PlanOptions options{.tolerance = tolerance,
+                      .level = static_cast<SmoothLevel>(level),
+                      .rotary_tolerance = rotary_tolerance,
+                      .junction_deviation = junction_deviation};
   options.start = places_of(start);
   return options;
 }
 
 TrajectoryPointer plan(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
-                       int level, const std::string& file) {
-  return with_size(machine.axes.size(), [&](auto n) {
-    return plan_text<n>(machine, text, options, static_cast<Level>(level), file);
-  });
+                       const std::string& file) {
+  return with_size(machine.axes.size(),
+                   [&](auto n) { return plan_text<n>(machine, text, options, file); });
 }
 
-TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options,
-                            int level) {
+TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options) {
   const auto [text, here] = open_program(file, options);
-  return plan(machine, text, here, level, file);
+  return plan(machine, text, here, file);
 }
 
-TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
-                              int level) {
-  return plan(machine, text, options, level, {});
+TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text, const PlanOptions& options) {
+  return plan(machine, text, options, {});
 }
 
 // New arrays of so many rows, and where they are.
@@ -128,12 +127,12 @@ void bind_trajectory(py::module_& module) {
   module.def("plan_file", &plan_file, Released());
   module.def("plan_text", &plan_string, Released());
   module.def("plan_blocks",
-             [](const AnyMachine& machine, const py::list& given, const PlanOptions& options, int level) {
+             [](const AnyMachine& machine, const py::list& given, const PlanOptions& options) {
                std::vector<AnyBlock> blocks;
                for (const auto& block : given) blocks.push_back(block_from(block.cast<py::tuple>()));
                const py::gil_scoped_release released;
                return with_size(machine.axes.size(), [&](auto n) {
-                 return plan_hand_made<n>(machine, blocks, options, static_cast<Level>(level));
+                 return plan_hand_made<n>(machine, blocks, options);
                });
              });
 }

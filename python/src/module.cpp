@@ -72,7 +72,7 @@ py::tuple word_tuple(const gcode::Word& word, std::optional<double> time) {
 }
 
 std::pair<std::string, PlanOptions> open_program(const std::string& file, PlanOptions options) {
-  auto text = plan::text_of(file);
+  auto text = gcode::text_of(file);
   if (!text) raise(ProgramError{{{ErrorCode::unreadable, "file", 0.0, 0.0}, 0, 0, {}}, file, {}});
   options.subprograms = gcode::files_beside(file);
   return {std::move(*text), std::move(options)};

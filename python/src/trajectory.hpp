@@ -17,7 +17,6 @@
 
 namespace cncplan::python {
 
-enum class Level { exact, fast, good, best };
 
 /// Arrays that samples are written to: `axes` numbers a row of position to jerk, three of tool, one of the
 /// others.
@@ -69,10 +68,10 @@ using TrajectoryPointer = std::unique_ptr<AnyTrajectory>;
 /// Each throws `Fault`.
 template <int N>
 [[nodiscard]] TrajectoryPointer plan_text(const AnyMachine& machine, std::string_view text,
-                                          const PlanOptions& options, Level level, const std::string& file);
+                                          const PlanOptions& options, const std::string& file);
 template <int N>
 [[nodiscard]] TrajectoryPointer plan_hand_made(const AnyMachine& machine, const std::vector<AnyBlock>& blocks,
-                                               const PlanOptions& options, Level level);
+                                               const PlanOptions& options);
 
 /// Errors of arcs and splines alone.
 void check(const AnyBlock& block);

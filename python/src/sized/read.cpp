@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "cncplan/compiled.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/plan/plan_program.hpp"
@@ -134,29 +135,29 @@ ReadBlock<AXES> block_of<AXES>(const AnyBlock& from) {
 
 template <>
 TrajectoryPointer plan_text<AXES>(const AnyMachine& given, std::string_view text, const PlanOptions& options,
-                                  Level level, const std::string& file) {
+                                  const std::string& file) {
   const auto machine = machine_of<AXES>(given);
   Program<Machine<AXES>> program(text, machine, with_dialect(options, given), file);
   if (const Problem* error = program.first_error()) raise(*error);
   auto memory = std::make_unique<InterruptibleMemory>();
-  auto planned = plan<AXES>(level, std::move(program).take_blocks(), machine, options, memory.get());
+  auto planned = plan_blocks(std::move(program).take_blocks(), machine, options, memory.get());
   if (!planned) {
     planned.error().file = program.file_of(planned.error().block.value_or(0));
     raise(planned.error());
   }
-  plan::tell(*planned, program, level != Level::exact && options.tolerance > 0);
+  plan::tell(*planned, program, level_of(options) != SmoothLevel::exact);
   return any_trajectory<AXES>(std::move(memory), std::move(*planned));
 }
 
 template <>
 TrajectoryPointer plan_hand_made<AXES>(const AnyMachine& given, const std::vector<AnyBlock>& blocks,
-                                       const PlanOptions& options, Level level) {
+                                       const PlanOptions& options) {
   const auto machine = machine_of<AXES>(given);
   std::vector<ReadBlock<AXES>> own;
   own.reserve(blocks.size());
   for (const AnyBlock& block : blocks) own.push_back(block_of<AXES>(block));
   auto memory = std::make_unique<InterruptibleMemory>();
-  auto planned = plan<AXES>(level, std::move(own), machine, options, memory.get());
+  auto planned = plan_blocks(std::move(own), machine, options, memory.get());
   if (!planned) raise(planned.error());
   return any_trajectory<AXES>(std::move(memory), std::move(*planned));
 }

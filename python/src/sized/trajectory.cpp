@@ -65,19 +65,11 @@ class TrajectoryOfSize final : public AnyTrajectory {
     }
   }
 
-  // Pieces of one block are told as that block.
   [[nodiscard]] std::vector<BlockRow> blocks() const override {
     std::vector<BlockRow> rows;
-    for (const BlockMotion& motion : planned_.blocks()) {
-      const auto source = static_cast<std::int64_t>(planned_.program()[motion.block].source);
-      if (rows.empty() || rows.back().block != source)
-        rows.push_back({source, motion.line, 0, motion.start, 0, motion.entry, 0, 0});
-      BlockRow& row = rows.back();
-      row.length += motion.length;
-      row.duration = motion.start + motion.duration - row.start;
-      row.peak = std::max(row.peak, motion.peak);
-      row.exit = motion.exit;
-    }
+    for (const BlockMotion& motion : planned_.blocks())
+      rows.push_back({static_cast<std::int64_t>(motion.block), motion.line, motion.length, motion.start,
+                      motion.duration, motion.entry, motion.peak, motion.exit});
     return rows;
   }
 
