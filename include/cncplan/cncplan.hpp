@@ -2,6 +2,10 @@
 #pragma once
 
 #include "cncplan/compiled.hpp"
+#include "cncplan/compiled/block_reader.hpp"
+#include "cncplan/compiled/executor.hpp"
+#include "cncplan/compiled/plan_blocks.hpp"
+#include "cncplan/compiled/plan_program.hpp"
 #include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/core/axis_state.hpp"

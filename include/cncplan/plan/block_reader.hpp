@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/core/fixed_list.hpp"
 #include "cncplan/gcode/line_reader.hpp"
 #include "cncplan/gcode/warnings.hpp"
@@ -200,3 +201,7 @@ void BlockReader<M>::advance() {
 }
 
 }  // namespace cncplan
+
+#ifdef CNCPLAN_COMPILED
+#include "cncplan/compiled/block_reader.hpp"
+#endif

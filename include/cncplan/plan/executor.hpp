@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/plan/block_builder.hpp"
 #include "cncplan/plan/executor_core.hpp"
 #include "cncplan/plan/program_error.hpp"
@@ -64,3 +65,7 @@ class Executor : private plan::ExecutorRoom<M, B, capacity>, public plan::Execut
 };
 
 }  // namespace cncplan
+
+#ifdef CNCPLAN_COMPILED
+#include "cncplan/compiled/executor.hpp"
+#endif

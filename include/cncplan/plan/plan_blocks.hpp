@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/plan/look_ahead_plan.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
 #include "cncplan/plan/step_edges.hpp"
@@ -93,3 +94,7 @@ template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typena
 }
 
 }  // namespace cncplan
+
+#ifdef CNCPLAN_COMPILED
+#include "cncplan/compiled/plan_blocks.hpp"
+#endif

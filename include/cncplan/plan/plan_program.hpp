@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/plan/block_builder.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
 #include "cncplan/plan/program.hpp"
@@ -110,3 +111,7 @@ template <MachineModel M>
 }
 
 }  // namespace cncplan
+
+#ifdef CNCPLAN_COMPILED
+#include "cncplan/compiled/plan_program.hpp"
+#endif

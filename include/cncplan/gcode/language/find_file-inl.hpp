@@ -1,4 +1,4 @@
-// Definitions of find_file.hpp.
+// Definitions of find_file.hpp (set-up).
 #pragma once
 
 #include <array>
