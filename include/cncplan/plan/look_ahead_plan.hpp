@@ -1,6 +1,7 @@
 // Plans blocks by look-ahead, at the levels `exact` and `fast` of smoothing (set-up).
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <iterator>
@@ -44,23 +45,39 @@ template <MachineModel M, BlockModel B>
   return std::nullopt;
 }
 
-/// The trajectory of blocks under rules for their joints and a law for changes of speed. All memory is that
-/// of the blocks.
-template <MachineModel M, BlockModel B, class Policy, RampLaw<typename M::Scalar> Law>
+/// The trajectory of blocks that were cut into cells, under a law for changes of speed. All memory is that of
+/// the blocks.
+template <MachineModel M, BlockModel B, RampLaw<typename M::Scalar> Law>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
-    std::pmr::vector<B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
-    const Law& law, BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
+    std::pmr::vector<B> blocks, const M& machine, const BasicCells<typename M::Scalar>& cells, const Law& law,
+    BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
   using S = typename M::Scalar;
   std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
-  const auto cells = make_cells(std::span<const B>(blocks), machine, rules, smoothing, memory);
-  if (!cells) return tl::unexpected(error_in(std::span<const B>(blocks), cells.error()));
   std::pmr::vector<BasicSpan<S>> spans(memory);
-  std::pmr::vector<BasicWaypoint<S>> waypoints(cells->caps.size() + 1, memory);
-  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells->caps), law, std::span(waypoints),
+  std::pmr::vector<BasicWaypoint<S>> waypoints(cells.caps.size() + 1, memory);
+  const auto planned = plan_spans(std::span<const BasicBlockCaps<S>>(cells.caps), law, std::span(waypoints),
                                   std::back_inserter(spans));
   if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
-  auto phases = block_phases(std::span<const BasicSpan<S>>(spans), *cells);
+  auto phases = block_phases(std::span<const BasicSpan<S>>(spans), cells);
   return Trajectory<M, B>(machine, std::move(blocks), std::move(phases), std::move(smoothing));
+}
+
+/// Makes blocks exact whose smoothed path leaves the travel of an axis although their own does not; which.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] std::pmr::vector<Fallback> make_exact_at_ends(
+    std::span<B> blocks, const M& machine, const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing,
+    std::pmr::memory_resource* memory) {
+  using S = typename M::Scalar;
+  std::pmr::vector<Fallback> made(memory);
+  const auto tool = tool_axes(machine);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto driven = smoothing.path(blocks[i].path, i, tool);
+    if (driven.exact() || within_travel(driven, machine, S(1e-9)) || !within_travel(blocks[i].path, machine))
+      continue;
+    blocks[i].exact_path = true;
+    made.push_back({i, i, SmoothLevel::exact, FallbackReason::travel});
+  }
+  return made;
 }
 
 /// Blocks that it may change and keep, at the level `exact` or `fast`. All memory is theirs.
@@ -74,20 +91,34 @@ template <MachineModel M, BlockModel B>
   const auto deviation = static_cast<S>(options.junction_deviation);
   const JointRules<S, junction::BasicDeviation<S>> rules{
       {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
-  BasicSmoothing<S, M::axis_count> smoothing(memory);
   const SmoothLevel asked = level_of(options);
-  const auto other = asked == SmoothLevel::exact ? std::nullopt : without_smoothing<M, B>();
-  if constexpr (!without_smoothing<M, B>())
-    if (asked != SmoothLevel::exact) {
-      const auto within = smoothing_rules<S>(options);
-      merge_lines(std::span(blocks), machine, within);
-      smoothing = plan::smoothing(std::span<const B>(blocks), machine, within, memory);
+  const std::span<const B> given(blocks);
+  std::pmr::vector<Fallback> fallbacks(memory);
+  BasicSmoothing<S, M::axis_count> smoothing(memory);
+  const auto cut = [&] { return make_cells(given, machine, rules, smoothing, memory); };
+  Expected<BasicCells<S>, BlockFault> cells = tl::unexpected(BlockFault{});
+  if (const auto other = without_smoothing<M, B>(); asked == SmoothLevel::exact || other) {
+    cells = cut();
+    if (asked != SmoothLevel::exact && !given.empty())
+      fallbacks.push_back({0, given.size() - 1, SmoothLevel::exact, *other});
+  } else if constexpr (!without_smoothing<M, B>()) {
+    const auto within = smoothing_rules<S>(options);
+    merge_lines(std::span(blocks), machine, within);
+    for (bool again = true; again;) {
+      smoothing = plan::smoothing(given, machine, within, memory);
+      cells = cut();
+      if (cells) break;
+      const auto exact = make_exact_at_ends(std::span(blocks), machine, smoothing, memory);
+      fallbacks.insert(fallbacks.end(), exact.begin(), exact.end());
+      again = !exact.empty();
     }
-  auto planned = trajectory(std::move(blocks), machine, rules, SevenPhase{}, std::move(smoothing));
+    std::ranges::sort(fallbacks, {}, &Fallback::first);
+  }
+  if (!cells) return tl::unexpected(error_in(given, cells.error()));
+  auto planned = trajectory(std::move(blocks), machine, *cells, SevenPhase{}, std::move(smoothing));
   if (!planned) return planned;
   planned->set_level(asked);
-  if (other && !planned->program().empty())
-    planned->set_fallbacks({{{0, planned->program().size() - 1, SmoothLevel::exact, *other}}, memory});
+  planned->set_fallbacks(std::move(fallbacks));
   return planned;
 }
 

@@ -6,6 +6,7 @@
 #include <memory_resource>
 #include <new>
 #include <ranges>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -89,8 +90,11 @@ template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typena
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const plan::JointRules<S, Policy> rules{policy, S(-1), S(-1)};
-  return plan::trajectory(plan::own_blocks(std::forward<R>(blocks), std::pmr::get_default_resource()),
-                          machine, rules, law);
+  auto own = plan::own_blocks(std::forward<R>(blocks), std::pmr::get_default_resource());
+  const std::span<const BlockOf<R>> given(own);
+  const auto cells = plan::make_cells(given, machine, rules);
+  if (!cells) return tl::unexpected(plan::error_in(given, cells.error()));
+  return plan::trajectory(std::move(own), machine, *cells, law);
 }
 
 }  // namespace cncplan

@@ -186,15 +186,17 @@ class SmoothPlanner {
     return false;
   }
 
-  // What was planned since there were so many blocks has another level than was asked for. There is room.
-  void tell(std::size_t before, SmoothLevel level, FallbackReason reason) {
-    if (out_.size() == before) return;
-    const Fallback next{before, out_.size() - 1, level, reason};
-    if (!fallbacks_.empty() && fallbacks_.back().last + 1 == before && fallbacks_.back().level == level &&
+  // A planned block has another level than was asked for. There is room.
+  void tell(std::size_t block, SmoothLevel level, FallbackReason reason) {
+    if (!fallbacks_.empty() && fallbacks_.back().last + 1 == block && fallbacks_.back().level == level &&
         fallbacks_.back().reason == reason)
-      fallbacks_.back().last = next.last;
+      fallbacks_.back().last = block;
     else
-      fallbacks_.push_back(next);
+      fallbacks_.push_back({block, block, level, reason});
+  }
+  // So have all that were planned since there were so many.
+  void tell_since(std::size_t before, SmoothLevel level, FallbackReason reason) {
+    for (std::size_t block = before; block < out_.size(); ++block) tell(block, level, reason);
   }
 
   // Whether a block without a plan follows another one as smoothing would have it, but for its length, which
@@ -223,7 +225,6 @@ class SmoothPlanner {
                                                       std::optional<FallbackReason> reason = std::nullopt) {
     if (planned_ == end) return {};
     if (!reason) reason = why_fast(end);
-    make_room(fallbacks_, 1);
     auto planned = fast(end);
     if (!planned) {
       if (planned.error().block) *planned.error().block += first_source_ + planned_;
@@ -234,6 +235,7 @@ class SmoothPlanner {
     const auto& own = planned->smoothing();
     make_room(smoothing_.corrections, own.corrections.size());
     make_room_for(end - planned_, end - planned_, planned->phases().size());
+    make_room(fallbacks_, 2 * planned->fallbacks().size() + 1);
     smoothing_.corrections.insert(smoothing_.corrections.end(), own.corrections.begin(),
                                   own.corrections.end());
     for (std::size_t i = planned_; i < end; ++i) {
@@ -250,7 +252,14 @@ class SmoothPlanner {
     }
     time_ += planned->duration();
     planned_ = end;
-    if (reason) tell(before, SmoothLevel::fast, *reason);
+    auto own_level = planned->fallbacks().begin();
+    for (std::size_t i = before; i < out_.size(); ++i) {
+      while (own_level != planned->fallbacks().end() && own_level->last < i - before) ++own_level;
+      if (own_level != planned->fallbacks().end() && own_level->first <= i - before)
+        tell(i, own_level->level, own_level->reason);
+      else if (reason)
+        tell(i, SmoothLevel::fast, *reason);
+    }
     return {};
   }
 
@@ -288,7 +297,7 @@ class SmoothPlanner {
     make_room(fallbacks_, 1);
     const std::size_t before = out_.size();
     add_pieces(planned, given.sources, end);
-    tell(before, options_.level, FallbackReason::slow_motion);
+    tell_since(before, options_.level, FallbackReason::slow_motion);
   }
 
   // The first part of a run, up to where it is cut; false where it cannot be.
@@ -322,7 +331,7 @@ class SmoothPlanner {
         make_room(fallbacks_, 1);
         const std::size_t before = out_.size();
         add_pieces(planned, given.sources, at);
-        if (!fastest) tell(before, options_.level, FallbackReason::slow_motion);
+        if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
         begun_ = out_.size() > before && out_first_ + out_.size() - 1 == first_source_ + at;
         approach_ = std::move(planned.approach);
         cut_ = next;
