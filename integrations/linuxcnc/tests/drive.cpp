@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives a program through the module or through Debian's tpmod.so, and prints the time, the peaks and what a
 // servo cycle takes:
-//   drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration]
-// FILE: a program of G0 and G1 (.nc), or canonical motions (.motions). The table of docs/linuxcnc.md is its.
+//   drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration] [POSITIONS]
+// FILE: a program of G0 and G1 (.nc), or canonical motions (.motions). POSITIONS: a file for t, X, Y, Z of
+// every period, s and mm. The table of docs/linuxcnc.md is its.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -31,7 +33,8 @@ int main(int count, char** arguments) {
   if (count < 3) {
     std::fprintf(
         stderr,
-        "usage: drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration]\n");
+        "usage: drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration] "
+        "[POSITIONS]\n");
     return 2;
   }
   const auto number = [&](int i, double otherwise) {
@@ -58,6 +61,15 @@ int main(int count, char** arguments) {
     first = false;
     before = thread_time();
   });
+  if (count > 8) {
+    std::ofstream positions(arguments[8]);
+    positions.precision(17);
+    for (std::size_t k = 0; k < run.samples.size(); ++k) {
+      const auto& p = run.samples[k].position;
+      positions << 1e-3 * static_cast<double>(k) << ',' << p[0] << ',' << p[1] << ',' << p[2] << '\n';
+    }
+    if (!positions.flush()) return std::fprintf(stderr, "%s cannot be written\n", arguments[8]), 1;
+  }
   std::sort(cycles.begin(), cycles.end());
   double mean = 0.0;
   for (const double us : cycles) mean += us / static_cast<double>(cycles.size());
