@@ -81,7 +81,7 @@ class Machine:
     """A machine: its axes, and the limits of its tool.
 
     Made from keywords, from a dict of the same names, or from a machine file in TOML
-    (docs/simulate.md has its entries): `Machine(velocity=30, acceleration=1000, jerk=10000)`,
+    (docs/machine-file.md has its entries): `Machine(velocity=30, acceleration=1000, jerk=10000)`,
     `Machine({"axis": [{"letter": "X"}, ...]}, velocity=30, ...)`, `Machine("mill.toml", velocity=30, ...)`.
     Entries of rotary axes are degrees and s, as in the file; arrays of positions have rad.
 

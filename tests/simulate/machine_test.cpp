@@ -34,7 +34,7 @@ TEST_CASE("the mills that ship are read, and run a program") {
 }
 
 TEST_CASE("the manual shows the mill's file as it is") {
-  const std::string manual = test::text_of(CNCPLAN_EXAMPLES "/../docs/simulate.md");
+  const std::string manual = test::text_of(CNCPLAN_EXAMPLES "/../docs/machine-file.md");
   CHECK(manual.find("```toml\n" + test::text_of(CNCPLAN_EXAMPLES "/machines/mill3.toml") + "```\n") !=
         std::string::npos);
 }
