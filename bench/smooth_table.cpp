@@ -1,6 +1,6 @@
-// Prints what smoothing takes on the cases of docs/smoothing.md: the exact path with jumps at its corners,
-// the levels fast, good and best, the processor time of each level for a block, reading excluded, and the
-// memory that good and best take of a buffer.
+// Prints what smoothing takes on the cases of docs/smoothing-figures.md: the exact path with jumps at its
+// corners, the levels fast, good and best, the processor time of each level for a block, reading excluded,
+// and the memory that good and best take of a buffer.
 //   cncplan_smooth_table FOLDER [WORD [HELD]]    programs are read from FOLDER; only cases whose names hold
 //       WORD; good and best in parts by a `SmoothStream` that holds so many blocks
 #include <cmath>

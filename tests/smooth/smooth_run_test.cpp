@@ -163,7 +163,8 @@ TEST_CASE("one corner: limits, tolerance, and the time of the study") {
 }
 
 TEST_CASE("sharp corners take little more than any motion must") {
-  // The least losses are those of an independent program (docs/smoothing.md, how far from the optimum).
+  // The least losses are those of an independent program (docs/smoothing-figures.md, how far from the
+  // optimum).
   struct Row {
     double degrees, tolerance, least;
   };
