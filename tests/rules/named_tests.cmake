@@ -1,4 +1,5 @@
-# That the tests a page names are there: each "Name" that follows `tests/ROOM/FILE.cpp` in PAGE is a test case of that file.
+# That the tests a page names are there: each "Name" that follows `tests/ROOM/FILE.cpp` in PAGE is a test case of that file; "Name ..." is
+# one whose name begins so.
 #   cmake -DPAGE=docs/mathematics.md -DROOT=. -P named_tests.cmake
 cmake_minimum_required(VERSION 3.22)
 
@@ -15,6 +16,7 @@ foreach(reference IN LISTS references)
   string(REGEX REPLACE "\\([ \n]+\"" "(\"" source "${source}")
   string(REGEX MATCHALL "\"[^\"]+\"" names "${reference}")
   foreach(name IN LISTS names)
+    string(REGEX REPLACE " [.][.][.]\"$" "" name "${name}")
     string(FIND "${source}" "(${name}" place)
     if(place EQUAL -1)
       message(FATAL_ERROR "${PAGE} names a test that ${file} does not have: ${name}")
