@@ -1,4 +1,4 @@
-# That the files a page links to, or names with a folder between backquotes, are there.
+# That the files a page links to, or names with a folder between backquotes, are there, and the headings that it links to.
 #   cmake -DPAGE=README.md -DROOT=. -P links.cmake
 cmake_minimum_required(VERSION 3.22)
 
@@ -13,6 +13,35 @@ foreach(link IN LISTS links)
   string(SUBSTRING "${link}" 2 -1 link)
   if(NOT link MATCHES "^https?:" AND NOT EXISTS "${folder}/${link}")
     message(FATAL_ERROR "${PAGE} links to a file that is not there: ${link}")
+  endif()
+endforeach()
+
+# A heading's anchor, as GitHub makes it: small letters, digits and hyphens; a blank is a hyphen.
+string(REGEX MATCHALL "@\\([^) ]*#[^) ]+" anchors "${text}")
+foreach(link IN LISTS anchors)
+  string(REGEX MATCH "^@\\(([^#]*)#(.+)$" link "${link}")
+  set(target "${CMAKE_MATCH_1}")
+  set(anchor "${CMAKE_MATCH_2}")
+  if(target MATCHES "^https?:")
+    continue()
+  endif()
+  set(file "${folder}/${target}")
+  if(target STREQUAL "")
+    set(file "${PAGE}")
+  endif()
+  file(STRINGS "${file}" headings REGEX "^#+ ")
+  set(found FALSE)
+  foreach(heading IN LISTS headings)
+    string(REGEX REPLACE "^#+ " "" heading "${heading}")
+    string(TOLOWER "${heading}" heading)
+    string(REGEX REPLACE "[^a-z0-9 _-]" "" heading "${heading}")
+    string(REPLACE " " "-" heading "${heading}")
+    if(heading STREQUAL anchor)
+      set(found TRUE)
+    endif()
+  endforeach()
+  if(NOT found)
+    message(FATAL_ERROR "${PAGE} links to a heading that is not there: ${target}#${anchor}")
   endif()
 endforeach()
 
