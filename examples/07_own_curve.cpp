@@ -33,7 +33,7 @@ int main() {
       {.path = *arch, .feed = 30},
       {.path = path::Line<3>({20, 0, 0}, {20, -10, 0}), .feed = 30}};
   const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  const auto trajectory = plan_blocks(blocks, mill);  // the exact path
+  const auto trajectory = plan_blocks(blocks, mill, {.tolerance = 0});  // the exact path
   if (!trajectory) return std::printf("%s\n", to_text(trajectory.error()).c_str()), 1;
 
   double off = 0, acceleration = 0, jerk = 0;
