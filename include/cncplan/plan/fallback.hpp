@@ -10,7 +10,7 @@
 namespace cncplan {
 
 enum class FallbackReason : std::uint8_t {
-  map,             ///< there is no smoothing for machines behind a map
+  map,             ///< under a map a path straight in the joints, as a rapid, is left exact
   path,            ///< a path of a kind of its own has no enclosures
   tool_limits,     ///< the tool has a limit that is infinite
   axes,            ///< X Y Z are not the first axes
@@ -37,7 +37,7 @@ struct Fallback {
 [[nodiscard]] constexpr std::string_view to_text(FallbackReason reason) {
   switch (reason) {
     case FallbackReason::map:
-      return "a map has no smoothed paths";
+      return "a path straight in the joints of a map has no smoothed one";
     case FallbackReason::path:
       return "a path of a kind of its own has no enclosures";
     case FallbackReason::tool_limits:

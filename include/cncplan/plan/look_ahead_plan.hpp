@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cncplan/junction/deviation.hpp"
+#include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/plan/cells.hpp"
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/merge_lines.hpp"
@@ -40,7 +41,6 @@ template <std::floating_point S>
 /// Why a program of blocks cannot be smoothed at any level, if it cannot.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] constexpr std::optional<FallbackReason> without_smoothing() {
-  if (MappedModel<M>) return FallbackReason::map;
   if (!EnclosedPath<typename B::Path>) return FallbackReason::path;
   return std::nullopt;
 }
@@ -80,7 +80,15 @@ template <MachineModel M, BlockModel B>
   return made;
 }
 
-/// Blocks that it may change and keep, at the level `exact` or `fast`. All memory is theirs.
+/// Whether the options ask for curves of their own in place of corrections: at the levels `good` and `best`,
+/// and under a map at the level `fast` too, which has no corrections there.
+template <MachineModel M>
+[[nodiscard]] bool has_curves(const PlanOptions& options) {
+  return level_of(options) > (MappedModel<M> ? SmoothLevel::exact : SmoothLevel::fast);
+}
+
+/// Blocks that it may change and keep, at the level `exact` or `fast`. All memory is theirs. Under a map the
+/// level `fast` is the exact path too, at rest where the tool or a joint turns.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_by_look_ahead(std::pmr::vector<B>&& blocks,
                                                                           const M& machine,
@@ -97,11 +105,21 @@ template <MachineModel M, BlockModel B>
   BasicSmoothing<S, M::axis_count> smoothing(memory);
   const auto cut = [&] { return make_cells(given, machine, rules, smoothing, memory); };
   Expected<BasicCells<S>, BlockFault> cells = tl::unexpected(BlockFault{});
-  if (const auto other = without_smoothing<M, B>(); asked == SmoothLevel::exact || other) {
+  const auto other = without_smoothing<M, B>();
+  if constexpr (MappedModel<M>) {
+    constexpr S rounding = S(1e-12);  // mm: as of paths that meet without a corner
+    const JointRules<S, junction::BasicStopAtCorners<S>> at_rest{{}, rounding, rounding};
+    if (asked != SmoothLevel::exact && !other) {
+      cells = make_cells(given, machine, at_rest, smoothing, memory);
+      if (!cells) return tl::unexpected(error_in(given, cells.error()));
+      return trajectory(std::move(blocks), machine, *cells, SevenPhase{});
+    }
+  }
+  if (asked == SmoothLevel::exact || other) {
     cells = cut();
     if (asked != SmoothLevel::exact && !given.empty())
       fallbacks.push_back({0, given.size() - 1, SmoothLevel::exact, *other});
-  } else if constexpr (!without_smoothing<M, B>()) {
+  } else if constexpr (!MappedModel<M> && !without_smoothing<M, B>()) {
     const auto within = smoothing_rules<S>(options);
     merge_lines(std::span(blocks), machine, within);
     for (bool again = true; again;) {

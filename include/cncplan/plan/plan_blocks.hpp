@@ -40,7 +40,7 @@ template <MachineModel M, BlockModel B>
                                                                        const M& machine,
                                                                        const PlanOptions& options) {
   if constexpr (!without_smoothing<M, B>())
-    if (level_of(options) > SmoothLevel::fast) {
+    if (has_curves<M>(options)) {
       constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
       SmoothStream<M, B> stream(machine, options, all, blocks.get_allocator().resource());
       for (const B& block : blocks)
@@ -66,7 +66,8 @@ template <MachineModel M, BlockModel B>
 /// ends at a stop, a pause, a block that is to be exact, a turn by more than 175 degrees, and where the unit
 /// of length changes. In a run that has rapids and feed moves the tool's velocity may be that of rapids.
 /// Corners that are left exact are passed as fast as ones rounded within the junction deviation would be,
-/// where the velocity jumps; under a map all are.
+/// where the velocity jumps. Under a map the curve is one in the program's coordinates, the level `fast` is
+/// `good`, and what has no curve, as rapids straight in the joints, rests at its corners.
 ///
 /// Where a level cannot be had, a lower one takes its place, and `fallbacks` of the trajectory says where and
 /// why: `FallbackReason` lists it. Errors: those of `validate` for the machine; a block that leaves the

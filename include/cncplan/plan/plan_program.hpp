@@ -46,10 +46,6 @@ void tell(T& trajectory, const ProgramRecord& program, bool smoothed) {
   for (const Problem& problem : program.problems()) warnings.push_back(to_text(problem));
   if (!smoothed)
     for (const Problem& problem : program.if_not_smoothed()) warnings.push_back(to_text(problem));
-  for (const Fallback& part : trajectory.fallbacks())
-    if (part.reason == FallbackReason::map)
-      warnings.push_back("the tolerance does not act, and the path is exact: " +
-                         std::string(to_text(part.reason)));
   trajectory.set_warnings(std::move(warnings));
 }
 
@@ -73,14 +69,14 @@ template <MachineModel M, class Plan>
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(
     const Program<M>& program, const M& machine, const PlanOptions& options = {}) {
-  return plan::planned<M>(program, options.start, level_of(options) != SmoothLevel::exact && !MappedModel<M>,
+  return plan::planned<M>(program, options.start, level_of(options) != SmoothLevel::exact,
                           [&] { return plan_blocks(program.blocks(), machine, options); });
 }
 /// The same, with the blocks of the program itself.
 template <MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(
     Program<M>&& program, const M& machine, const PlanOptions& options = {}) {
-  return plan::planned<M>(program, options.start, level_of(options) != SmoothLevel::exact && !MappedModel<M>,
+  return plan::planned<M>(program, options.start, level_of(options) != SmoothLevel::exact,
                           [&] { return plan_blocks(std::move(program).take_blocks(), machine, options); });
 }
 

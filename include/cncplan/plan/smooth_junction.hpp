@@ -50,7 +50,11 @@ struct Junction {
     const auto last = before.path.point_at(before.path.length()), first = after.path.point_at(S(0));
     direction = first.first - last.first;
     curvature = first.second - last.second;
-    const auto a = in_space(last.first, tool), b = in_space(first.first, tool);
+    BasicVector3<S> a = in_space(last.first, tool), b = in_space(first.first, tool);
+    if constexpr (MappedModel<M>) {  // the axes do not tell
+      a = tool_point(before.path, before.path.length(), tool).first;
+      b = tool_point(after.path, S(0), tool).first;
+    }
     turn = a.norm() > S(0) && b.norm() > S(0) ? between(a, b) : between(last.first, first.first);
   }
 

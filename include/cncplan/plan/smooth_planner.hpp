@@ -15,7 +15,7 @@
 #include "cncplan/plan/block_checks.hpp"
 #include "cncplan/plan/curve_limits.hpp"
 #include "cncplan/plan/look_ahead_plan.hpp"
-#include "cncplan/smooth/smooth_run.hpp"
+#include "cncplan/plan/smooth_pieces.hpp"
 
 namespace cncplan::plan {
 
@@ -42,11 +42,11 @@ class SmoothPlanner {
       : machine_(machine),
         options_(options),
         rules_(smoothing_rules<S>(options)),
-        work_(options.level == SmoothLevel::good ? smooth::good_smoothing<S>
-                                                 : smooth::BasicSmoothOptions<S>{}),
+        work_(options.level == SmoothLevel::best ? smooth::BasicSmoothOptions<S>{}
+                                                 : smooth::good_smoothing<S>),
         limits_(motion_limits(machine)),
-        impossible_(level_of(options) > SmoothLevel::fast ? without_curve_level(machine) : std::nullopt),
-        possible_(level_of(options) > SmoothLevel::fast && !impossible_),
+        impossible_(has_curves<M>(options) ? without_curve_level(machine) : std::nullopt),
+        possible_(has_curves<M>(options) && !impossible_),
         most_(most),
         memory_(memory) {}
 
@@ -81,20 +81,17 @@ class SmoothPlanner {
   }
 
  private:
-  using Path = typename B::Path;
-  using Run = smooth::SmoothRun<Path>;
+  using Run = typename RunBlocks<M, B>::Run;
+  using Path = typename RunBlocks<M, B>::Path;
   using RunPlan = typename Run::Plan;
 
   // Corners reach no farther beyond a cut, as a rule.
   static constexpr std::size_t most_context = 20;
 
   // Blocks that move, as smoothing sees them.
-  struct RunBlocks {
-    std::pmr::vector<smooth::BandBlock<Path>> blocks;
+  struct Given {
+    RunBlocks<M, B> blocks;
     std::pmr::vector<std::size_t> sources;
-    smooth::BasicMotionLimits<S, n> limits;
-
-    explicit RunBlocks(std::pmr::memory_resource* memory) : blocks(memory), sources(memory) {}
   };
 
   // Plans what later blocks cannot change; if there is no room for more blocks, at least a part of them.
@@ -152,7 +149,7 @@ class SmoothPlanner {
 
   [[nodiscard]] bool smooth(std::size_t i) const {
     return possible_ && tolerance_of(blocks_[i], rules_) > S(0) && speed(i) > S(0) &&
-           length_of(blocks_[i].path, machine_) == LengthOf::tool;
+           length_of(blocks_[i].path, machine_) == LengthOf::tool && can_follow(blocks_[i].path, machine_);
   }
 
   // Behind the last block of the run that begins with a block; that block if none does.
@@ -215,6 +212,9 @@ class SmoothPlanner {
   [[nodiscard]] std::optional<FallbackReason> why_fast(std::size_t end) const {
     for (std::size_t i = planned_; i < end; ++i) {
       if (impossible_ && moves(i) && tolerance_of(blocks_[i], rules_) > S(0)) return impossible_;
+      if (possible_ && moves(i) && tolerance_of(blocks_[i], rules_) > S(0) &&
+          !can_follow(blocks_[i].path, machine_))
+        return FallbackReason::map;
       if (turns_on(i)) return FallbackReason::other_axes;
     }
     return std::nullopt;
@@ -258,21 +258,18 @@ class SmoothPlanner {
       if (own_level != planned->fallbacks().end() && own_level->first <= i - before)
         tell(i, own_level->level, own_level->reason);
       else if (reason)
-        tell(i, SmoothLevel::fast, *reason);
+        tell(i, MappedModel<M> ? SmoothLevel::exact : SmoothLevel::fast, *reason);
     }
     return {};
   }
 
   // A run to its end, on a curve of its own; at the level `fast` where it has no plan or a slower one.
   [[nodiscard]] Expected<void, ProgramError> add_run(std::size_t end) {
-    std::optional<FallbackReason> reason;
-    if constexpr (!MappedModel<M>) {
-      reason = add_curve(end);
-      if (!reason) return {};
-      if (cut_) {
-        if (add_curve(known_)) add_slow(known_);
-        return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
-      }
+    const std::optional<FallbackReason> reason = add_curve(end);
+    if (!reason) return {};
+    if (cut_) {
+      if (add_curve(known_)) add_slow(known_);
+      return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
     }
     return add_fast(end, reason);
   }
@@ -280,31 +277,32 @@ class SmoothPlanner {
   // From where plans end to rest on the fastest curve. Why not, where it has no plan, a slower one than the
   // level `fast`, or too little memory.
   std::optional<FallbackReason> add_curve(std::size_t end) try {
-    const RunBlocks given = run_blocks(cut_ ? 0 : planned_, end);
-    const RunPlan planned = Run(given.blocks, given.limits, work_, cut_, memory_).plan();
+    const Given given = run_blocks(cut_ ? 0 : planned_, end);
+    if (!given.blocks.bounded()) return FallbackReason::tool_limits;
+    const RunPlan planned = given.blocks.run(work_, cut_, memory_).plan();
     if (!found(planned)) return FallbackReason::no_motion;
-    if (!has_room(planned)) return FallbackReason::travel;
+    if (!has_room(planned, given.blocks)) return FallbackReason::travel;
     if (!cut_ && fast_is_faster(planned.duration, end)) return FallbackReason::fast_is_faster;
-    add_pieces(planned, given.sources, end);
+    add_pieces(planned, given, end);
     return std::nullopt;
   } catch (const std::bad_alloc&) {
     return FallbackReason::memory;
   }
   // From a cut to rest along blocks of which it was proven that they allow it.
   void add_slow(std::size_t end) {
-    const RunBlocks given = run_blocks(0, end);
-    const RunPlan planned = Run(given.blocks, given.limits, work_, cut_, memory_).slow_plan();
+    const Given given = run_blocks(0, end);
+    const RunPlan planned = given.blocks.run(work_, cut_, memory_).slow_plan();
     make_room(fallbacks_, 1);
     const std::size_t before = out_.size();
-    add_pieces(planned, given.sources, end);
+    add_pieces(planned, given, end);
     tell_since(before, options_.level, FallbackReason::slow_motion);
   }
 
   // The first part of a run, up to where it is cut; false where it cannot be.
   bool add_part([[maybe_unused]] std::size_t end) try {
     if constexpr (!MappedModel<M>) {
-      const RunBlocks given = run_blocks(cut_ ? 0 : planned_, end);
-      Run run(given.blocks, given.limits, work_, cut_, memory_);
+      const Given given = run_blocks(cut_ ? 0 : planned_, end);
+      Run run = given.blocks.run(work_, cut_, memory_);
       const std::size_t count = given.blocks.size();
       for (const auto& [cell, cut] : run.cuts(count / 2, count * 19 / 20)) {
         // From there the machine can come to rest along what is known.
@@ -312,13 +310,13 @@ class SmoothPlanner {
         while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
         smooth::RunCut<Path> there = cut;
         there.place.block -= moving;
-        const RunBlocks rest = run_blocks(given.sources[moving], end);
-        if (!works(Run(rest.blocks, rest.limits, work_, there, memory_).slow_plan())) continue;
+        const Given rest = run_blocks(given.sources[moving], end);
+        if (!works(rest.blocks.run(work_, there, memory_).slow_plan(), rest.blocks)) continue;
         run.end_before(cell, cut.speed);
         RunPlan planned = run.plan();
-        const bool fastest = works(planned);
+        const bool fastest = works(planned, given.blocks);
         if (!fastest) planned = run.slow_plan();
-        if (!works(planned)) return false;
+        if (!works(planned, given.blocks)) return false;
         const std::size_t at = given.sources[planned.end_block];
         const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
         if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return false;  // nothing is let go
@@ -326,11 +324,11 @@ class SmoothPlanner {
         smooth::RunCut<Path> next = cut;
         next.place.block -= kept;
         next.approach = &planned.approach;
-        const RunBlocks way = run_blocks(gone, end);
-        if (!works(Run(way.blocks, way.limits, work_, next, memory_).slow_plan())) return false;
+        const Given way = run_blocks(gone, end);
+        if (!works(way.blocks.run(work_, next, memory_).slow_plan(), way.blocks)) return false;
         make_room(fallbacks_, 1);
         const std::size_t before = out_.size();
-        add_pieces(planned, given.sources, at);
+        add_pieces(planned, given, at);
         if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
         begun_ = out_.size() > before && out_first_ + out_.size() - 1 == first_source_ + at;
         approach_ = std::move(planned.approach);
@@ -346,17 +344,13 @@ class SmoothPlanner {
     return false;
   }
 
-  [[nodiscard]] RunBlocks run_blocks(std::size_t first, std::size_t end) const {
-    RunBlocks result(memory_);
-    result.limits = limits_;
-    result.limits.tool.velocity = S(0);
-    result.blocks.reserve(end - first);
+  [[nodiscard]] Given run_blocks(std::size_t first, std::size_t end) const {
+    Given result{RunBlocks<M, B>(machine_, limits_, end - first, memory_),
+                 std::pmr::vector<std::size_t>(memory_)};
     result.sources.reserve(end - first);
     for (std::size_t i = first; i < end; ++i) {
       if (!moves(i)) continue;
-      result.limits.tool.velocity = std::max(
-          result.limits.tool.velocity, std::min(top_speed(blocks_[i], machine_), limits_.tool.velocity));
-      result.blocks.push_back({&blocks_[i].path, speed(i), tolerances(blocks_[i])});
+      result.blocks.push(blocks_[i], speed(i), rules_);
       result.sources.push_back(i);
     }
     return result;
@@ -365,7 +359,9 @@ class SmoothPlanner {
   [[nodiscard]] static bool found(const RunPlan& plan) {
     return plan.deviation <= S(1) && std::isfinite(plan.duration) && !plan.pieces.empty();
   }
-  [[nodiscard]] bool works(const RunPlan& plan) const { return found(plan) && has_room(plan); }
+  [[nodiscard]] bool works(const RunPlan& plan, const RunBlocks<M, B>& blocks) const {
+    return found(plan) && has_room(plan, blocks);
+  }
 
   // Blocks that have no plan, at the level `fast`.
   [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end) const {
@@ -381,37 +377,34 @@ class SmoothPlanner {
     return planned && planned->duration() < duration;
   }
 
-  [[nodiscard]] VectorN<S, n> tolerances(const B& block) const {
-    VectorN<S, n> result;
-    for (int i = 0; i < n; ++i)
-      result[i] = machine_.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary
-                      ? (S(1) - block.merged) * rules_.rotary_tolerance
-                      : tolerance_of(block, rules_);
-    return result;
-  }
-
-  // A path along an end of travel may be smoothed beyond it.
-  [[nodiscard]] bool has_room(const smooth::BasicSmoothRun<S, n>& run) const {
-    return !has_ends(machine_) || std::all_of(run.pieces.begin(), run.pieces.end(), [&](const auto& piece) {
-      return within_travel(piece.path, machine_).has_value();
+  // A path along an end of travel may be smoothed beyond it, and one under a map to where that jumps.
+  [[nodiscard]] bool has_room(const RunPlan& run, const RunBlocks<M, B>& blocks) const {
+    const bool ends = has_ends(machine_);
+    if (!ends && !MappedModel<M>) return true;
+    std::optional<VectorN<S, n>> end;
+    return std::all_of(run.pieces.begin(), run.pieces.end(), [&](const auto& piece) {
+      const auto path = blocks.piece(piece.path, piece.block);
+      if constexpr (MappedModel<M>)
+        if (!goes_on(end, path, machine_)) return false;
+      return !ends || within_travel(path, machine_).has_value();
     });
   }
 
   // Pieces of a run that end within a block, or behind the last one before it.
-  void add_pieces(const RunPlan& run, std::span<const std::size_t> sources, std::size_t end) {
+  void add_pieces(const RunPlan& run, const Given& given, std::size_t end) {
     make_room_for(end + 1 - planned_, run.pieces.size() + end - planned_, run.phases.size() + 1);
     std::pmr::vector<std::size_t> places(memory_);  // of each piece
     places.reserve(run.pieces.size());
     std::size_t next = planned_;  // the first block that is not there yet
     for (const auto& [path, block, from] : run.pieces) {
-      const std::size_t source = sources[block];
+      const std::size_t source = given.sources[block];
       for (; next < source; ++next) add_whole(next);
       if (next == source) {
         add_block(next++);
         if (std::exchange(begun_, false) && source == planned_) out_.back().word = {};
       }
       places.push_back(pieces_.size());
-      pieces_.push_back({out_.size() - 1, from, path});
+      pieces_.push_back({out_.size() - 1, from, given.blocks.piece(path, block)});
     }
     if (next > end) {  // the last block goes on in what follows
       B& cut = out_.back();
@@ -469,7 +462,7 @@ class SmoothPlanner {
   // The run goes on in a block whose first part has a plan; from there motion to rest along all blocks before
   // `known_` is proven.
   std::optional<smooth::RunCut<Path>> cut_;
-  smooth::BasicApproach<S, n> approach_{memory_};
+  smooth::BasicApproach<S, Run::axis_count> approach_{memory_};
   std::size_t known_ = 0;
   bool begun_ = false;  // a piece of the block in which it goes on is planned
   // What is planned.

@@ -136,10 +136,11 @@ class Band {
   }
 
   /// Moves curve and speed together where it is slow. `speeds_sq`: for each cell the middle coefficient of b,
-  /// as `BasicCellSpeed` has it, of a law of these skews that keeps all limits; 0 in cells that stay. Returns
-  /// the Newton steps.
+  /// as `BasicCellSpeed` has it, of a law of these skews that keeps all limits, those of `limited` too; 0 in
+  /// cells that stay. Returns the Newton steps.
   int improve(std::span<const S> speeds_sq, std::span<const S> skews,
-              const BasicMotionLimits<S, axis_count>& limits, const BasicJointOptions<S>& solver) {
+              const BasicMotionLimits<S, axis_count>& limits,
+              std::span<const BasicLimitedRow<S, axis_count>> limited, const BasicJointOptions<S>& solver) {
     constexpr S slow = S(0.97);
     constexpr S price = S(0.05);  // of a q''' that takes the whole limit of the jerk
     const std::size_t cells = cell_count();
@@ -167,7 +168,7 @@ class Band {
         trial(options_.window + 6, memory_);
     std::pmr::vector<detail::JointPlace<S>> places(3 * (options_.window + 3), memory_);
     const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
-    const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits};
+    const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits, limited};
     return in_windows(moves, 4, [&](std::size_t first, std::size_t last) {
       return smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, last, solver,
                              BasicJointMemory<S, axis_count>{rows, gradient, step, trial, places})

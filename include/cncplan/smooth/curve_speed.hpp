@@ -35,13 +35,42 @@ struct BasicApproach {
   }
 };
 
-/// Finds speeds along a `Band`, again and again while it changes. What that needs lies in `memory`.
+/// How the limits see a curve of N axes: limits of these very axes. Another way has members of the same names
+/// (plan/mapped_cells.hpp).
 template <std::floating_point S, int N>
+struct BasicOwnAxes {
+  static constexpr int count = N;  ///< how many axes the limits are of
+
+  /// Limits along the curve, which set the sizes of its cells.
+  [[nodiscard]] BasicLimits<S> along(const BasicMotionLimits<S, N>& limits) const { return limits.tool; }
+  [[nodiscard]] const BasicMotionLimits<S, N>& limits_of_curve(const BasicMotionLimits<S, N>& limits) const {
+    return limits;
+  }
+  /// Adds what is limited beside the curve's axes on a piece: nothing.
+  template <class Rows>
+  void add_rows(const BasicCubic<S, N>&, std::size_t, Rows&) const {}
+  /// What is limited on a piece of the curve, which lies in a block of the run.
+  [[nodiscard]] BasicSpeedCell<S, N> cell(const BasicCubic<S, N>& piece, S feed, std::size_t) const {
+    const auto& start = piece.start();
+    return {piece.length(), feed, start.first, start.second, start.third};
+  }
+  /// Calls `add(piece, cell)` for the parts of a piece that are short enough for limits to be proven on them.
+  template <class Add>
+  void proven_cells(const BasicCubic<S, N>& piece, S feed, std::size_t block, Add&& add) const {
+    add(piece, cell(piece, feed, block));
+  }
+};
+
+/// Finds speeds along a `Band` of N axes, again and again while it changes. What that needs lies in `memory`.
+template <std::floating_point S, int N, class Seen = BasicOwnAxes<S, N>>
 class CurveSpeed {
  public:
-  CurveSpeed(const BasicMotionLimits<S, N>& limits, std::size_t window,
-             std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : limits_(limits), memory_(memory) {
+  using Cell = BasicSpeedCell<S, Seen::count>;
+  using Limits = BasicMotionLimits<S, Seen::count>;
+
+  CurveSpeed(const Limits& limits, std::size_t window,
+             std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Seen& seen = {})
+      : limits_(limits), seen_(seen), memory_(memory) {
     options_.window_cells = window;
     const std::size_t room = window + 8;
     numbers_.resize(BasicWindowMemory<S>::rooms * room);
@@ -50,11 +79,13 @@ class CurveSpeed {
   }
 
   /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it. The law of speed has
-  /// the skews of the last one. A curve that begins at a cut may have an approach.
+  /// the skews of the last one. A curve that begins at a cut may have an approach. Cells of a law that is to
+  /// be `proven` may be shorter.
   template <Path P>
-  void take(const Band<P>& band, const BasicSpeedEnds<S>& ends = {},
+  void take(const Band<P>& band, bool proven, const BasicSpeedEnds<S>& ends = {},
             const BasicApproach<S, N>& approach = {}) {
     ends_ = ends;
+    proven_ = proven;
     ends_.given = approach.size();
     first_law_.assign(approach.law.begin(), approach.law.end());
     cells_.clear();
@@ -73,7 +104,7 @@ class CurveSpeed {
       const S feed = band.feed(cell);
       S x = S(0);
       const auto cut = [&](S to) {
-        add(curve.part(x, to), feed, from + x, {cell, x});
+        add(curve.part(x, to), feed, from + x, {cell, x}, block_of(band, from + (x + to) / S(2)));
         x = to;
       };
       if (from < band.length() / S(2)) {
@@ -96,7 +127,8 @@ class CurveSpeed {
     }
     if (!to_rest) {
       const BasicCubic<S, N> last = band.cubic(count - 1);
-      add_cell({last.point_at(last.length()), S(0)}, band.feed(count - 1), band.length(), {count - 1, S(0)});
+      add_cell({last.point_at(last.length()), S(0)}, band.feed(count - 1), band.length(), {count - 1, S(0)},
+               block_of(band, band.length()));
     }
     std::size_t knot = 0;
     for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size() && !knots_.empty(); ++i) {
@@ -115,14 +147,14 @@ class CurveSpeed {
     options_.window.proven = proven;
     options_.fastest = fastest;
     std::copy(first_law_.begin(), first_law_.end(), law_.begin());
-    const auto plan = plan_speed<S, N>(
+    const auto plan = plan_speed<S, Seen::count>(
         cells_, limits_, options_, {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}}, ends_);
-    const std::span<const BasicSpeedCell<S, N>> inner(cells_.data() + 1, cells_.size() - 2);
+    const std::span<const Cell> inner(cells_.data() + 1, cells_.size() - 2);
     S at = starts_[1];
     knots_.assign(1, {at, ends_.given > 0 ? std::sqrt(law_[0]) : plan.start.speed});
     for (std::size_t i = 0; i < inner.size(); ++i) {
       at += inner[i].length;
-      const BasicSpeedProblem<S, N> problem{inner, {}, nullptr};
+      const BasicSpeedProblem<S, Seen::count> problem{inner, {}, nullptr};
       knots_.push_back({at, std::sqrt(problem.speed(law(), i).end)});
     }
     return plan;
@@ -157,7 +189,19 @@ class CurveSpeed {
     return result;
   }
 
-  [[nodiscard]] std::span<const BasicSpeedCell<S, N>> cells() const { return cells_; }
+  /// The limits of the tool and of the curve's own axes.
+  [[nodiscard]] BasicMotionLimits<S, N> limits_of_curve() const { return seen_.limits_of_curve(limits_); }
+  /// Adds what else is limited in the cells of a curve.
+  template <Path P>
+  void limited_rows(const Band<P>& band, std::pmr::vector<BasicLimitedRow<S, N>>& rows) const {
+    if constexpr (Seen::count > N)
+      for (std::size_t cell = 0; cell < band.cell_count(); ++cell) {
+        const BasicCubic<S, N> curve = band.cubic(cell);
+        seen_.add_rows(curve, block_of(band, band.cell_start(cell) + curve.length() / S(2)), rows);
+      }
+  }
+
+  [[nodiscard]] std::span<const Cell> cells() const { return cells_; }
   [[nodiscard]] std::span<const S> law() const { return std::span<const S>(law_).first(cells_.size()); }
   [[nodiscard]] const BasicCubic<S, N>& curve(std::size_t i) const { return curves_[i]; }
   /// Where a cell begins, by the band's length; an approach lies before that.
@@ -185,8 +229,8 @@ class CurveSpeed {
   /// The cells from one on as the approach to the end, with the law of the last plan.
   [[nodiscard]] BasicApproach<S, N> approach(std::size_t begin) const {
     BasicApproach<S, N> result(memory_);
-    const std::span<const BasicSpeedCell<S, N>> inner(cells_.data() + 1, cells_.size() - 2);
-    result.law.push_back(BasicSpeedProblem<S, N>{inner, {}, nullptr}.speed(law(), begin - 1).start);
+    const std::span<const Cell> inner(cells_.data() + 1, cells_.size() - 2);
+    result.law.push_back(BasicSpeedProblem<S, Seen::count>{inner, {}, nullptr}.speed(law(), begin - 1).start);
     for (std::size_t i = begin; i + 1 < cells_.size(); ++i) {
       result.curves.push_back(curves_[i]);
       result.feeds.push_back(cells_[i].feed);
@@ -199,15 +243,30 @@ class CurveSpeed {
  private:
   static constexpr S growth = S(0.3);
 
-  [[nodiscard]] static BasicSpeedCell<S, N> speed_cell(const BasicCubic<S, N>& curve, S feed) {
-    const auto& start = curve.start();
-    return {curve.length(), feed, start.first, start.second, start.third, S(0), S(0)};
+  // The block of a run in which a place of its curve lies; the first one before its start.
+  template <Path P>
+  [[nodiscard]] static std::size_t block_of(const Band<P>& band, S at) {
+    if constexpr (std::same_as<Seen, BasicOwnAxes<S, N>>)
+      return 0;  // which it is changes nothing
+    else
+      return band.block_at(std::max(at, S(0)));
   }
-  void add(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin) {
-    if (curve.length() > S(0)) add_cell(curve, feed, start, origin);
+  void add(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin,
+           std::size_t block) {
+    if (!(curve.length() > S(0))) return;
+    if (!proven_) return add_cell(curve, feed, start, origin, block);
+    seen_.proven_cells(curve, feed, block, [&](const BasicCubic<S, N>& part, const Cell& cell) {
+      add_cell(part, cell, start, origin);
+      start += part.length();
+      origin.second += part.length();
+    });
   }
-  void add_cell(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin) {
-    cells_.push_back(speed_cell(curve, feed));
+  void add_cell(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin,
+                std::size_t block) {
+    add_cell(curve, seen_.cell(curve, feed, block), start, origin);
+  }
+  void add_cell(const BasicCubic<S, N>& curve, const Cell& cell, S start, std::pair<std::size_t, S> origin) {
+    cells_.push_back(cell);
     curves_.push_back(curve);
     starts_.push_back(start);
     origins_.push_back(origin);
@@ -218,10 +277,11 @@ class CurveSpeed {
   void take_approach(const Band<P>& band, const BasicApproach<S, N>& approach) {
     S start = -approach.length();
     const bool at_once = approach.size() == 0;
+    const std::size_t block = block_of(band, S(0));
     add_cell({(at_once ? band.cubic(0) : approach.curves[0]).start(), S(0)},
-             at_once ? band.feed(0) : approach.feeds[0], start, {0, S(0)});
+             at_once ? band.feed(0) : approach.feeds[0], start, {0, S(0)}, block);
     for (std::size_t i = 0; i < approach.size(); ++i) {
-      add_cell(approach.curves[i], approach.feeds[i], start, {0, S(0)});
+      add_cell(approach.curves[i], approach.feeds[i], start, {0, S(0)}, block);
       cells_.back().skew = approach.skews[i];
       start += approach.curves[i].length();
     }
@@ -240,14 +300,17 @@ class CurveSpeed {
   [[nodiscard]] S rest_length(const Band<P>& band, bool at_end) const {
     const std::size_t count = band.cell_count();
     const S feed = band.feed(at_end ? count - 1 : 0);
-    const BasicSpeedCell<S, N> first = speed_cell(band.cubic(at_end ? count - 1 : 0), feed);
+    const auto cell_at = [&](std::size_t k) {
+      return seen_.cell(band.cubic(k), feed, block_of(band, band.cell_start(k)));
+    };
+    const Cell first = cell_at(at_end ? count - 1 : 0);
     const S jerk = tangential_limits(std::span(&first, 1), limits_).jerk;
     S speed = S(0.02) * feed, length = S(0);
     for (int round = 0; round < 60; ++round, speed /= S(2)) {
       length = std::sqrt(speed * speed * speed / (S(4.5) * jerk));
       S least = std::numeric_limits<S>::infinity(), s = S(0);
       for (std::size_t k = 0; k < count && s < S(60) * length; ++k) {
-        const auto cell = speed_cell(band.cubic(at_end ? count - 1 - k : k), feed);
+        const Cell cell = cell_at(at_end ? count - 1 - k : k);
         least = std::min(least, leisurely_speed(cell, limits_, {}));
         s += cell.length;
       }
@@ -256,11 +319,13 @@ class CurveSpeed {
     return length;
   }
 
-  BasicMotionLimits<S, N> limits_;
+  Limits limits_;
+  Seen seen_;
+  bool proven_{};  // whether the cells are those of a law that is to be
   BasicSpeedEnds<S> ends_;
   BasicPlanSpeedOptions<S> options_;
   std::pmr::memory_resource* memory_;
-  std::pmr::vector<BasicSpeedCell<S, N>> cells_{memory_};
+  std::pmr::vector<Cell> cells_{memory_};
   std::pmr::vector<BasicCubic<S, N>> curves_{memory_};  // of the cells
   std::pmr::vector<S> starts_{memory_};
   std::pmr::vector<std::pair<std::size_t, S>> origins_{memory_};

@@ -20,6 +20,15 @@ struct BasicJointOptions {
   int rounds = 32;
 };
 
+/// One thing that is limited beside the axes of a curve, as a joint under a map, and how it hangs on the
+/// curve near a cell: its derivatives are those of the curve times a row of numbers, and what is beside them.
+template <std::floating_point S, int N>
+struct BasicLimitedRow {
+  VectorN<S, N> row = VectorN<S, N>::Zero();
+  std::array<std::array<S, 3>, 3> beside{};  ///< at start, middle and end of the cell: of q', q'' and q'''
+  BasicLimits<S> limits;
+};
+
 /// A curve in its tube and a speed along it. Cell k hangs on control points k to k + 3 and on coefficients of
 /// speed k to k + 2, the middle one its own. The prices that the cells have of q''' belong to the barrier and
 /// vanish with it. The tube leaves a curve room to go to and fro along itself with a speed that makes up for
@@ -27,9 +36,10 @@ struct BasicJointOptions {
 template <std::floating_point S, int N>
 struct BasicJointProblem {
   const BasicBandProblem<S, N>* curve{};
-  std::span<const S> feeds;  ///< of each cell
-  std::span<const S> skews;  ///< of each cell, see `BasicCellShape`
-  const BasicMotionLimits<S, N>* limits{};
+  std::span<const S> feeds;                       ///< of each cell
+  std::span<const S> skews;                       ///< of each cell, see `BasicCellShape`
+  const BasicMotionLimits<S, N>* limits{};        ///< of the tool and the curve's own axes
+  std::span<const BasicLimitedRow<S, N>> rows{};  ///< as many for each cell, one cell after the other
 };
 
 namespace detail {
@@ -108,6 +118,42 @@ class JointModel {
     }
   }
 
+  /// The same where r is one number, with derivatives by the control points that are multiples of a row.
+  void add_row(S weight, S k, S b, bool rooted, const Vector& row, S value, const std::array<S, 4>& by_point,
+               const std::array<S, 3>& by_speed, const std::array<S, 3>& b_by_speed) {
+    const S root = rooted ? std::sqrt(b) : S(1), square = value * value;
+    const S f = S(1) / (S(1) - k * root * root * square);
+    const S once = weight * f * S(2) * k, twice = weight * f * f;
+    const Vector pull = (S(2) * k * root * root * value) * row;
+    const Matrix metric = [&] {
+      Matrix result = Matrix::Zero();
+      result.template topLeftCorner<N, N>() = row * row.transpose();
+      return result;
+    }();
+    std::array<Both, 4> g;
+    std::array<S, 3> bend;
+    for (std::size_t q = 0; q < 4; ++q) {
+      g[q].template head<N>() = by_point[q] * pull;
+      g[q][N] = S(0);
+      if (q == 3) continue;
+      bend[q] = root * by_speed[q];
+      if (rooted) bend[q] += (b_by_speed[q] / root) * value;
+      g[q][N] = S(2) * k * root * value * bend[q] - (rooted ? k * square * b_by_speed[q] : S(0));
+    }
+    for (std::size_t q = 0; q < 4; ++q) {
+      gradient_[q] += (weight * f) * g[q];
+      const Both scaled = twice * g[q];
+      const S own = once * root * by_point[q];
+      for (std::size_t p = 0; p <= q; ++p) {
+        blocks_[q][p].noalias() += scaled * g[p].transpose();
+        blocks_[q][p] += (own * root * by_point[p]) * metric;
+      }
+      for (std::size_t p = 0; p < 3; ++p) mixed_[q][p] += (own * bend[p]) * row;
+      if (q == 3) continue;
+      for (std::size_t p = 0; p <= q; ++p) speeds_[q][p] += once * bend[q] * bend[p];
+    }
+  }
+
   /// A function of the position: its derivative and its second one, by the weights of the control points.
   void add_position(const std::array<S, 4>& by_point, const Vector& first, const Matrix& second) {
     for (std::size_t q = 0; q < 4; ++q) {
@@ -149,6 +195,7 @@ class JointWindow {
       : curve_(*problem.curve),
         jerk_sq_(curve_.jerk_scale.cwiseAbs2()),
         feeds_(problem.feeds),
+        rows_(problem.rows),
         first_(first - 3),
         last_(std::min(first + count, curve_.cell_count() - 1)),
         places_(places.first(3 * (last_ - first_))) {
@@ -205,6 +252,14 @@ class JointWindow {
           barrier.take(limit.acceleration * acceleration.cwiseProduct(limit.mask).squaredNorm());
           barrier.take(limit.jerk * here.b * jerk.cwiseProduct(limit.mask).squaredNorm());
         }
+        for (const auto& limited : rows(cell)) {
+          const RowPlace at_row(limited, i, here);
+          const S turn = at_row.acceleration(here), change = at_row.jerk(here);
+          barrier.take(reciprocal_square(limited.limits.velocity) * here.b * at_row.first * at_row.first);
+          barrier.take(reciprocal_square(limited.limits.acceleration) * turn * turn);
+          barrier.take(reciprocal_square(limited.limits.jerk) * here.b * change * change);
+          barrier.settle();
+        }
         barrier.settle();
       }
       for (const auto& sample : samples(cell)) {
@@ -259,6 +314,22 @@ class JointWindow {
         add(limit.acceleration, false, limit.mask, acceleration, turns, turn_by_speed);
         add(limit.jerk, true, limit.mask, jerk, changes, change_by_speed);
       }
+      for (const auto& limited : rows(cell)) {
+        const RowPlace at_row(limited, i, here);
+        const auto add_row = [&](S limit, bool rooted, S value, const std::array<S, 4>& by_point,
+                                 const std::array<S, 3>& by_speed) {
+          if (const S k = reciprocal_square(limit); k > S(0))
+            model.add_row(weight, k, b, rooted, limited.row, value, by_point, by_speed, n0);
+        };
+        std::array<S, 3> turn, change;
+        for (std::size_t r = 0; r < 3; ++r) {
+          turn[r] = n1[r] / S(2) * at_row.first + n0[r] * at_row.second;
+          change[r] = n2[r] / S(2) * at_row.first + S(1.5) * n1[r] * at_row.second + n0[r] * at_row.third;
+        }
+        add_row(limited.limits.velocity, true, at_row.first, w1, {});
+        add_row(limited.limits.acceleration, false, at_row.acceleration(here), turns, turn);
+        add_row(limited.limits.jerk, true, at_row.jerk(here), changes, change);
+      }
     }
     for (const auto& sample : samples(cell)) {
       const Vector away = off(sample, four), scale_sq = sample.scale.cwiseAbs2(),
@@ -303,6 +374,26 @@ class JointWindow {
     [[nodiscard]] Vector jerk() const { return bend / S(2) * first + S(1.5) * slope * second + b * third; }
   };
 
+  // What a row has there.
+  struct RowPlace {
+    S first, second, third;
+
+    RowPlace(const BasicLimitedRow<S, N>& limited, std::size_t place, const Place& here)
+        : first(limited.row.dot(here.first) + limited.beside[place][0]),
+          second(limited.row.dot(here.second) + limited.beside[place][1]),
+          third(limited.row.dot(here.third) + limited.beside[place][2]) {}
+    [[nodiscard]] S acceleration(const Place& here) const {
+      return here.slope / S(2) * first + here.b * second;
+    }
+    [[nodiscard]] S jerk(const Place& here) const {
+      return here.bend / S(2) * first + S(1.5) * here.slope * second + here.b * third;
+    }
+  };
+
+  [[nodiscard]] std::span<const BasicLimitedRow<S, N>> rows(std::size_t cell) const {
+    const std::size_t each = rows_.size() / curve_.cell_count();
+    return rows_.subspan(cell * each, each);
+  }
   [[nodiscard]] std::span<const JointLimit<S, N>> limits() const {
     return std::span<const JointLimit<S, N>>(limits_).first(limit_count_);
   }
@@ -326,6 +417,7 @@ class JointWindow {
   const BasicBandProblem<S, N>& curve_;
   Vector jerk_sq_;
   std::span<const S> feeds_;
+  std::span<const BasicLimitedRow<S, N>> rows_;
   std::size_t first_, last_;
   std::span<JointPlace<S>> places_;
   std::array<JointLimit<S, N>, static_cast<std::size_t>(N) + 1> limits_{};

@@ -135,26 +135,27 @@ template <std::floating_point S, int N>
   const auto change0 = bernstein<7>(detail::Powers<S, 1>{phase.jerk});
   const auto change1 = bernstein<7>(sum(jerk1, S(3), va)), change2 = bernstein<7>(jerk2);
 
-  // What the part of q''' that the cell does not know adds.
+  // What the part of q''' that the cell does not know adds, for each unit of it.
   S top = std::max(phase.velocity, S(0)), slope = std::abs(phase.acceleration);
   {
     const BasicState<S> end = phase.at(T);
     slope = std::max(slope, std::abs(end.acceleration));
     top = std::max(phase.velocity, end.velocity) + std::abs(phase.jerk) * T * T / S(8);
   }
-  const S s = cell.length, spread = cell.spread;
-  const S speed_more = spread * s * s / S(2) * top;
-  const S turn_more = spread * (s * s / S(2) * slope + s * top * top);
-  const S jerk_more =
-      spread * (s * s / S(2) * std::abs(phase.jerk) + S(3) * s * top * slope + top * top * top);
+  const S s = cell.length;
+  const S speed_more = s * s / S(2) * top;
+  const S turn_more = s * s / S(2) * slope + s * top * top;
+  const S jerk_more = s * s / S(2) * std::abs(phase.jerk) + S(3) * s * top * slope + top * top * top;
 
   BasicUse<S> use;
   for_each_limit(limits, [&]<class Product>(const BasicLimits<S>& own, const Product& inner) {
     const auto p = products(cell.first, cell.second, cell.third, inner);
-    const S speed = std::sqrt(detail::largest_sq(speed0, speed1, speed2, p)) + speed_more;
-    use.include({speed / own.velocity,
-                 (std::sqrt(detail::largest_sq(turn0, turn1, turn2, p)) + turn_more) / own.acceleration,
-                 (std::sqrt(detail::largest_sq(change0, change1, change2, p)) + jerk_more) / own.jerk});
+    const S spread = std::sqrt(inner(cell.spread, cell.spread));
+    const S speed = std::sqrt(detail::largest_sq(speed0, speed1, speed2, p)) + spread * speed_more;
+    use.include(
+        {speed / own.velocity,
+         (std::sqrt(detail::largest_sq(turn0, turn1, turn2, p)) + spread * turn_more) / own.acceleration,
+         (std::sqrt(detail::largest_sq(change0, change1, change2, p)) + spread * jerk_more) / own.jerk});
     if constexpr (std::same_as<Product, ToolProduct>) use.include({speed / cell.feed, S(0), S(0)});
   });
   use.include({*std::max_element(speed0.begin(), speed0.end()) / cell.feed, S(0), S(0)});

@@ -79,27 +79,28 @@ struct RunCut {
 };
 
 /// A run of blocks on its way to a plan: where the whole is too long it is cut, and the next run goes on
-/// where this one ends.
-template <Path P>
+/// where this one ends. `Seen`: how the limits see its curve.
+template <Path P, class Seen = BasicOwnAxes<typename P::Scalar, P::Vector::RowsAtCompileTime>>
 class SmoothRun {
  public:
   using S = typename P::Scalar;
   using Vector = typename P::Vector;
   static constexpr int axis_count = Vector::RowsAtCompileTime;
-  using Limits = BasicMotionLimits<S, axis_count>;
+  using Limits = BasicMotionLimits<S, Seen::count>;
   using Plan = BasicSmoothRun<S, axis_count>;
 
   /// Blocks, each of a length > 0; feeds and tolerances are > 0 and finite. They begin where the cut is. All
   /// lies in `memory`, the plans too.
   SmoothRun(std::span<const BandBlock<P>> blocks, const Limits& limits,
             const BasicSmoothOptions<S>& options = {}, const std::optional<RunCut<P>>& start = std::nullopt,
-            std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+            std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Seen& seen = {})
       : blocks_(blocks),
         limits_(limits),
         options_(options),
         memory_(memory),
-        band_(blocks, geometry(limits, options), start ? std::optional(start->place) : std::nullopt, memory),
-        speed_(limits, options.speed_window, memory) {
+        band_(blocks, geometry(seen.along(limits), options),
+              start ? std::optional(start->place) : std::nullopt, memory),
+        speed_(limits, options.speed_window, memory, seen) {
     if (!start) return;
     ends_.start = start->speed;
     if (start->approach != nullptr) approach_ = *start->approach;
@@ -120,7 +121,7 @@ class SmoothRun {
       S speed{};
     };
     std::array<Choice, most_cuts> best{};
-    speed_.take(band_, ends_, approach_);
+    speed_.take(band_, false, ends_, approach_);
     speed_.plan(options_.coarse_gap, false, false);
     const auto cells = speed_.cells();
     const auto law = speed_.law();
@@ -184,10 +185,10 @@ class SmoothRun {
   }
 
  private:
-  [[nodiscard]] static typename Band<P>::Options geometry(const Limits& limits,
+  [[nodiscard]] static typename Band<P>::Options geometry(const BasicLimits<S>& along,
                                                           const BasicSmoothOptions<S>& options) {
     typename Band<P>::Options geometry;
-    geometry.along = limits.tool;
+    geometry.along = along;
     geometry.window = options.band_window;
     geometry.coarseness = options.coarseness;
     return geometry;
@@ -203,7 +204,7 @@ class SmoothRun {
   // The time that the curve takes, about.
   S coarse_time() {
     deviation_ = band_.settle();
-    speed_.take(band_, ends_, approach_);
+    speed_.take(band_, false, ends_, approach_);
     return speed_.plan(options_.coarse_gap, false).duration;
   }
 
@@ -221,11 +222,15 @@ class SmoothRun {
     for (int round = 0; round < options_.joint_rounds; ++round) {
       points_.assign(band_.points().begin(), band_.points().end());
       const S last = time;
+      limited_.clear();
+      speed_.limited_rows(band_, limited_);
       band_.improve(speed_.uncut_speeds_sq(band_.cell_count()), speed_.uncut_skews(band_.cell_count()),
-                    limits_, options_.joint);
+                    speed_.limits_of_curve(), limited_, options_.joint);
       time = coarse_time();
-      // Both times are coarse: what seems a little worse may be better.
-      if (time - last < options_.joint_loss * (last - at_feeds)) continue;
+      // Both times are coarse: what seems a little worse may be better. Not where the way in which the limits
+      // see the curve is a different one at every place.
+      const S loss = Seen::count > axis_count ? S(0) : options_.joint_loss;
+      if (time - last < loss * (last - at_feeds)) continue;
       band_.set_points(points_);
       coarse_time();
       break;
@@ -246,7 +251,7 @@ class SmoothRun {
   [[nodiscard]] Plan make_plan(bool fastest) {
     Plan plan(memory_);
     plan.deviation = deviation_;
-    speed_.take(band_, ends_, approach_);
+    speed_.take(band_, true, ends_, approach_);
     plan.speed = speed_.plan(options_.gap, true, fastest);
     plan.duration = plan.speed.duration;
     if (!std::isfinite(plan.duration)) return plan;
@@ -327,11 +332,12 @@ class SmoothRun {
 
   std::pmr::memory_resource* memory_;
   Band<P> band_;
-  CurveSpeed<S, axis_count> speed_;
+  CurveSpeed<S, axis_count, Seen> speed_;
   BasicSpeedEnds<S> ends_;
   std::optional<End> end_;  // where it will be cut
   BasicApproach<S, axis_count> approach_{memory_};
   std::pmr::vector<Vector> points_{memory_};  // before a round
+  std::pmr::vector<BasicLimitedRow<S, axis_count>> limited_{memory_};
   S deviation_{};
 };
 

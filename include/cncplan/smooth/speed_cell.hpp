@@ -12,8 +12,8 @@ namespace cncplan::smooth {
 ///
 ///     q'(s) = first + second s + third s^2 / 2,    q''(s) = second + third s,    q'''(s) = third
 ///
-/// which is exact where the path is a cubic polynomial. Elsewhere `spread` bounds |q'''(s) - third|, the
-/// Euclidean norm over all axes, everywhere in the cell. The feed is the most for the speed along the path
+/// which is exact where the path is a cubic polynomial. Elsewhere `spread` bounds |q'''(s) - third| of each
+/// axis everywhere in the cell. The feed is the most for the speed along the path
 /// and for that of the tool, mm/s.
 template <std::floating_point S, int N>
 struct BasicSpeedCell {
@@ -24,7 +24,7 @@ struct BasicSpeedCell {
   Vector first = Vector::Zero();
   Vector second = Vector::Zero();
   Vector third = Vector::Zero();
-  S spread{};
+  Vector spread = Vector::Zero();
   S skew{};  ///< of the law of speed, see `BasicCellShape`
 
   [[nodiscard]] BasicCellShape<S> shape() const { return {length, skew}; }

@@ -1,0 +1,202 @@
+// Blocks of a run as the levels `good` and `best` see them, on a machine with a map and on one without
+// (set-up).
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <memory_resource>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cncplan/plan/block_checks.hpp"
+#include "cncplan/plan/driven_path.hpp"
+#include "cncplan/plan/mapped_cells.hpp"
+#include "cncplan/plan/programmed_path.hpp"
+#include "cncplan/plan/smooth_junction.hpp"
+#include "cncplan/smooth/smooth_run.hpp"
+
+namespace cncplan::plan {
+
+/// Whether a piece under a map begins where the one before ends, and none of its joints jumps on its way, as
+/// where an angle goes from half a turn to minus half a turn. `end` is moved on.
+template <MachineModel M, Path P>
+[[nodiscard]] bool goes_on(std::optional<VectorN<typename M::Scalar, M::axis_count>>& end, const P& piece,
+                           const M& machine) {
+  using S = typename M::Scalar;
+  const S length = piece.length();
+  const VectorN<S, M::axis_count> start = piece.position_at(S(0));
+  if (!joined(end, start, machine)) return false;
+  end = piece.position_at(length);
+  const auto along = piece.enclosure(S(0), length);
+  for (int i = 0; i < M::axis_count; ++i) {
+    constexpr S rounding = S(1e-6);  // as where blocks meet
+    const S most = along[static_cast<std::size_t>(i)].first.largest() * length;
+    if (!(std::abs((*end)[i] - start[i]) <= most + rounding)) return false;
+  }
+  return true;
+}
+
+/// Whether smoothing knows the axes that the curve of a block is of: under a map a path straight in joints
+/// has none in the program's coordinates.
+template <MachineModel M, Path P>
+[[nodiscard]] bool can_follow(const P& path, const M&) {
+  if constexpr (MappedModel<M>)
+    return ProgrammedPath<std::remove_cvref_t<decltype(M::map)>, P>(path).map() != nullptr;
+  else
+    return true;
+}
+
+/// How far smoothing may take each of these axes from a block.
+template <std::size_t N, std::floating_point S, BlockModel B>
+[[nodiscard]] VectorN<S, static_cast<int>(N)> tolerances(const B& block,
+                                                         const std::array<BasicAxis<S>, N>& axes,
+                                                         const SmoothingRules<S>& rules) {
+  VectorN<S, static_cast<int>(N)> result;
+  for (std::size_t i = 0; i < N; ++i)
+    result[static_cast<Eigen::Index>(i)] = axes[i].kind == AxisKind::rotary
+                                               ? (S(1) - block.merged) * rules.rotary_tolerance
+                                               : tolerance_of(block, rules);
+  return result;
+}
+
+/// Blocks of a run as smoothing sees them, and the search for their plan.
+template <MachineModel M, BlockModel B>
+class RunBlocks {
+ public:
+  using S = typename M::Scalar;
+  using Path = typename B::Path;
+  using Piece = CurveOf<M>;
+  using Run = smooth::SmoothRun<Path>;
+  using Cubic = smooth::BasicCubic<S, M::axis_count>;
+
+  /// The machine is to stay, and so are the blocks.
+  RunBlocks(const M& machine, const smooth::BasicMotionLimits<S, M::axis_count>& limits, std::size_t most,
+            std::pmr::memory_resource* memory)
+      : machine_(machine), limits_(limits), blocks_(memory) {
+    limits_.tool.velocity = S(0);
+    most_speed_ = limits.tool.velocity;
+    blocks_.reserve(most);
+  }
+  void push(const B& block, S speed, const SmoothingRules<S>& rules) {
+    limits_.tool.velocity =
+        std::max(limits_.tool.velocity, std::min(top_speed(block, machine_), most_speed_));
+    blocks_.push_back({&block.path, speed, tolerances(block, machine_.axes, rules)});
+  }
+  [[nodiscard]] std::size_t size() const { return blocks_.size(); }
+
+  [[nodiscard]] Run run(const smooth::BasicSmoothOptions<S>& options,
+                        const std::optional<smooth::RunCut<Path>>& start,
+                        std::pmr::memory_resource* memory) const {
+    return Run(blocks_, limits_, options, start, memory);
+  }
+  [[nodiscard]] Piece piece(const Cubic& curve, std::size_t) const { return curve; }
+  /// Whether the limits along them are finite, about.
+  [[nodiscard]] bool bounded() const { return true; }
+
+ private:
+  const M& machine_;
+  smooth::BasicMotionLimits<S, M::axis_count> limits_;
+  S most_speed_{};
+  std::pmr::vector<smooth::BandBlock<Path>> blocks_;
+};
+
+/// The same under a map: the curve is searched for in the program's coordinates.
+template <MappedModel M, BlockModel B>
+class RunBlocks<M, B> {
+ public:
+  using S = typename M::Scalar;
+  using Map = std::remove_cvref_t<decltype(M::map)>;
+  static constexpr int coordinates = path::coordinate_count<Map>;
+  using Path = ProgrammedPath<Map, typename B::Path>;
+  using Piece = CurveOf<M>;
+  using Cells = MappedCells<Map>;
+  using Run = smooth::SmoothRun<Path, Cells>;
+  using Cubic = smooth::BasicCubic<S, coordinates>;
+
+  RunBlocks(const M& machine, const smooth::BasicMotionLimits<S, M::axis_count>& limits, std::size_t most,
+            std::pmr::memory_resource* memory)
+      : machine_(machine),
+        limits_(Cells::limits_of(limits.tool, limits.axes)),
+        paths_(memory),
+        maps_(memory),
+        blocks_(memory) {
+    limits_.tool.velocity = S(0);
+    most_speed_ = limits.tool.velocity;
+    paths_.reserve(most);
+    maps_.reserve(most);
+    blocks_.reserve(most);
+  }
+  void push(const B& block, S speed, const SmoothingRules<S>& rules) {
+    limits_.tool.velocity =
+        std::max(limits_.tool.velocity, std::min(top_speed(block, machine_), most_speed_));
+    paths_.emplace_back(block.path);
+    maps_.push_back(paths_.back().map());
+    blocks_.push_back({&paths_.back(), speed, tolerances(block, default_axes<S, coordinates>(), rules)});
+    measure(block, speed);
+  }
+  [[nodiscard]] std::size_t size() const { return blocks_.size(); }
+
+  [[nodiscard]] Run run(const smooth::BasicSmoothOptions<S>& options,
+                        const std::optional<smooth::RunCut<Path>>& start,
+                        std::pmr::memory_resource* memory) const {
+    return Run(blocks_, limits_, options, start, memory, Cells(maps_, limits_, along()));
+  }
+  [[nodiscard]] Piece piece(const Cubic& curve, std::size_t block) const { return {*maps_[block], curve}; }
+  [[nodiscard]] bool bounded() const {
+    const BasicLimits<S> limits = along();
+    return std::isfinite(limits.acceleration) && std::isfinite(limits.jerk);
+  }
+
+ private:
+  // The limits along a block, by those in its middle, as they would be if its feed could be driven.
+  void measure(const B& block, S feed) {
+    const S length = block.path.length();
+    const auto at = block.path.point_at(length / S(2));
+    BasicLimits<S> own = machine_.limits;
+    own.velocity = feed;
+    for (int i = 0; i < M::axis_count; ++i) {
+      const auto& axis = limits_.axes[static_cast<std::size_t>(i)];
+      const S rate = std::abs(at.first[i]), bend = std::abs(at.second[i]);
+      if (rate > S(0)) {
+        own.velocity = std::min(own.velocity, axis.velocity / rate);
+        own.acceleration = std::min(own.acceleration, axis.acceleration / rate);
+        own.jerk = std::min(own.jerk, axis.jerk / rate);
+      }
+      if (bend > S(0)) own.velocity = std::min(own.velocity, std::sqrt(axis.acceleration / bend));
+    }
+    const S slower = std::log(feed / own.velocity);
+    if (std::isfinite(slower) && std::isfinite(own.acceleration))
+      acceleration_.add(std::log(own.acceleration) + S(2) * slower, length);
+    if (std::isfinite(slower) && std::isfinite(own.jerk))
+      jerk_.add(std::log(own.jerk) + S(3) * slower, length);
+  }
+  [[nodiscard]] BasicLimits<S> along() const {
+    return {limits_.tool.velocity, acceleration_.mean(), jerk_.mean()};
+  }
+
+  // A mean of logarithms, weighted.
+  struct Mean {
+    S sum{}, weight{};
+
+    void add(S value, S by) {
+      sum += by * value;
+      weight += by;
+    }
+    [[nodiscard]] S mean() const {
+      return weight > S(0) ? std::exp(sum / weight) : std::numeric_limits<S>::infinity();
+    }
+  };
+
+  const M& machine_;
+  typename Cells::Limits limits_;
+  S most_speed_{};
+  Mean acceleration_, jerk_;
+  std::pmr::vector<Path> paths_;
+  std::pmr::vector<const Map*> maps_;
+  std::pmr::vector<smooth::BandBlock<Path>> blocks_;
+};
+
+}  // namespace cncplan::plan
