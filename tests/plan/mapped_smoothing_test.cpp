@@ -252,4 +252,44 @@ TEST_CASE("under a map: near a singular place the motion slows down") {
   }
 }
 
+// One joint more that tilts beyond an edge of the part, as the axis A of a mold does.
+struct Edge {
+  using Scalar = double;
+  static constexpr int axis_count = 4;
+
+  double tilts = 0;  // rad per mm of X beyond 10
+
+  template <class T>
+  [[nodiscard]] std::array<T, 4> joints(const std::array<T, 3>& p) const {
+    return {p[0], p[1], p[2], T(tilts) * (p[0] - T(10))};
+  }
+};
+
+TEST_CASE("under a map: motion rests where one block's map does not go on in the next one's") {
+  MappedMachine<Edge> machine;
+  for (auto& axis : machine.axes) axis.velocity = 100, axis.acceleration = 1000, axis.jerk = 10000;
+  machine.limits = {.velocity = 50, .acceleration = 1000, .jerk = 10000};
+  using Line = path::Mapped<Edge, path::Line<3>>;
+  const auto blocks_of = [](double tilts) {
+    const Edge before{tilts}, beyond{0.1};
+    return std::vector<Block<4, Line>>{
+        {.path = Line(before, path::Line<3>({0, 0, 0}, {10, 0, 0})), .feed = 30},
+        {.path = Line(beyond, path::Line<3>({10, 0, 0}, {20, 0, 0})), .feed = 30},
+        {.path = Line(beyond, path::Line<3>({20, 0, 0}, {20, 10, 0})), .feed = 30}};
+  };
+  for (const bool same : {false, true}) {
+    const auto planned = plan_blocks(blocks_of(same ? 0.1 : 0.0), machine, {.tolerance = 0.01});
+    REQUIRE(planned);
+    const double edge = planned->at(planned->start_time(1)).along.velocity;
+    const double corner = planned->at(planned->start_time(2)).along.velocity;
+    CHECK((same ? edge == Approx(30).epsilon(1e-3) : edge < 1e-9));
+    CHECK(corner > 1);
+    const Used most =
+        used_under_map(*planned, machine, [](const auto& q) { return Vector3(q[0], q[1], q[2]); });
+    CHECK(most.velocity <= 1 + 1e-9);
+    CHECK(most.acceleration <= 1 + 1e-9);
+    CHECK(most.jerk <= 1 + 1e-9);
+  }
+}
+
 }  // namespace

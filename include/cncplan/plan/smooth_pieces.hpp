@@ -2,8 +2,12 @@
 // (set-up).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <memory_resource>
 #include <optional>
 #include <span>
@@ -35,6 +39,36 @@ template <MachineModel M, Path P>
     constexpr S rounding = S(1e-6);  // as where blocks meet
     const S most = along[static_cast<std::size_t>(i)].first.largest() * length;
     if (!(std::abs((*end)[i] - start[i]) <= most + rounding)) return false;
+  }
+  return true;
+}
+
+/// Whether two blocks have the same map where they meet, but for whole turns: their joints have the same
+/// three derivatives there. Where they differ, as at an edge of a wall, a smooth curve of the program is no
+/// smooth motion of the joints.
+template <MachineModel M, Path P>
+[[nodiscard]] bool maps_agree([[maybe_unused]] const P& before, [[maybe_unused]] const P& after, const M&) {
+  if constexpr (MappedModel<M>) {
+    using S = typename M::Scalar;
+    using Programmed = ProgrammedPath<std::remove_cvref_t<decltype(M::map)>, P>;
+    const Programmed path(after);
+    const auto* own = path.map();
+    const auto* other = Programmed(before).map();
+    if (own == nullptr || other == nullptr) return false;
+    constexpr int coordinates = Programmed::axis_count;
+    const auto at = path.point_at(S(0));
+    std::array<BasicJet<S>, static_cast<std::size_t>(coordinates)> x;
+    for (int i = 0; i < coordinates; ++i)
+      x[static_cast<std::size_t>(i)] = {at.position[i], at.first[i], at.second[i], at.third[i]};
+    const auto a = other->joints(x), b = own->joints(x);
+    const auto size = [](const BasicJet<S>& q) {
+      return std::abs(q.first) + std::abs(q.second) + std::abs(q.third);
+    };
+    constexpr S rounding = S(1e6) * std::numeric_limits<S>::epsilon();
+    S most = S(0);
+    for (const auto& joint : b) most = std::max(most, size(joint));
+    for (std::size_t i = 0; i < b.size(); ++i)
+      if (!(size(a[i] - b[i]) <= rounding * (size(b[i]) + most))) return false;
   }
   return true;
 }

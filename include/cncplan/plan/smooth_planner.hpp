@@ -159,7 +159,8 @@ class SmoothPlanner {
     for (std::size_t i = first;; ++i) {
       if (moves(i)) {
         if (i > first &&
-            (!smooth(i) || passing_between(blocks_[last], blocks_[i], machine_, rules_) != Passing::smooth))
+            (!smooth(i) || passing_between(blocks_[last], blocks_[i], machine_, rules_) != Passing::smooth ||
+             !maps_agree(blocks_[last].path, blocks_[i].path, machine_)))
           break;
         last = i;
       }
