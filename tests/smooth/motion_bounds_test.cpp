@@ -76,4 +76,59 @@ TEST_CASE("two phases of constant jerk meet both of their ends") {
   }
 }
 
+// q''' is third + spread sin(k s + phase) for each axis: its integrals by hand.
+TEST_CASE("what is not known of the third derivative is in the bounds") {
+  test::Random random;
+  double below = 0, least_of_spread = 1;
+  for (int i = 0; i < 2000; ++i) {
+    SpeedCell<2> cell;
+    cell.length = random.log_uniform(1e-3, 0.3);
+    cell.feed = 1e3;
+    const double h = cell.length;
+    VectorN<double, 2> wave, shift;
+    for (int axis = 0; axis < 2; ++axis) {
+      cell.first[axis] = random.uniform(-1, 1);
+      cell.second[axis] = random.uniform(-0.3, 0.3) / h;
+      cell.third[axis] = random.uniform(-0.3, 0.3) / (h * h);
+      cell.spread[axis] = random.uniform(0, 1) / (h * h);
+      wave[axis] = random.log_uniform(0.1, 10) / h;
+      shift[axis] = random.uniform(-3, 3);
+    }
+    MotionLimits<2> limits;
+    limits.tool = {50, 1000, 1e4};
+    limits.axes[1] = {40, 300, 3e3};
+    const double v = random.log_uniform(0.1, 30), next = v * random.uniform(0.7, 1.3),
+                 T = h / std::max(v, next);
+    const auto pair =
+        phases_between(h, v, random.uniform(-0.2, 0.2) * v / T, next, random.uniform(-0.2, 0.2) * v / T);
+    for (const Phase& phase : pair) {
+      const Use bound = use_of(phase, cell, limits);
+      SpeedCell<2> known = cell;
+      known.spread.setZero();
+      least_of_spread = std::min(least_of_spread, use_of(phase, known, limits).jerk / bound.jerk);
+      Use most;
+      for (int k = 0; k <= 100; ++k) {
+        const State along = phase.at(phase.duration * k / 100);
+        const double x = along.position;
+        PathPoint<VectorN<double, 2>> at{VectorN<double, 2>::Zero(), cell.first_at(x), cell.second_at(x),
+                                         cell.third};
+        for (int axis = 0; axis < 2; ++axis) {
+          const double w = wave[axis], p = shift[axis], d = cell.spread[axis];
+          at.third[axis] += d * std::sin(w * x + p);
+          at.second[axis] += d * (std::cos(p) - std::cos(w * x + p)) / w;
+          at.first[axis] += d * (x * std::cos(p) / w - (std::sin(w * x + p) - std::sin(p)) / (w * w));
+        }
+        const auto axes = motion(at, along);
+        most.include({std::max(axes.velocity.norm() / 50, std::abs(axes.velocity[1]) / 40),
+                      std::max(axes.acceleration.norm() / 1000, std::abs(axes.acceleration[1]) / 300),
+                      std::max(axes.jerk.norm() / 1e4, std::abs(axes.jerk[1]) / 3e3)});
+      }
+      for (const auto part : {&Use::velocity, &Use::acceleration, &Use::jerk})
+        below = std::max(below, most.*part / (bound.*part) - 1);
+    }
+  }
+  CHECK(below < 1e-9);
+  CHECK(least_of_spread < 0.9);
+}
+
 }  // namespace
