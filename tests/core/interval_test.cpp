@@ -53,10 +53,10 @@ struct Function {
 };
 
 template <class S>
-const std::array<Function<S>, 13>& functions() {
+const std::array<Function<S>, 15>& functions() {
   using I = BasicInterval<S>;
   using L = long double;
-  static const std::array<Function<S>, 13> table{{
+  static const std::array<Function<S>, 15> table{{
       {"+", [](const I& a, const I& b) { return a + b; }, [](L a, L b) { return a + b; }, -9, 9},
       {"-", [](const I& a, const I& b) { return a - b; }, [](L a, L b) { return a - b; }, -9, 9},
       {"negation", [](const I& a, const I&) { return -a; }, [](L a, L) { return -a; }, -9, 9},
@@ -67,6 +67,8 @@ const std::array<Function<S>, 13>& functions() {
       {"sqrt", [](const I& a, const I&) { return sqrt(a); }, [](L a, L) { return std::sqrt(a); }, 0, 9},
       {"sin", [](const I& a, const I&) { return sin(a); }, [](L a, L) { return std::sin(a); }, -20, 20},
       {"cos", [](const I& a, const I&) { return cos(a); }, [](L a, L) { return std::cos(a); }, -20, 20},
+      {"asin", [](const I& a, const I&) { return asin(a); }, [](L a, L) { return std::asin(a); }, -1, 1},
+      {"acos", [](const I& a, const I&) { return acos(a); }, [](L a, L) { return std::acos(a); }, -1, 1},
       {"exp", [](const I& a, const I&) { return exp(a); }, [](L a, L) { return std::exp(a); }, -9, 9},
       {"hypot", [](const I& a, const I& b) { return hypot(a, b); }, [](L a, L b) { return std::hypot(a, b); },
        -9, 9},
@@ -182,11 +184,12 @@ namespace {
 // Formulas of everything that jets can do; t > 0.
 struct Formula {
   template <class T>
-  std::array<T, 3> operator()(const T& t) const {
-    using std::atan2, std::cos, std::exp, std::hypot, std::log, std::sin, std::sqrt;
+  std::array<T, 5> operator()(const T& t) const {
+    using std::acos, std::asin, std::atan2, std::cos, std::exp, std::hypot, std::log, std::sin, std::sqrt;
     const T x = sin(t) * T(3) + t / T(2) + T(4);
     const T y = cos(t * t) - T(1) / (t + T(2));
-    return {atan2(y, x) * sqrt(x * x + T(1)), hypot(x, y) - (-exp(-t)), log(t + T(1)) * x / (y + T(5))};
+    return {atan2(y, x) * sqrt(x * x + T(1)), hypot(x, y) - (-exp(-t)), log(t + T(1)) * x / (y + T(5)),
+            asin(sin(t * t) / T(2)), acos(cos(t) / T(2)) * x};
   }
 };
 

@@ -12,10 +12,10 @@ namespace {
 // A formula of everything that jets can do, for numbers and for jets.
 template <class T>
 T formula(const T& t) {
-  using std::atan2, std::cos, std::hypot, std::sin, std::sqrt;
+  using std::acos, std::asin, std::atan2, std::cos, std::hypot, std::sin, std::sqrt;
   const T x = sin(t) * T(3) + t / T(2);
   const T y = cos(t * t) - T(1) / (t + T(2));
-  return atan2(y, x) * sqrt(x * x + T(1)) + hypot(x, y) - (-y);
+  return atan2(y, x) * sqrt(x * x + T(1)) + hypot(x, y) - (-y) + asin(sin(t) * T(0.5)) * acos(cos(x) / T(2));
 }
 
 }  // namespace

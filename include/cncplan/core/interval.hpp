@@ -106,6 +106,16 @@ template <std::floating_point S>
 [[nodiscard]] BasicInterval<S> hypot(const BasicInterval<S>& x, const BasicInterval<S>& y) {
   return {std::hypot(x.smallest(), y.smallest()), std::hypot(x.largest(), y.largest())};
 }
+/// Of the numbers in it from -1 to 1.
+template <std::floating_point S>
+[[nodiscard]] BasicInterval<S> asin(const BasicInterval<S>& a) {
+  return {std::asin(std::clamp(a.low, S(-1), S(1))), std::asin(std::clamp(a.high, S(-1), S(1)))};
+}
+/// Of the numbers in it from -1 to 1.
+template <std::floating_point S>
+[[nodiscard]] BasicInterval<S> acos(const BasicInterval<S>& a) {
+  return {std::acos(std::clamp(a.high, S(-1), S(1))), std::acos(std::clamp(a.low, S(-1), S(1)))};
+}
 /// The angles of a rectangle of points; all angles where it holds the origin or crosses the ray on which the
 /// angle jumps.
 template <std::floating_point S>

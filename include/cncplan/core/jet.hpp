@@ -18,7 +18,7 @@ concept JetValue = std::floating_point<T> || std::same_as<T, BasicInterval<float
 /// f, f', f'' and f''' at one value of a parameter. A formula written for numbers and evaluated with jets
 /// gives the exact derivatives of its result, up to the one that jerk needs; evaluated with jets of
 /// intervals, it bounds them. A plain number is a constant. The functions known are + - * /, square, sqrt,
-/// sin, cos, exp, log, hypot and atan2.
+/// sin, cos, asin, acos, exp, log, hypot and atan2.
 template <JetValue T>
 struct BasicJet {
   using Scalar = T;
@@ -93,6 +93,35 @@ template <JetValue T>
   const T c = cos(a.value);
   return a.through(c, -s, -c, s);
 }
+/// x^2, of numbers too.
+template <std::floating_point S>
+[[nodiscard]] constexpr S square(S x) {
+  return x * x;
+}
+/// x^2.
+template <JetValue T>
+[[nodiscard]] BasicJet<T> square(const BasicJet<T>& a) {
+  BasicJet<T> result = a * a;
+  if constexpr (!std::floating_point<T>) result.value = square(a.value);
+  return result;
+}
+/// For -1 < a < 1; at the ends the derivatives are not finite.
+template <JetValue T>
+[[nodiscard]] BasicJet<T> asin(const BasicJet<T>& a) {
+  using std::asin, std::sqrt;
+  const T below = T(1) - square(BasicJet<T>(a.value)).value;
+  const T slope = T(1) / sqrt(below);
+  const T bend = a.value * slope / below;
+  return a.through(asin(a.value), slope, bend, (slope + T(3) * a.value * bend) / below);
+}
+/// For -1 < a < 1; at the ends the derivatives are not finite.
+template <JetValue T>
+[[nodiscard]] BasicJet<T> acos(const BasicJet<T>& a) {
+  using std::acos;
+  BasicJet<T> result = -asin(a);
+  result.value = acos(a.value);
+  return result;
+}
 template <JetValue T>
 [[nodiscard]] BasicJet<T> exp(const BasicJet<T>& a) {
   using std::exp;
@@ -105,13 +134,6 @@ template <JetValue T>
   using std::log;
   const T i = T(1) / a.value;
   return a.through(log(a.value), i, -i * i, T(2) * i * i * i);
-}
-/// x^2.
-template <JetValue T>
-[[nodiscard]] BasicJet<T> square(const BasicJet<T>& a) {
-  BasicJet<T> result = a * a;
-  if constexpr (!std::floating_point<T>) result.value = square(a.value);
-  return result;
 }
 /// Away from (0, 0).
 template <JetValue T>
