@@ -116,6 +116,7 @@
 #include "cncplan/path/helix_batch.hpp"
 #include "cncplan/path/joined_bezier.hpp"
 #include "cncplan/path/line.hpp"
+#include "cncplan/path/map.hpp"
 #include "cncplan/path/mapped.hpp"
 #include "cncplan/path/measured.hpp"
 #include "cncplan/path/part.hpp"

@@ -2,34 +2,15 @@
 #pragma once
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/path/map.hpp"
 
 namespace cncplan::path {
-
-/// How many coordinates of a program a map takes: three unless it says otherwise.
-template <class M>
-inline constexpr int coordinate_count = [] {
-  if constexpr (requires { M::coordinate_count; })
-    return static_cast<int>(M::coordinate_count);
-  else
-    return 3;
-}();
-
-/// A smooth map from the coordinates of a program to the positions of a machine's axes, written once as a
-/// template: `joints(point)` is asked for with numbers, with jets and with jets of intervals (core/jet.hpp
-/// lists the functions they have).
-template <class M>
-concept Map = requires(
-    const M& map, const std::array<typename M::Scalar, static_cast<std::size_t>(coordinate_count<M>)>& x) {
-  requires std::floating_point<typename M::Scalar>;
-  requires M::axis_count >= 1;
-  { map.joints(x) } -> std::same_as<std::array<typename M::Scalar, static_cast<std::size_t>(M::axis_count)>>;
-};
 
 /// The image of a path under a map. Its length is the path's own, the way of the tool.
 template <Map M, Path P>
@@ -74,8 +55,9 @@ class Mapped {
   /// X Y Z of the tool, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
     const auto point = path_.point_at(s);
-    return {point.position.template head<3>(), point.first.template head<3>(),
-            point.second.template head<3>(), point.third.template head<3>()};
+    constexpr std::array<int, 3> tool = coordinates_in_space<M>;
+    return {in_space(point.position, tool), in_space(point.first, tool), in_space(point.second, tool),
+            in_space(point.third, tool)};
   }
   [[nodiscard]] auto enclosure(Scalar from, Scalar to) const {
     return map_.joints(path_.enclosure(from, to));

@@ -6,32 +6,45 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
+#include <tuple>
+#include <type_traits>
 
-#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
 #include "cncplan/path/line.hpp"
-#include "cncplan/path/mapped.hpp"
+#include "cncplan/path/map.hpp"
 
 namespace cncplan::path {
 
 /// All joints in proportion. It is as long as the straight way between the tool's places, or 1 where the tool
-/// ends where it starts. The tool's own point is found by inverting the map, Newton's method from the
-/// straight way, so the map must be invertible there.
+/// ends where it starts. The tool's own point is that of the map's inverse. Of a map that gives none it is
+/// found by Newton's method from the straight way: the one whose joints are nearest (least squares, where
+/// there are more joints than coordinates), so the map must be regular there.
 template <Map M>
-  requires(static_cast<int>(M::axis_count) == coordinate_count<M>)
 class StraightInJoints {
  public:
   using Scalar = typename M::Scalar;
   static constexpr int axis_count = static_cast<int>(M::axis_count);
   using Vector = VectorN<Scalar, axis_count>;
+  /// In the program's coordinates.
+  using Coordinates = VectorN<Scalar, coordinate_count<M>>;
+  /// Which joints may be whole turns from where the map has them.
+  using Turning = std::array<bool, static_cast<std::size_t>(axis_count)>;
 
   /// Between two places in the program's coordinates.
-  StraightInJoints(const M& map, const Vector& start, const Vector& end)
-      : map_(map), start_(start), end_(end) {
-    const Vector from = values(map_.joints(array(start))), to = values(map_.joints(array(end)));
-    const Scalar tool = (end - start).template head<space>().norm();
+  StraightInJoints(const M& map, const Coordinates& start, const Coordinates& end)
+      : StraightInJoints(map, start, end, values(map.joints(array(start))), values(map.joints(array(end))),
+                         {}) {}
+
+  /// The same, of joints whose whole turns have been chosen.
+  StraightInJoints(const M& map, const Coordinates& start, const Coordinates& end, const Vector& from,
+                   const Vector& to, const Turning& turning)
+      : map_(map), start_(start), end_(end), turning_(turning) {
+    const Scalar tool = (in_space(end, tool_) - in_space(start, tool_)).norm();
     joints_ = BasicLine<Scalar, axis_count>(from, to,
                                             from == to         ? Scalar(0)
                                             : tool > Scalar(0) ? tool
@@ -68,20 +81,16 @@ class StraightInJoints {
   /// X Y Z of the tool, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
     const auto joints = joints_.point_at(s);
-    const Vector x = place(joints.position, length() > Scalar(0) ? s / length() : Scalar(0));
-    const auto jacobian = derivative(x).fullPivLu();
-    // Order by order: what the map makes of the lower ones is taken from what the joints do.
-    PathPoint<Vector> point{x, jacobian.solve(joints.first), Vector::Zero(), Vector::Zero()};
-    point.second = jacobian.solve(joints.second - along(point, [](const auto& q) { return q.second; }));
-    point.third = jacobian.solve(joints.third - along(point, [](const auto& q) { return q.third; }));
-    return {point.position.template head<3>(), point.first.template head<3>(),
-            point.second.template head<3>(), point.third.template head<3>()};
+    const bool at_end = !(s < length()) && length() > Scalar(0);
+    PathPoint<Coordinates> point = at_joints(joints, s);
+    if (at_end) point.position = end_;
+    return {in_space(point.position, tool_), in_space(point.first, tool_), in_space(point.second, tool_),
+            in_space(point.third, tool_)};
   }
 
  private:
-  static constexpr int space = 3;
-  static_assert(axis_count >= space, "a map takes X Y Z at least");
-  using Values = std::array<Scalar, static_cast<std::size_t>(axis_count)>;
+  static constexpr int coordinates = coordinate_count<M>;
+  static constexpr std::array<int, 3> tool_ = coordinates_in_space<M>;
 
   // In the order of `BasicToolBounds`.
   using Magnitudes = std::array<Scalar, 5>;
@@ -94,45 +103,90 @@ class StraightInJoints {
             (tool.third - third * direction).norm()};
   }
 
-  static Vector values(const Values& joints) { return Eigen::Map<const Vector>(joints.data()); }
-  static Values array(const Vector& point) {
-    Values result;
-    Eigen::Map<Vector>(result.data()) = point;
+  template <class Array>
+  static auto values(const Array& numbers) {
+    return VectorN<Scalar, static_cast<int>(std::tuple_size_v<Array>)>(
+        Eigen::Map<const VectorN<Scalar, static_cast<int>(std::tuple_size_v<Array>)>>(numbers.data()));
+  }
+  static MapPoint<M, Scalar> array(const Coordinates& point) {
+    MapPoint<M, Scalar> result;
+    Eigen::Map<Coordinates>(result.data()) = point;
     return result;
   }
 
+  template <class Point>
+  static auto jets(const Point& point) {
+    std::array<BasicJet<Scalar>,
+               static_cast<std::size_t>(std::remove_cvref_t<decltype(point.position)>::RowsAtCompileTime)>
+        x;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      x[k] = {point.position[i], point.first[i], point.second[i], point.third[i]};
+    }
+    return x;
+  }
+
+  // The program's coordinates, and their derivatives, where the joints are.
+  [[nodiscard]] PathPoint<Coordinates> at_joints(const PathPoint<Vector>& joints, Scalar s) const {
+    PathPoint<Coordinates> point;
+    if constexpr (InvertibleMap<M>) {
+      const auto x = map_.point(jets(joints));
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        point.position[i] = x[k].value;
+        point.first[i] = x[k].first;
+        point.second[i] = x[k].second;
+        point.third[i] = x[k].third;
+      }
+    } else {
+      point.position = place(joints.position, length() > Scalar(0) ? s / length() : Scalar(0));
+      const auto jacobian = derivative(point.position).completeOrthogonalDecomposition();
+      // Order by order: what the map makes of the lower ones is taken from what the joints do.
+      point.first = jacobian.solve(joints.first);
+      point.second = point.third = Coordinates::Zero();
+      point.second = jacobian.solve(joints.second - along(point, [](const auto& q) { return q.second; }));
+      point.third = jacobian.solve(joints.third - along(point, [](const auto& q) { return q.third; }));
+    }
+    return point;
+  }
+
   // The joints' derivatives by the program's coordinates.
-  [[nodiscard]] Eigen::Matrix<Scalar, axis_count, axis_count> derivative(const Vector& x) const {
-    Eigen::Matrix<Scalar, axis_count, axis_count> result;
-    for (int k = 0; k < axis_count; ++k) {
-      PathPoint<Vector> unit{x, Vector::Unit(k), Vector::Zero(), Vector::Zero()};
+  [[nodiscard]] Eigen::Matrix<Scalar, axis_count, coordinates> derivative(const Coordinates& x) const {
+    Eigen::Matrix<Scalar, axis_count, coordinates> result;
+    for (int k = 0; k < coordinates; ++k) {
+      const PathPoint<Coordinates> unit{x, Coordinates::Unit(k), Coordinates::Zero(), Coordinates::Zero()};
       result.col(k) = along(unit, [](const auto& q) { return q.first; });
     }
     return result;
   }
 
   template <class Part>
-  [[nodiscard]] Vector along(const PathPoint<Vector>& point, Part&& part) const {
-    std::array<BasicJet<Scalar>, static_cast<std::size_t>(axis_count)> x;
-    for (int i = 0; i < axis_count; ++i)
-      x[static_cast<std::size_t>(i)] = {point.position[i], point.first[i], point.second[i], point.third[i]};
+  [[nodiscard]] Vector along(const PathPoint<Coordinates>& point, Part&& part) const {
     Vector result;
-    const auto joints = map_.joints(x);
+    const auto joints = map_.joints(jets(point));
     for (int i = 0; i < axis_count; ++i) result[i] = part(joints[static_cast<std::size_t>(i)]);
     return result;
   }
 
+  // What the joints lack of a target at x; of those that turn, less than a turn.
+  [[nodiscard]] Vector gap(const Vector& target, const Coordinates& x) const {
+    constexpr Scalar turn = Scalar(2) * std::numbers::pi_v<Scalar>;
+    Vector result = target - values(map_.joints(array(x)));
+    for (int i = 0; i < axis_count; ++i)
+      if (turning_[static_cast<std::size_t>(i)]) result[i] -= turn * std::round(result[i] / turn);
+    return result;
+  }
+
   // The program's coordinates where the joints stand, by continuation from the start.
-  [[nodiscard]] Vector place(const Vector& joints, Scalar share) const {
+  [[nodiscard]] Coordinates place(const Vector& joints, Scalar share) const {
     constexpr int strides = 8, rounds = 12;
-    Vector x = start_;
+    Coordinates x = start_;
     for (int stride = 1; stride <= strides; ++stride) {
       const Scalar part = static_cast<Scalar>(stride) / Scalar(strides);
       const Vector target = joints_.start() + (joints - joints_.start()) * part;
       if (stride == strides && share >= Scalar(1)) return end_;
       for (int round = 0; round < rounds; ++round) {
-        const Vector gap = target - values(map_.joints(array(x)));
-        const Vector step = derivative(x).fullPivLu().solve(gap);
+        const Coordinates step = derivative(x).completeOrthogonalDecomposition().solve(gap(target, x));
         x += step;
         if (!(step.norm() > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * x.norm())) break;
       }
@@ -141,8 +195,9 @@ class StraightInJoints {
   }
 
   M map_;
-  Vector start_;
-  Vector end_;
+  Coordinates start_;
+  Coordinates end_;
+  Turning turning_{};
   BasicLine<Scalar, axis_count> joints_;
 };
 

@@ -32,6 +32,14 @@ using ProgrammedPath = path::BasicSegment<S, N, path::BasicSpline<S, N>>;
 template <class Map>
 using MappedPath = path::Mapped<Map, ProgrammedPath<typename Map::Scalar, path::coordinate_count<Map>>>;
 
+template <MappedModel M>
+using MapOf = std::remove_cvref_t<decltype(M::map)>;
+
+/// Of a coordinate that a map takes.
+[[nodiscard]] constexpr AxisKind kind_of(char letter) {
+  return letter >= 'A' && letter <= 'C' ? AxisKind::rotary : AxisKind::linear;
+}
+
 template <MachineModel M>
 struct ProgramBlockOf {
   using type =
@@ -40,7 +48,7 @@ struct ProgramBlockOf {
 template <MachineModel M>
   requires MappedModel<M>
 struct ProgramBlockOf<M> {
-  using Map = std::remove_cvref_t<decltype(M::map)>;
+  using Map = MapOf<M>;
   using type = BasicBlock<typename M::Scalar, M::axis_count, MappedPath<Map>, path::StraightInJoints<Map>>;
 };
 
@@ -54,7 +62,7 @@ using ProgramBlock = typename detail::ProgramBlockOf<M>::type;
 template <MachineModel M>
 inline constexpr int program_coordinates = [] {
   if constexpr (MappedModel<M>)
-    return path::coordinate_count<std::remove_cvref_t<decltype(M::map)>>;
+    return path::coordinate_count<detail::MapOf<M>>;
   else
     return M::axis_count;
 }();
@@ -64,19 +72,18 @@ inline constexpr int program_coordinates = [] {
 template <MachineModel M>
 [[nodiscard]] gcode::Dialect dialect_of(const M& machine) {
   gcode::Dialect dialect;
+  dialect.axes.clear();
   if constexpr (MappedModel<M>) {
-    const auto coordinates = default_axes<double, program_coordinates<M>>();
-    dialect.axes.clear();
-    for (const Axis& axis : coordinates) dialect.axes.push_back({axis.letter, axis.kind});
+    for (const char letter : path::coordinate_letters<detail::MapOf<M>>)
+      dialect.axes.push_back({letter, detail::kind_of(letter)});
   } else {
-    dialect.axes.clear();
     for (const auto& axis : machine.axes) dialect.axes.push_back({axis.letter, axis.kind});
-    for (const char letter : {'X', 'Y', 'Z'})
-      if (dialect.axes.size() < gcode::max_axes &&
-          std::none_of(dialect.axes.begin(), dialect.axes.end(),
-                       [&](const gcode::Axis& axis) { return axis.letter == letter; }))
-        dialect.axes.push_back({letter, AxisKind::linear});
   }
+  for (const char letter : {'X', 'Y', 'Z'})
+    if (dialect.axes.size() < gcode::max_axes &&
+        std::none_of(dialect.axes.begin(), dialect.axes.end(),
+                     [&](const gcode::Axis& axis) { return axis.letter == letter; }))
+      dialect.axes.push_back({letter, AxisKind::linear});
   return dialect;
 }
 
@@ -99,7 +106,8 @@ class BlockBuilder {
     for (std::size_t i = 0; i < word_count_; ++i) kinds_[i] = dialect.axes[i].kind;
     for (std::size_t k = 0; k < 3; ++k) space_[k] = index_of("XYZ"[k]);
     if constexpr (MappedModel<M>)
-      for (std::size_t i = 0; i < coordinates; ++i) words_[i] = static_cast<int>(i);
+      for (std::size_t i = 0; i < coordinates; ++i)
+        words_[i] = index_of(path::coordinate_letters<detail::MapOf<M>>[i]);
     else
       for (std::size_t i = 0; i < coordinates; ++i) words_[i] = index_of(machine.axes[i].letter);
   }
@@ -153,7 +161,7 @@ class BlockBuilder {
   // Of the axes.
   [[nodiscard]] typename Block::Path path_of(const Programmed& programmed) const {
     if constexpr (MappedModel<M>)
-      return path::Mapped<std::remove_cvref_t<decltype(M::map)>, Programmed>(machine_.map, programmed);
+      return path::Mapped<detail::MapOf<M>, Programmed>(machine_.map, programmed);
     else
       return programmed;
   }
@@ -197,8 +205,8 @@ class BlockBuilder {
     result.path = path_of(*programmed);
     if constexpr (MappedModel<M>)
       if (result.rapid)
-        result.path = path::StraightInJoints<std::remove_cvref_t<decltype(M::map)>>(
-            machine_.map, programmed->start(), programmed->end());
+        result.path =
+            path::StraightInJoints<detail::MapOf<M>>(machine_.map, programmed->start(), programmed->end());
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
     if (motion.synchronised)
       if (const Scalar fastest = fastest_along(*programmed); result.feed > fastest)

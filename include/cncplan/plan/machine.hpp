@@ -12,6 +12,7 @@
 #include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/limits.hpp"
+#include "cncplan/path/map.hpp"
 #include "cncplan/step/drive.hpp"
 
 namespace cncplan {
@@ -113,6 +114,7 @@ using Machine = BasicMachine<double, N>;
 /// what it has. The tool's limits, rapid rate and feed limit as for `BasicMachine`.
 template <class M>
 struct MappedMachine {
+  static_assert(path::check_map<M>());
   using Scalar = typename M::Scalar;
   static constexpr int axis_count = static_cast<int>(M::axis_count);
 
