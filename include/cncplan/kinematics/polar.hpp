@@ -58,7 +58,7 @@ struct BasicPolar {
 
 using Polar = BasicPolar<double>;
 
-/// Joints R, Z, C of programmed points X, Y, Z, with C smooth round an azimuth.
+/// Joints R, Z, C of programmed points X, Y, Z, with C smooth round an azimuth. Singular on the table's axis.
 template <std::floating_point S>
 struct BasicPolarMap {
   using Scalar = S;
@@ -71,6 +71,12 @@ struct BasicPolarMap {
     using std::hypot;
     const auto& [x, y, z] = point;
     return {hypot(x, y), z, azimuth.of(x, y)};
+  }
+  template <NumberOver<S> T>
+  [[nodiscard]] std::array<T, 3> point(const std::array<T, 3>& q) const {
+    using std::cos, std::sin;
+    const auto& [r, z, c] = q;
+    return {r * cos(c), r * sin(c), z};
   }
 };
 
