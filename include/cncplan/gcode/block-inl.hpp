@@ -145,6 +145,8 @@ CNCPLAN_INLINE Expected<void, Diagnostic> Block::add_code(const Word& word, cons
   const auto fail = [&word](ErrorCode error) {
     return Diagnostic{{error, name(word.letter), word.number, 0.0}, 0, word.column};
   };
+  const bool tip = word.letter == 'G' && (word.number == 43.4 || word.number == 43.5);
+  if (tip && !dialect.tool_point.possible()) return tl::unexpected(fail(ErrorCode::not_supported));
   const bool calls = word.letter == 'M' && (word.number == 98 || word.number == 99);  // see language/
   if (calls) return tl::unexpected(fail(ErrorCode::no_subprogram));
   const bool levels = word.letter == 'G' && (word.number == 26.0 || word.number == 29.0);

@@ -14,6 +14,7 @@
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/plane.hpp"
 #include "cncplan/gcode/motion.hpp"
+#include "cncplan/gcode/tool_point.hpp"
 #include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {
@@ -75,9 +76,10 @@ struct Dialect {
   /// name no axis are left out; G0 holds at the start (grbl) and behind every G80; G4 S counts seconds
   /// (Marlin).
   bool lenient = false;
-  bool user_codes = true;     ///< M100 to M199 are LinuxCNC's user codes: P and Q are theirs, and no more
-  bool bare_m_codes = false;  ///< M codes that nothing is known of take no F, T or axis words (Fanuc)
-  bool g70_units = false;     ///< G70 and G71 are G20 and G21 (Mach3)
+  bool user_codes = true;         ///< M100 to M199 are LinuxCNC's user codes: P and Q are theirs, and no more
+  bool bare_m_codes = false;      ///< M codes that nothing is known of take no F, T or axis words (Fanuc)
+  ToolPointControl tool_point{};  ///< of the machine; `BlockReader` and `Program` set it
+  bool g70_units = false;         ///< G70 and G71 are G20 and G21 (Mach3)
 
   friend bool operator==(const Dialect&, const Dialect&) = default;
 };

@@ -129,6 +129,8 @@ inline constexpr CodeEntry g_codes[] = {
     {43, Group::tool_length, "H"},
     {43.1, Group::tool_length},
     {43.2, Group::tool_length, "H", "H"},
+    {43.4, Group::tool_length, "H"},
+    {43.5, Group::tool_length, "H"},
     {49, Group::tool_length},
     {54, Group::coordinates},
     {55, Group::coordinates},
@@ -243,8 +245,10 @@ struct Modal {
   PathMode path_mode = PathMode::continuous;
   std::optional<double> tolerance{};  ///< mm, of G64 P
   double merge_tolerance = 0.0;       ///< mm, of G64 Q
-  Code compensation = 400;            ///< G40 to G42.1
-  bool mist = false, flood = false;   ///< M7, M8; M9 ends both
+  ToolPoint tool_point = ToolPoint::off;
+  int tool_point_tool = -1;          ///< H of G43.4 and G43.5; -1: the length that held (M428)
+  Code compensation = 400;           ///< G40 to G42.1
+  bool mist = false, flood = false;  ///< M7, M8; M9 ends both
 
   friend bool operator==(const Modal&, const Modal&) = default;
 };

@@ -31,6 +31,10 @@ enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
 /// G61.1 with a stop at the end of every motion.
 enum class PathMode : std::uint8_t { continuous, exact_path, exact_stop };
 
+/// How lines name the tool's direction under tool-point control: by words of the rotary axes (G43.4), or by I
+/// J K as well (G43.5).
+enum class ToolPoint : std::uint8_t { off, by_axes, by_direction };
+
 /// A control of a spline: the first and second coordinate of the plane, mm, and its weight, > 0.
 struct SplineControl {
   double first{};
@@ -62,6 +66,9 @@ struct Motion {
   /// mm/s, degrees/s where only rotary axes move, 1/s under inverse time; none for rapids and before the
   /// first F
   std::optional<double> feed{};
+  /// mm, of the tool, under tool-point control: places are the tip's in the part, and the offset is without
+  /// that length; none where they are the axes'
+  std::optional<double> tool_point{};
   std::optional<double> tolerance{};  ///< mm from the path under G64 P; none where the program gives none
   double merge_tolerance{};           ///< mm from nearly collinear lines that are made one, under G64 Q
   int line{};

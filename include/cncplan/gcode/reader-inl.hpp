@@ -17,6 +17,8 @@ CNCPLAN_INLINE void Reader::recover(std::string_view text) {
   if (bare || ((block_.lost() & bit('G')) != 0 && !block_.has(Group::motion))) modal_.motion = lost_code;
   doubtful_ |= block_.lost() & alphabet_.axes;
   if (block_.has(Group::non_modal) && block_.code(Group::non_modal) != code(4)) doubtful_ |= alphabet_.axes;
+  if (dialect_.tool_point.possible())
+    place_.set_tool_point(modal_.tool_point != ToolPoint::off, dialect_.tool_point);
   follow();
   const Code stop = block_.code(Group::stop);
   finished_ = finished_ || stop == code(2) || stop == code(30);
@@ -48,6 +50,7 @@ CNCPLAN_INLINE Motion Reader::motion_to(const Position& end) const {
   motion.exact_stop = modal_.path_mode != PathMode::continuous;
   motion.tolerance = modal_.tolerance;
   motion.merge_tolerance = modal_.merge_tolerance;
+  if (place_.tool_point()) motion.tool_point = place_.tool_length();
   motion.start = position();
   motion.end = end;
   motion.offset = offset();
@@ -73,6 +76,7 @@ CNCPLAN_INLINE Expected<void, Diagnostic> Reader::check_state(const Modal& modal
       return tl::unexpected(block_.error(ErrorCode::not_supported, 'P'));
     if (auto ok = check_measured(block_, place_); !ok) return ok;
   }
+  if (auto ok = check_tool_point(modal, motion); !ok) return ok;
   if (place_.rotated())
     if (auto ok = check_rotated(block_, modal, motion); !ok) return ok;
   if (auto ok = check_polar(block_, modal, motion, position()); !ok) return ok;
@@ -98,11 +102,66 @@ CNCPLAN_INLINE void Reader::set_tool_length() {
   const Code how = block_.code(Group::tool_length);
   if (how == code(43.1)) return place_.set_tool(named_coordinates());
   const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
+  if (modal_.tool_point != ToolPoint::off) modal_.tool_point_tool = number;
   const Position offset = how == code(49) ? Position{} : tool_offset(dialect_, number);
   NamedCoordinates named;
   std::copy(offset.begin(), offset.end(), named.begin());
   if (how == code(43.2)) return place_.add_tool(named);
   place_.set_tool(named);
+}
+
+CNCPLAN_INLINE Expected<void, Diagnostic> Reader::check_tool_point(const Modal& modal, Code motion) const {
+  if (!dialect_.tool_point.possible()) return {};
+  for (int i = 0; i < block_.passed_count(); ++i) {
+    const Word& word = block_.passed(i);
+    const bool known = switches_tool_point(word);
+    if (word.letter == 'M' && (word.number == 430 || (known && !word.arguments.empty())))
+      return tl::unexpected(Diagnostic{{ErrorCode::not_supported, "M", word.number, 0.0}, 0, word.column});
+  }
+  if (modal.tool_point == ToolPoint::off) return {};
+  if (block_.has(Group::tool_length)) {  // the length alone is the machine's to know
+    const int number = block_.has('H') ? static_cast<int>(block_.number('H')) : loaded_tool_;
+    const Position offset = tool_offset(dialect_, number);
+    for (std::size_t i = 0; i < axis_count(); ++i)
+      if (offset[i] != 0.0 && dialect_.axes[i].letter != 'Z')
+        return tl::unexpected(block_.error(ErrorCode::not_supported, Group::tool_length));
+  }
+  const double on = modal.tool_point == ToolPoint::by_axes ? 43.4 : 43.5;
+  const Code other = block_.code(Group::non_modal);
+  const bool by_axes = other == code(53) || (other >= code(28) && other <= code(30.1)) ||
+                       (other == code(10) && (block_.number('L') == 10.0 || block_.number('L') == 11.0));
+  if (by_axes) return detail::conflict(block_.error(ErrorCode::conflicting_words, Group::non_modal), "G", on);
+  if (modal.compensation != code(40) || is_synchronised(motion))
+    return detail::conflict(
+        Diagnostic{{{}, "G", is_synchronised(motion) ? motion / 10.0 : modal.compensation / 10.0, 0.0},
+                   0,
+                   std::max(1, block_.first_column(block_.letters()))},
+        "G", on);
+  if (!names_direction(block_, modal, motion)) return {};
+  for (std::size_t i = 0; i < axis_count(); ++i)
+    if (dialect_.axes[i].kind == AxisKind::rotary && block_.has(dialect_.axes[i].letter))
+      return detail::conflict(block_.error(ErrorCode::conflicting_words, dialect_.axes[i].letter), "I J K");
+  if (!directed(position()))
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::unreachable, "I J K", block_.number(block_.first_in_text(bits("IJK"))), 0.0},
+                   0,
+                   block_.first_column(bits("IJK"))});
+  return {};
+}
+
+CNCPLAN_INLINE std::optional<Position> Reader::directed(Position end) const {
+  const auto word = [&](char letter) { return block_.has(letter) ? block_.number(letter) : 0.0; };
+  const Vector3 direction(word('I'), word('J'), word('K'));
+  if (!(direction.norm() > 0.0)) return std::nullopt;
+  // The rotary axes have no offset of the tool; what G54 and G92 shift them by is added and taken away.
+  Position machine = end;
+  for (std::size_t i = 0; i < axis_count(); ++i) machine[i] += offset()[i];
+  const auto turned =
+      dialect_.tool_point.turned(dialect_.tool_point.machine, direction.normalized(), machine);
+  if (!turned) return std::nullopt;
+  for (std::size_t i = 0; i < axis_count(); ++i)
+    if (dialect_.axes[i].kind == AxisKind::rotary) end[i] = place_.meet(i, (*turned)[i] - offset()[i]);
+  return end;
 }
 
 CNCPLAN_INLINE void Reader::compensate() {

@@ -193,7 +193,11 @@ class Reader {
   /// What a line asks for besides its motion.
   template <class Emit>
   void prepare(Emit& emit) {
-    for (int i = 0; i < block_.passed_count(); ++i) emit(at_line(block_.passed(i)));
+    for (int i = 0; i < block_.passed_count(); ++i) {
+      emit(at_line(block_.passed(i)));
+      if (dialect_.tool_point.possible() && switches_tool_point(block_.passed(i)))
+        switch_tool_point(block_.passed(i).number == 428, emit);
+    }
     const bool speed = block_.has('S') && !dwells_by_s(block_);
     if (speed)
       emit(at_line(block_.word('S', bit('$'))));  // with what it names only: that of a tap does not come out
@@ -209,7 +213,11 @@ class Reader {
     const Code non_modal = block_.code(Group::non_modal);
     if (non_modal == code(4)) emit(Dwell{dwell_seconds(block_, dialect_), line_});
     if (block_.has(Group::compensation)) compensate();
-    if (block_.has(Group::tool_length)) set_tool_length();
+    if (block_.has(Group::tool_length)) {
+      switch_tool_point(false, emit);
+      set_tool_length();
+      switch_tool_point(modal_.tool_point != ToolPoint::off, emit);
+    }
     if (block_.has(Group::coordinates)) select_work_system();
     if (non_modal == code(10)) set_table();
     if (non_modal == code(28)) home(dialect_.home_g28, emit);
@@ -242,7 +250,9 @@ class Reader {
       tap(target(), emit);
     } else if (motion != no_code) {
       const bool machine = block_.code(Group::non_modal) == code(53);
-      straight(motion, machine ? machine_target() : target(), emit, motion == code(33) ? pitch() : 0.0);
+      Position to = machine ? machine_target() : target();
+      if (names_direction(block_, modal_, motion)) to = directed(to).value_or(to);
+      straight(motion, to, emit, motion == code(33) ? pitch() : 0.0);
     }
     stop(emit);
     return out;
@@ -380,7 +390,8 @@ class Reader {
     if (motion.probe) probed_ = end;
     if (motion.kind == MotionKind::line)
       motion.feed = pitch > 0.0 ? feed_of_turn(motion, pitch) : feed(motion);
-    motion.column = block_.first_column(alphabet_.axes);
+    motion.column = block_.first_column(alphabet_.axes |
+                                        (names_direction(block_, modal_, code_of_motion) ? bits("IJK") : 0));
     if (motion.column == 0) motion.column = block_.column(Group::non_modal);  // G28 alone
     give(motion, emit);
   }
@@ -467,6 +478,18 @@ class Reader {
   void set_table();
 
   void set_tool_length();
+
+  /// The machine comes to rest where places change their meaning.
+  template <class Emit>
+  void switch_tool_point(bool on, Emit& emit) {
+    if (on == place_.tool_point()) return;
+    place_.set_tool_point(on, dialect_.tool_point);
+    emit(Dwell{0.0, line_});
+  }
+  /// What tool-point control does not go with.
+  [[nodiscard]] Expected<void, Diagnostic> check_tool_point(const Modal& modal, Code motion) const;
+  /// A target with the tool in the direction of I J K; none where the machine cannot turn it there.
+  [[nodiscard]] std::optional<Position> directed(Position end) const;
 
   /// G41, G42: the radius of tool D, or of the loaded one; G41.1, G42.1: half of D. A negative one changes
   /// the side.

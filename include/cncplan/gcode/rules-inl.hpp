@@ -50,6 +50,16 @@ CNCPLAN_INLINE Modal after(const Block& block, const Modal& before, const Dialec
     modal.motion = !ends ? block.code(Group::motion) : modal.assumed_rapid ? code(0) : no_code;
   }
   if (block.has(Group::compensation)) modal.compensation = block.code(Group::compensation);
+  if (const Code length = block.code(Group::tool_length); length != no_code)
+    modal.tool_point = length == code(43.4)   ? ToolPoint::by_axes
+                       : length == code(43.5) ? ToolPoint::by_direction
+                                              : ToolPoint::off;
+  if (dialect.tool_point.possible())
+    for (int i = 0; i < block.passed_count(); ++i)
+      if (const Word& word = block.passed(i); switches_tool_point(word)) {
+        modal.tool_point = word.number == 428 ? ToolPoint::by_axes : ToolPoint::off;
+        modal.tool_point_tool = -1;
+      }
   if (const Code coolant = block.code(Group::coolant); coolant != no_code) {
     modal.mist = coolant == code(7) || (coolant == code(8) && before.mist);
     modal.flood = coolant == code(8) || (coolant == code(7) && before.flood);
@@ -356,7 +366,8 @@ CNCPLAN_INLINE Expected<Code, Diagnostic> resolve(Block& block, const Modal& mod
     return tl::unexpected(
         Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
   } else if (requested != no_code || axis_words != 0 ||
-             (center_words != 0 && (is_arc(modal.motion) || is_nurbs(modal.motion)))) {
+             (center_words != 0 && (is_arc(modal.motion) || is_nurbs(modal.motion) ||
+                                    names_direction(block, modal, modal.motion)))) {
     motion = modal.motion;
   }
   const int column =
@@ -408,6 +419,7 @@ CNCPLAN_INLINE Expected<Code, Diagnostic> resolve(Block& block, const Modal& mod
       return tl::unexpected(ok.error());
     taken = motion == code(33) ? bit('K') : motion == code(33.1) ? bits("KI") : bits("PIJKRQHEL");
   }
+  if (names_direction(block, modal, motion)) taken = bits("IJK");
   used |= taken;
   if (auto ok = take_words(block, alphabet, taken, used); !ok) return tl::unexpected(ok.error());
   if (non_modal == code(10))
@@ -416,7 +428,8 @@ CNCPLAN_INLINE Expected<Code, Diagnostic> resolve(Block& block, const Modal& mod
   if ((is_probe(motion) || motion == code(33) || motion == code(33.1)) && axis_words == 0)
     return missing("axis", column);
   const bool feeds = is_arc(motion) || is_cycle(motion) || is_spline(motion) || is_nurbs(motion) ||
-                     ((motion == code(1) || is_probe(motion)) && axis_words != 0);
+                     ((motion == code(1) || is_probe(motion)) && axis_words != 0) ||
+                     (motion == code(1) && names_direction(block, modal, motion));
   const bool may_own = block.unclear_code() != nullptr && requested == no_code && !takes_axes;
   const Letters lacking = may_own ? 0 : left_out(block, alphabet, motion);
   if (feeds || lacking != 0 || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');

@@ -45,6 +45,18 @@ inline constexpr int max_count = 1'000'000'000;
 /// of the axes, centres of a modal arc, F and T.
 [[nodiscard]] Letters unclear_words(const Block& block, const Modal& modal, const Alphabet& alphabet);
 
+/// LinuxCNC's codes that switch tool-point control on and off: M428, M429. They are another machine's own
+/// where the dialect has no tool-point control.
+[[nodiscard]] constexpr bool switches_tool_point(const Word& word) {
+  return word.letter == 'M' && (word.number == 428.0 || word.number == 429.0);
+}
+
+/// Whether I J K of a straight motion are a direction of the tool.
+[[nodiscard]] inline bool names_direction(const Block& block, const Modal& modal, Code motion) {
+  return modal.tool_point == ToolPoint::by_direction && (motion == code(0) || motion == code(1)) &&
+         (block.letters() & bits("IJK")) != 0;
+}
+
 /// G38.2 to G38.5, and G31 of Fanuc's and Mach3's controls.
 [[nodiscard]] constexpr bool is_probe(Code motion) {
   return motion == code(31) || (motion >= code(38.2) && motion <= code(38.5));

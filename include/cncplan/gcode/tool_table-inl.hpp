@@ -14,7 +14,8 @@ CNCPLAN_INLINE Tool* find_tool(Dialect& dialect, int number) {
 CNCPLAN_INLINE std::optional<char> missing_tool(const Block& block, Dialect& dialect) {
   const Code length = block.code(Group::tool_length), radius = block.code(Group::compensation);
   Letters names = bit('T');
-  if (length == code(43) || length == code(43.2)) names |= bit('H');
+  if (length == code(43) || length == code(43.2) || length == code(43.4) || length == code(43.5))
+    names |= bit('H');
   if (radius == code(41) || radius == code(42)) names |= bit('D');
   if (block.code(Group::tool_change) == code(61)) names |= bit('Q');
   for (Letters left = names & block.letters(); left != 0;) {

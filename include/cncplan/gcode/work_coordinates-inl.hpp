@@ -37,17 +37,17 @@ CNCPLAN_INLINE void WorkCoordinates::set_origin(int number, const NamedCoordinat
   Position& origin = systems_[system];
   Turn& turn = turns_[system];
   if (here && turn.degrees != 0.0) {
-    const auto at = [&](std::size_t i) { return machine_[i] - origin[i] - tool_[i]; };
+    const auto at = [&](std::size_t i) { return machine_[i] - origin[i] - tool_shift(i); };
     double x = at(0), y = at(1);
     turn.back(x, y);
     if (named[0]) x = *named[0] + shift_[0];
     if (named[1]) y = *named[1] + shift_[1];
     turn.forth(x, y);
-    origin[0] = machine_[0] - tool_[0] - x;
-    origin[1] = machine_[1] - tool_[1] - y;
+    origin[0] = machine_[0] - tool_shift(0) - x;
+    origin[1] = machine_[1] - tool_shift(1) - y;
   }
   for (std::size_t i = here && turn.degrees != 0.0 ? 2 : 0; i < count_; ++i)
-    if (named[i]) origin[i] = here ? machine_[i] - shift_[i] - tool_[i] - *named[i] : *named[i];
+    if (named[i]) origin[i] = here ? machine_[i] - shift_[i] - tool_shift(i) - *named[i] : *named[i];
   if (rotation) turn = Turn(*rotation);
   update();
 }
@@ -56,6 +56,19 @@ CNCPLAN_INLINE void WorkCoordinates::set_tool(const NamedCoordinates& named) {
   for (std::size_t i = 0; i < count_; ++i)
     if (named[i]) tool_[i] = *named[i];
   update();
+}
+
+CNCPLAN_INLINE void WorkCoordinates::set_tool_point(bool on, const ToolPointControl& control) {
+  if (on == tool_point_) return;
+  tool_point_ = on;
+  update();
+  machine_ = (on ? control.to_tip : control.to_axes)(control.machine, machine_, tool_length());
+  constexpr double roundings = 64.0;  // of the machine's formula
+  for (std::size_t i = 0; i < count_; ++i) {
+    blur(i, roundings * offset_[i] + roundings * machine_[i]);
+    current_[i] = machine_[i] - offset_[i];
+  }
+  if (rotated()) turn().back(current_[0], current_[1]);
 }
 
 CNCPLAN_INLINE void WorkCoordinates::set_shift(const NamedCoordinates& named) {
@@ -81,7 +94,7 @@ CNCPLAN_INLINE void WorkCoordinates::update() {
   const Position shift = turned(shift_);
   bool moved = false;
   for (std::size_t i = 0; i < count_; ++i) {
-    const double offset = nameable(i, systems_[system_][i] + shift[i] + tool_[i]);
+    const double offset = nameable(i, systems_[system_][i] + shift[i] + tool_shift(i));
     if (offset == offset_[i]) continue;
     moved = true;
     blur(i, offset);

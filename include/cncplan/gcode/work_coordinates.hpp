@@ -31,7 +31,10 @@ class WorkCoordinates {
       : count_(std::min<std::size_t>(dialect.axes.size(), max_axes)),
         machine_(machine),
         systems_(dialect.work_offsets) {
-    for (std::size_t i = 0; i < count_; ++i) kinds_[i] = dialect.axes[i].kind;
+    for (std::size_t i = 0; i < count_; ++i) {
+      kinds_[i] = dialect.axes[i].kind;
+      if (dialect.axes[i].letter == 'Z') z_ = i;
+    }
     offset_ = systems_[0];
     for (std::size_t i = 0; i < count_; ++i) current_[i] = machine_[i] - offset_[i];
   }
@@ -99,6 +102,13 @@ class WorkCoordinates {
     update();
   }
 
+  /// Whether places are the tip's in the part. The tool's length is no offset then.
+  [[nodiscard]] bool tool_point() const { return tool_point_; }
+  /// mm.
+  [[nodiscard]] double tool_length() const { return z_ < count_ ? tool_[z_] : 0.0; }
+  /// Changes between the tip's places and those of the axes; the machine stays where it is.
+  void set_tool_point(bool on, const ToolPointControl& control);
+
   /// G52: the shift of the axes named is this.
   void set_shift(const NamedCoordinates& named);
   /// G92: the present place gets the coordinates named.
@@ -140,6 +150,8 @@ class WorkCoordinates {
   };
 
   [[nodiscard]] const Turn& turn() const { return turns_[system_]; }
+  /// What the tool adds to work coordinates.
+  [[nodiscard]] double tool_shift(std::size_t i) const { return tool_point_ && i == z_ ? 0.0 : tool_[i]; }
   [[nodiscard]] std::size_t index_of(int number) const {
     return number == 0 ? system_ : static_cast<std::size_t>(number - 1);
   }
@@ -169,6 +181,8 @@ class WorkCoordinates {
   std::array<Position, work_systems> systems_{};
   std::array<Turn, work_systems> turns_{};
   std::size_t system_{};
+  std::size_t z_ = max_axes;  ///< which axis the tool's length is along
+  bool tool_point_{};
 };
 
 }  // namespace cncplan::gcode

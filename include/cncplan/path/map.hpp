@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/jet.hpp"
 
 namespace cncplan::path {
@@ -42,6 +43,11 @@ inline constexpr bool switchable = [] {
   else
     return false;
 }();
+
+/// Of a coordinate: A B C are angles.
+[[nodiscard]] constexpr AxisKind coordinate_kind(char letter) {
+  return letter >= 'A' && letter <= 'C' ? AxisKind::rotary : AxisKind::linear;
+}
 
 /// A point in the coordinates of a map, and the joints that it gives.
 template <class M, class T>

@@ -52,6 +52,7 @@ class StraightInJoints {
                                             Scalar(0));
   }
 
+  [[nodiscard]] const M& map() const { return map_; }
   [[nodiscard]] Scalar length() const { return joints_.length(); }
   [[nodiscard]] Vector position_at(Scalar s) const { return joints_.position_at(s); }
   [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const { return joints_.point_at(s); }

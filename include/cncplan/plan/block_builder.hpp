@@ -18,8 +18,10 @@
 #include "cncplan/path/mapped.hpp"
 #include "cncplan/path/spline.hpp"
 #include "cncplan/path/straight_in_joints.hpp"
+#include "cncplan/path/switched.hpp"
 #include "cncplan/plan/machine.hpp"
 #include "cncplan/plan/machine_block.hpp"
+#include "cncplan/plan/mapped_paths.hpp"
 #include "cncplan/plan/tool.hpp"
 
 namespace cncplan {
@@ -30,15 +32,8 @@ namespace detail {
 template <std::floating_point S, int N>
 using ProgrammedPath = path::BasicSegment<S, N, path::BasicSpline<S, N>>;
 template <class Map>
-using MappedPath = path::Mapped<Map, ProgrammedPath<typename Map::Scalar, path::coordinate_count<Map>>>;
-
-template <MappedModel M>
-using MapOf = std::remove_cvref_t<decltype(M::map)>;
-
-/// Of a coordinate that a map takes.
-[[nodiscard]] constexpr AxisKind kind_of(char letter) {
-  return letter >= 'A' && letter <= 'C' ? AxisKind::rotary : AxisKind::linear;
-}
+using MappedPath =
+    path::Mapped<path::BlockMap<Map>, ProgrammedPath<typename Map::Scalar, path::coordinate_count<Map>>>;
 
 template <MachineModel M>
 struct ProgramBlockOf {
@@ -49,7 +44,8 @@ template <MachineModel M>
   requires MappedModel<M>
 struct ProgramBlockOf<M> {
   using Map = MapOf<M>;
-  using type = BasicBlock<typename M::Scalar, M::axis_count, MappedPath<Map>, path::StraightInJoints<Map>>;
+  using type = BasicBlock<typename M::Scalar, M::axis_count, MappedPath<Map>,
+                          path::StraightInJoints<path::BlockMap<Map>>>;
 };
 
 }  // namespace detail
@@ -75,7 +71,7 @@ template <MachineModel M>
   dialect.axes.clear();
   if constexpr (MappedModel<M>) {
     for (const char letter : path::coordinate_letters<detail::MapOf<M>>)
-      dialect.axes.push_back({letter, detail::kind_of(letter)});
+      dialect.axes.push_back({letter, path::coordinate_kind(letter)});
   } else {
     for (const auto& axis : machine.axes) dialect.axes.push_back({axis.letter, axis.kind});
   }
@@ -120,7 +116,9 @@ class BlockBuilder {
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
       auto made = block(*motion);
       if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion->line, motion->column, {}});
-      end_ = coordinates_of(machine_place(motion->end, motion->offset));
+      state_.place = coordinates_of(machine_place(motion->end, motion->offset));
+      state_.tool_point = motion->tool_point;
+      if constexpr (MappedModel<M>) state_.axes = made->path.end();
       return std::optional<Block>(*made);
     }
     const auto* word = std::get_if<gcode::Word>(&item);
@@ -130,24 +128,39 @@ class BlockBuilder {
     return std::optional<Block>();
   }
 
+  using State = plan::BasicMotionStart<Scalar, program_coordinates<M>, M::axis_count>;
+
   /// Where the axes are before the first motion.
-  void start_at(const gcode::Position& place) { end_ = coordinates_of(place); }
-  void start_at(const VectorN<Scalar, program_coordinates<M>>& place) { end_ = place; }
-  /// Where the last motion ended, in the program's coordinates.
-  [[nodiscard]] const VectorN<Scalar, program_coordinates<M>>& end() const { return end_; }
+  void start_at(const gcode::Position& place) { state_ = {coordinates_of(place), {}, {}}; }
+  void start_at(const State& state) { state_ = state; }
+  /// Where the last motion ended.
+  [[nodiscard]] const State& state() const { return state_; }
+
+  /// A dialect with the machine's tool-point control, if its map has one. The builder must outlive what reads
+  /// by it, and stay where it is.
+  [[nodiscard]] gcode::Dialect with_tool_point(gcode::Dialect dialect) const {
+    if constexpr (switchable) {
+      dialect.tool_point = {this, &BlockBuilder::to_tip, &BlockBuilder::to_axes, &BlockBuilder::turned};
+    }
+    return dialect;
+  }
 
   /// A stop of so many seconds where the last motion ended.
   [[nodiscard]] Block rest(int line = 0, double seconds = 0.0) const {
-    return Block{.path = path_of(Programmed(path::BasicLine<Scalar, program_coordinates<M>>(end_, end_))),
-                 .pause = static_cast<Scalar>(seconds),
-                 .exact_stop = true,
-                 .line = line};
+    return Block{
+        .path = path_at_rest(), .pause = static_cast<Scalar>(seconds), .exact_stop = true, .line = line};
   }
 
  private:
   static constexpr auto coordinates = static_cast<std::size_t>(program_coordinates<M>);
   using Coordinates = VectorN<Scalar, program_coordinates<M>>;
   using Programmed = detail::ProgrammedPath<Scalar, program_coordinates<M>>;
+  static constexpr bool switchable = [] {
+    if constexpr (MappedModel<M>)
+      return path::switchable<detail::MapOf<M>>;
+    else
+      return false;
+  }();
 
   [[nodiscard]] Coordinates coordinates_of(const gcode::Position& place) const {
     Coordinates result = Coordinates::Zero();
@@ -158,12 +171,60 @@ class BlockBuilder {
     return result;
   }
 
-  // Of the axes.
-  [[nodiscard]] typename Block::Path path_of(const Programmed& programmed) const {
+  [[nodiscard]] typename Block::Path path_at_rest() const {
+    const Programmed here(path::BasicLine<Scalar, program_coordinates<M>>(state_.place, state_.place));
     if constexpr (MappedModel<M>)
-      return path::Mapped<detail::MapOf<M>, Programmed>(machine_.map, programmed);
+      return plan::mapped_rest(machine_, here, state_);
     else
-      return programmed;
+      return here;
+  }
+
+  // Of the axes.
+  [[nodiscard]] Expected<typename Block::Path> path_of(const Programmed& programmed,
+                                                       const gcode::Motion& motion) const {
+    if constexpr (!MappedModel<M>) {
+      return typename Block::Path(programmed);
+    } else {
+      if (motion.kind == gcode::MotionKind::rapid)
+        return typename Block::Path(plan::mapped_rapid(machine_, programmed, motion.tool_point, state_));
+      const auto path = plan::mapped_path(machine_, programmed, motion.tool_point, state_);
+      if (!path) return tl::unexpected(path.error());
+      return typename Block::Path(*path);
+    }
+  }
+
+  // Tool-point control. Coordinates and axes of a switchable map have one order.
+  using Joints = std::array<Scalar, coordinates>;
+  [[nodiscard]] Joints joints_of(const gcode::Position& place) const {
+    Joints joints{};
+    for (std::size_t i = 0; i < coordinates; ++i)
+      if (words_[i] >= 0) joints[i] = static_cast<Scalar>(place[static_cast<std::size_t>(words_[i])]);
+    return joints;
+  }
+  [[nodiscard]] gcode::Position place_of(const Joints& joints, gcode::Position place) const {
+    for (std::size_t i = 0; i < coordinates; ++i)
+      if (words_[i] >= 0) place[static_cast<std::size_t>(words_[i])] = static_cast<double>(joints[i]);
+    return place;
+  }
+  static const BlockBuilder& of(const void* self) { return *static_cast<const BlockBuilder*>(self); }
+  static gcode::Position to_tip(const void* self, const gcode::Position& axes, double length) {
+    const auto map = plan::block_map(of(self).machine_, length);
+    return of(self).place_of(map.point(of(self).joints_of(axes)), axes);
+  }
+  static gcode::Position to_axes(const void* self, const gcode::Position& tip, double length) {
+    const auto map = plan::block_map(of(self).machine_, length);
+    return of(self).place_of(map.joints(of(self).joints_of(tip)), tip);
+  }
+  static std::optional<gcode::Position> turned(const void* self, const Vector3& direction,
+                                               const gcode::Position& from) {
+    if constexpr (requires(const Joints& q) { of(self).machine_.map.angles(std::array<Scalar, 3>{}); }) {
+      const std::array<Scalar, 3> along{static_cast<Scalar>(direction.x()),
+                                        static_cast<Scalar>(direction.y()),
+                                        static_cast<Scalar>(direction.z())};
+      const auto joints = plan::joints_of_direction(of(self).machine_, along, of(self).joints_of(from));
+      if (joints) return of(self).place_of(*joints, from);
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] gcode::Position machine_place(gcode::Position work, const gcode::Position& offset) const {
@@ -202,11 +263,9 @@ class BlockBuilder {
     else if (motion.tolerance && *motion.tolerance > 0)
       result.tolerance = static_cast<Scalar>(*motion.tolerance);
     result.merge = static_cast<Scalar>(motion.merge_tolerance);
-    result.path = path_of(*programmed);
-    if constexpr (MappedModel<M>)
-      if (result.rapid)
-        result.path =
-            path::StraightInJoints<detail::MapOf<M>>(machine_.map, programmed->start(), programmed->end());
+    const auto path = path_of(*programmed, motion);
+    if (!path) return tl::unexpected(path.error());
+    result.path = *path;
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
     if (motion.synchronised)
       if (const Scalar fastest = fastest_along(*programmed); result.feed > fastest)
@@ -340,9 +399,9 @@ class BlockBuilder {
   path::ArcTolerance<Scalar> arcs_;
   std::size_t word_count_ = 0;
   std::array<AxisKind, gcode::max_axes> kinds_{};
-  std::array<int, coordinates> words_{};   // which word each coordinate is; -1 for none
-  std::array<int, 3> space_{};             // which words X Y Z are
-  Coordinates end_ = Coordinates::Zero();  // where the last motion ended
+  std::array<int, coordinates> words_{};  // which word each coordinate is; -1 for none
+  std::array<int, 3> space_{};            // which words X Y Z are
+  State state_;
 };
 
 }  // namespace cncplan

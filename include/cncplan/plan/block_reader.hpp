@@ -115,8 +115,8 @@ class BlockReader {
       : machine_(machine),
         machine_ok_(validate(machine)),
         smoothed_(options.tolerance > 0 && !MappedModel<M>),
-        lines_(dialect, start_position(options)),
-        builder_(machine, dialect, options.arcs) {
+        builder_(machine, dialect, options.arcs),
+        lines_(builder_.with_tool_point(dialect), start_position(options)) {
     builder_.start_at(start_position(options));
   }
 
@@ -128,8 +128,8 @@ class BlockReader {
   M machine_;
   Expected<void> machine_ok_;
   bool smoothed_;
-  gcode::LineReader lines_;
   BlockBuilder<M> builder_;
+  gcode::LineReader lines_;
   Warnings warnings_;
   Block block_{};         // the one that is to be taken
   std::size_t left_ = 0;  // blocks of the line, that one included
@@ -148,7 +148,7 @@ auto BlockReader<M>::take(Read&& read) -> Expected<Blocks, ProgramError> {
                       1,
                       {}}});
   warnings_.clear();
-  const auto before = builder_.end();
+  const auto before = builder_.state();
   std::size_t count = 0;
   std::optional<std::size_t> at_fault;
   const auto done = read([&](const gcode::Item& item) -> Expected<void, gcode::Diagnostic> {

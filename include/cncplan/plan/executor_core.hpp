@@ -207,13 +207,7 @@ class ExecutorCore {
     last_.tool = feed_.start().tool;
   }
 
-  // Away from a path, the tool's place is that of its axes; behind a map nobody knows it.
-  void tell_tool_of_axes() {
-    if constexpr (MappedModel<M>)
-      last_.tool.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
-    else
-      last_.tool = in_space(last_.position, tool_);
-  }
+  void tell_tool_of_axes() { last_.tool = tool_of_axes(machine_, last_.position, tool_); }
 
   Expected<void> begin_jog() {
     if (auto ok = validate(machine_); !ok) return ok;
@@ -495,10 +489,7 @@ void ExecutorCore<M, B>::evaluate(const Cell& cell, const BasicPlayed<Scalar>& n
   last_.velocity = axes.velocity;
   last_.acceleration = axes.acceleration;
   last_.jerk = axes.jerk;
-  if constexpr (MappedModel<M>)
-    last_.tool = tool_point(block.path, s, tool_).position;
-  else
-    last_.tool = in_space(axes.position, tool_);
+  last_.tool = tool_position(machine_, block.path, s, axes.position, tool_);
   last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
   path_place_ = axes.position;
   has_run_ = true;

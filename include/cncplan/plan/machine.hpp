@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "cncplan/core/axis_kind.hpp"
 #include "cncplan/core/error.hpp"
@@ -110,6 +111,22 @@ struct BasicMachine {
 template <int N>
 using Machine = BasicMachine<double, N>;
 
+namespace detail {
+
+/// Default axes; those of a switchable map have the letters of its coordinates.
+template <class M>
+[[nodiscard]] constexpr auto default_axes_of() {
+  auto axes = default_axes<typename M::Scalar, static_cast<int>(M::axis_count)>();
+  if constexpr (path::switchable<M>)
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      axes[i].letter = path::coordinate_letters<M>[i];
+      axes[i].kind = path::coordinate_kind(axes[i].letter);
+    }
+  return axes;
+}
+
+}  // namespace detail
+
 /// A machine whose axes are not the program's coordinates: `map` takes those to the axes. `path::Map` says
 /// what it has. The tool's limits, rapid rate and feed limit as for `BasicMachine`.
 template <class M>
@@ -119,8 +136,7 @@ struct MappedMachine {
   static constexpr int axis_count = static_cast<int>(M::axis_count);
 
   M map{};
-  std::array<BasicAxis<Scalar>, static_cast<std::size_t>(axis_count)> axes =
-      default_axes<Scalar, axis_count>();
+  std::array<BasicAxis<Scalar>, static_cast<std::size_t>(axis_count)> axes = detail::default_axes_of<M>();
   BasicLimits<Scalar> limits{};
   Scalar rapid_rate{};
   Scalar feed_limit{};
@@ -142,6 +158,13 @@ template <class M>
 concept MappedModel = MachineModel<M> && requires(const M& machine) {
   machine.map;
 };
+
+namespace detail {
+
+template <MappedModel M>
+using MapOf = std::remove_cvref_t<decltype(M::map)>;
+
+}  // namespace detail
 
 /// The lower of the limits upwards and downwards.
 template <std::floating_point S>

@@ -203,8 +203,8 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
   const auto valid = validate(machine);
   if (!valid) add({{valid.error(), 0, 0, {}}}, file);
   const gcode::Dialect dialect = options.dialect ? *options.dialect : dialect_of(machine);
-  gcode::Reader reader(dialect, start_position(options));
   BlockBuilder<M> builder(machine, dialect, options.arcs);
+  gcode::Reader reader(builder.with_tool_point(dialect), start_position(options));
   builder.start_at(start_position(options));
   constexpr std::size_t short_line = 24;  // bytes: few programs need more room than that
   blocks_.reserve(text.size() / short_line + 1);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/in_space.hpp"
@@ -35,6 +36,55 @@ template <Path P>
     const auto at = path.point_at(s);
     return {in_space(at.position, tool), in_space(at.first, tool), in_space(at.second, tool),
             in_space(at.third, tool)};
+  }
+}
+
+/// Where the tool is while the axes stand at a place, whatever path they are on: the axes X Y Z, or of a map
+/// what its inverse says. Not numbers where the map has none.
+template <MachineModel M>
+[[nodiscard]] BasicVector3<typename M::Scalar> tool_of_axes(
+    const M& machine, const VectorN<typename M::Scalar, M::axis_count>& position,
+    const std::array<int, 3>& tool) {
+  using S = typename M::Scalar;
+  if constexpr (!MappedModel<M>) {
+    return in_space(position, tool);
+  } else if constexpr (path::InvertibleMap<detail::MapOf<M>>) {
+    using Map = detail::MapOf<M>;
+    path::MapJoints<Map, S> joints;
+    for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = position[static_cast<Eigen::Index>(i)];
+    const auto point = machine.map.point(joints);
+    return in_space(VectorN<S, path::coordinate_count<Map>>(
+                        Eigen::Map<const VectorN<S, path::coordinate_count<Map>>>(point.data())),
+                    path::coordinates_in_space<Map>);
+  } else {
+    return BasicVector3<S>::Constant(std::numeric_limits<S>::quiet_NaN());
+  }
+}
+
+/// Whether the coordinates of a path are those of the axes though the machine has a map: the program has
+/// switched it off.
+template <class P>
+[[nodiscard]] bool is_direct(const P& path) {
+  if constexpr (requires { path.map().on; })
+    return !path.map().on;
+  else if constexpr (requires { path.visit([](const auto&) { return true; }); })
+    return path.visit([](const auto& inside) { return is_direct(inside); });
+  else
+    return false;
+}
+
+/// Where the tool is at a length of a path, the axes at `position`: under a map the tip in the part, also
+/// where the axes are driven directly.
+template <MachineModel M, Path P>
+[[nodiscard]] BasicVector3<typename M::Scalar> tool_position(
+    const M& machine, const P& path, typename M::Scalar s,
+    const VectorN<typename M::Scalar, M::axis_count>& position, const std::array<int, 3>& tool) {
+  if constexpr (MappedModel<M>) {
+    if constexpr (path::switchable<detail::MapOf<M>>)
+      if (is_direct(path)) return tool_of_axes(machine, position, tool);
+    return tool_point(path, s, tool).position;
+  } else {
+    return in_space(position, tool);
   }
 }
 

@@ -343,7 +343,8 @@ auto Trajectory<M, B>::evaluate(std::size_t piece, BasicState<Scalar> along, Sca
                  BasicVector3<Scalar>::Zero(),
                  along};
   if constexpr (MappedModel<M>)
-    point.tool = driven.visit([&](const auto& p) { return tool_point(p, along.position, tool_).position; });
+    point.tool = driven.visit(
+        [&](const auto& p) { return tool_position(machine_, p, along.position, axes.position, tool_); });
   else
     point.tool = in_space(axes.position, tool_);
   const bool counted = starts_[number + 1] > starts_[number];

@@ -71,6 +71,19 @@ CNCPLAN_INLINE std::vector<std::string> restoring_lines(const ModalState& saved,
                                                                                   : unit));
     finish();
   }
+  // G43.1 has switched tool-point control off; what switches it on names the tool by which it was.
+  const ToolPoint held = saved.tool != reader.place().tool() ? ToolPoint::off : now.tool_point;
+  if (to.tool_point != held || to.tool_point_tool != now.tool_point_tool) {
+    if (to.tool_point == ToolPoint::off) {
+      if (held != ToolPoint::off) put('M', 429);
+    } else if (to.tool_point_tool < 0) {
+      put('M', 428);
+    } else {
+      put('G', to.tool_point == ToolPoint::by_axes ? 43.4 : 43.5);
+      put('H', to.tool_point_tool);
+    }
+    finish();
+  }
   return lines;
 }
 

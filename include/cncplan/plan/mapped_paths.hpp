@@ -1,0 +1,132 @@
+// The paths of a machine with a map: switched on or off, with the turns that its joints take.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/vector.hpp"
+#include "cncplan/kinematics/azimuth.hpp"
+#include "cncplan/path/mapped.hpp"
+#include "cncplan/path/straight_in_joints.hpp"
+#include "cncplan/path/switched.hpp"
+#include "cncplan/plan/follow_turns.hpp"
+#include "cncplan/plan/machine.hpp"
+
+namespace cncplan::plan {
+
+/// Where a motion begins: the joints too, once anything has moved, and tool-point control as in
+/// `gcode::Motion`.
+template <std::floating_point S, int coordinates, int joints>
+struct BasicMotionStart {
+  VectorN<S, coordinates> place = VectorN<S, coordinates>::Zero();  ///< in the program's coordinates
+  std::optional<VectorN<S, joints>> axes{};                         ///< behind a map
+  std::optional<double> tool_point{};
+};
+
+/// The map of a block; `tool_point` has the length of the tool, mm, where a program has switched it on.
+template <MappedModel M>
+[[nodiscard]] auto block_map(const M& machine, const std::optional<double>& tool_point) {
+  auto map = machine.map;
+  if constexpr (path::switchable<detail::MapOf<M>>) {
+    if constexpr (requires { map.tool_length; })
+      map.tool_length += static_cast<typename M::Scalar>(tool_point.value_or(0.0));
+    return path::BlockMap<detail::MapOf<M>>{map, tool_point.has_value()};
+  } else {
+    return map;
+  }
+}
+
+/// Joints whose turns are free at a place, by `turning_joints`.
+template <MappedModel M, class Coordinates>
+[[nodiscard]] std::uint32_t free_turns(const M& machine, const Coordinates& place,
+                                       const std::optional<double>& tool_point) {
+  return path::switchable<detail::MapOf<M>> && !tool_point ? 0 : turning_joints(machine, place);
+}
+
+/// An angle, and the fewest whole turns that bring it into the travel of an axis.
+template <std::floating_point S>
+[[nodiscard]] S into_travel(S angle, const BasicAxis<S>& axis) {
+  const S more = kinematics::turns_into(angle, angle, axis.low, axis.high);
+  return std::isfinite(more) ? angle + more : angle;
+}
+
+/// A feed move of the tool, from where the joints stand. Errors: those of `follow_turns`.
+template <MappedModel M, Path P, class Start>
+[[nodiscard]] Expected<path::Mapped<path::BlockMap<detail::MapOf<M>>, P>> mapped_path(
+    const M& machine, const P& programmed, const std::optional<double>& tool_point, const Start& start) {
+  using Mapped = path::Mapped<path::BlockMap<detail::MapOf<M>>, P>;
+  const Mapped path(block_map(machine, tool_point), programmed);
+  const std::uint32_t joints = free_turns(machine, programmed.start(), tool_point);
+  if (joints == 0) return path;
+  return follow_turns(path, machine, joints, start.axes).map([&](const auto& turns) {
+    return Mapped(path.map(), programmed, turns);
+  });
+}
+
+/// No motion, where a motion begins.
+template <MappedModel M, Path P, class Start>
+[[nodiscard]] auto mapped_rest(const M& machine, const P& programmed, const Start& start) {
+  using Mapped = path::Mapped<path::BlockMap<detail::MapOf<M>>, P>;
+  const auto map = block_map(machine, start.tool_point);
+  if (!start.axes) return Mapped(map, programmed);
+  return Mapped(map, programmed,
+                {*start.axes, *start.axes, free_turns(machine, start.place, start.tool_point)});
+}
+
+/// A rapid, straight in the joints; those whose turns are free go the shorter way where their travel lets
+/// them.
+template <MappedModel M, Path P, class Start>
+[[nodiscard]] auto mapped_rapid(const M& machine, const P& programmed,
+                                const std::optional<double>& tool_point, const Start& start) {
+  using Map = path::BlockMap<detail::MapOf<M>>;
+  const path::Mapped<Map, P> ends(block_map(machine, tool_point), programmed);
+  const std::uint32_t joints = free_turns(machine, programmed.start(), tool_point);
+  auto from = ends.position_at(0), to = ends.position_at(programmed.length());
+  typename path::StraightInJoints<Map>::Turning turning{};
+  for (std::size_t k = 0; k < turning.size(); ++k) {
+    turning[k] = ((joints >> k) & 1U) != 0;
+    if (!turning[k]) continue;
+    const auto i = static_cast<Eigen::Index>(k);
+    from[i] =
+        start.axes ? kinematics::near_turn(from[i], (*start.axes)[i]) : into_travel(from[i], machine.axes[k]);
+    to[i] = into_travel(kinematics::near_turn(to[i], from[i]), machine.axes[k]);
+  }
+  return path::StraightInJoints<Map>(ends.map(), programmed.start(), programmed.end(), from, to, turning);
+}
+
+/// The joints with those rotary ones that give a direction of the tool, of all that do those nearest to
+/// `here`, and within the travel if any are; none where the map knows none.
+template <MappedModel M>
+[[nodiscard]] auto joints_of_direction(const M& machine, const std::array<typename M::Scalar, 3>& direction,
+                                       const path::MapJoints<detail::MapOf<M>, typename M::Scalar>& here) {
+  using S = typename M::Scalar;
+  constexpr S upright = S(1e-9);  // rad; nearer than that the second angle may be any
+  std::optional<path::MapJoints<detail::MapOf<M>, S>> best;
+  S least{};
+  bool within = false;
+  for (const auto& angles : machine.map.angles(direction)) {
+    auto there = here;
+    S way{};
+    bool inside = true;
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+      const std::size_t i = here.size() - angles.size() + k;
+      const auto& axis = machine.axes[i];
+      if (k == 0 || std::abs(angles[0]) > upright) there[i] = kinematics::near_turn(angles[k], here[i]);
+      there[i] = into_travel(there[i], axis);
+      inside = inside && axis.low <= there[i] && there[i] <= axis.high;
+      way += std::abs(there[i] - here[i]);
+    }
+    if (!std::isfinite(way)) continue;
+    if (best && (within > inside || (within == inside && !(way < least)))) continue;
+    best = there;
+    least = way;
+    within = inside;
+  }
+  return best;
+}
+
+}  // namespace cncplan::plan
