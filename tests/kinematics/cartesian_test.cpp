@@ -7,7 +7,6 @@
 using namespace cncplan;
 using namespace cncplan::kinematics;
 
-static_assert(Kinematics<Cartesian> && Kinematics<BasicCartesian<float>>);
 static_assert(path::Map<CartesianMap> && path::Map<BasicCartesianMap<float>>);
 
 TEST_CASE("a plain mill goes where it is told", "[cartesian]") {

@@ -15,7 +15,7 @@ struct KinematicErrors {
 };
 
 /// One pose from joints; `scale` is what each joint's difference is measured by.
-template <Kinematics K>
+template <class K>
 void examine(const K& machine, const typename K::Joints& joints, const typename K::Joints& scale,
              KinematicErrors& worst) {
   const auto back = machine.inverse(machine.forward(joints));
@@ -28,7 +28,7 @@ void examine(const K& machine, const typename K::Joints& joints, const typename 
         std::max(worst.round_trip, static_cast<double>(std::abs(((*back)[i] - joints[i]) / scale[i])));
 }
 
-template <Kinematics K>
+template <class K>
 void examine_jacobian(const K& machine, const typename K::Joints& joints, double size,
                       KinematicErrors& worst) {
   constexpr double h = 1e-3;

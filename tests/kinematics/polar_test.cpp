@@ -7,7 +7,6 @@
 using namespace cncplan;
 using namespace cncplan::kinematics;
 
-static_assert(Kinematics<Polar> && Kinematics<BasicPolar<float>>);
 static_assert(path::Map<PolarMap> && path::Map<BasicPolarMap<float>>);
 
 namespace {

@@ -8,7 +8,6 @@
 using namespace cncplan;
 using namespace cncplan::kinematics;
 
-static_assert(Kinematics<TireMold> && Kinematics<BasicTireMold<float>>);
 
 namespace {
 

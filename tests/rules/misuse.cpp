@@ -52,14 +52,6 @@ struct NoDerivative {
 };
 auto curve_length = path::arc_length(NoDerivative{}, 0.0, 1.0);
 
-// expect ForwardOnly, Kinematics: machine.inverse(pose)
-struct ForwardOnly {
-  using Scalar = double;
-  using Joints = Vector3;
-  Pose forward(const Joints&) const;
-};
-auto tip = kinematics::tip_velocity(ForwardOnly{}, Vector3{}, Vector3{});
-
 // expect NoJoints, Map: map.joints(x)
 struct NoJoints {
   using Scalar = double;

@@ -57,20 +57,4 @@ concept Profile = requires(const F& profile, typename F::Scalar x) {
   { profile.time_at(x) } -> std::same_as<typename F::Scalar>;
 };
 
-/// A machine: from the positions of its joints to the pose of its tool, and back. The Jacobian holds the
-/// derivatives of the tip (rows 0 to 2) and of the tool's direction (rows 3 to 5) by each joint.
-template <class K>
-concept Kinematics = requires(const K& machine, const typename K::Joints& joints,
-                              const BasicPose<typename K::Scalar>& pose) {
-  requires std::floating_point<typename K::Scalar>;
-  { machine.forward(joints) } -> std::same_as<BasicPose<typename K::Scalar>>;
-  { machine.inverse(pose) } -> std::same_as<Expected<typename K::Joints>>;
-  {
-    machine.jacobian(joints)
-    } -> std::same_as<Eigen::Matrix<typename K::Scalar, 6, K::Joints::RowsAtCompileTime>>;
-  {
-    machine.joint_limits()
-    } -> std::same_as<BasicJointLimits<typename K::Scalar, K::Joints::RowsAtCompileTime>>;
-};
-
 }  // namespace cncplan
