@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 
 #include "cncplan/core/box.hpp"
 #include "cncplan/core/concepts.hpp"
@@ -63,30 +65,47 @@ template <int parts = 4, EnclosedPath P>
   return result;
 }
 
-/// The box of all positions, from both ends and what lies between.
+/// The box of all positions, from both ends and what lies between. Parts of which no bound is known are
+/// looked at more closely; where there is none even then, or no number for a place, the box is the whole
+/// space.
 template <EnclosedPath P>
 [[nodiscard]] auto enclosed_box(const P& path) {
   using S = typename P::Scalar;
   constexpr int n = P::Vector::RowsAtCompileTime;
   constexpr int parts = 64;
+  constexpr S infinity = std::numeric_limits<S>::infinity();
   const auto start = path.point_at(S(0)).position, end = path.point_at(path.length()).position;
   BasicBox<S, n> box{start.cwiseMin(end), start.cwiseMax(end)};
+  // How far a position goes from that in the middle of a part.
+  const auto reach = [](const auto& jet, S rate, S half) {
+    // On a part that goes one way, its ends are the extremes.
+    return jet.first.contains(S(0)) ? half * std::abs(rate) + half * half * jet.second.largest() / S(2)
+                                    : half * jet.first.smallest();
+  };
+  const auto add = [&](const auto& enclosed, const auto& middle, S half) {
+    for (int axis = 0; axis < n; ++axis) {
+      const S far = reach(enclosed[static_cast<std::size_t>(axis)], middle.first[axis], half);
+      const S low = middle.position[axis] - far, high = middle.position[axis] + far;
+      box.low[axis] = low == low ? std::min(box.low[axis], low) : -infinity;
+      box.high[axis] = high == high ? std::max(box.high[axis], high) : infinity;
+    }
+  };
+  const auto known = [&](const auto& enclosed, const auto& middle, S half) {
+    for (int axis = 0; axis < n; ++axis)
+      if (!std::isfinite(middle.position[axis] +
+                         reach(enclosed[static_cast<std::size_t>(axis)], middle.first[axis], half)))
+        return false;
+    return true;
+  };
+  const S width = path.length() / static_cast<S>(parts);
+  int part = 0;
   detail::for_each_part(path, S(0), path.length(), parts,
                         [&](const auto& enclosed, const auto& middle, S half) {
-                          for (int axis = 0; axis < n; ++axis) {
-                            const auto& jet = enclosed[static_cast<std::size_t>(axis)];
-                            // On a part that goes one way, its ends are the extremes.
-                            if (!jet.first.contains(S(0))) {
-                              const S reach = half * jet.first.smallest();
-                              box.low[axis] = std::min(box.low[axis], middle.position[axis] - reach);
-                              box.high[axis] = std::max(box.high[axis], middle.position[axis] + reach);
-                              continue;
-                            }
-                            const S bend = half * half * jet.second.largest() / S(2);
-                            const S reach = half * std::abs(middle.first[axis]) + bend;
-                            box.low[axis] = std::min(box.low[axis], middle.position[axis] - reach);
-                            box.high[axis] = std::max(box.high[axis], middle.position[axis] + reach);
-                          }
+                          const S from = width * static_cast<S>(part++);
+                          if (known(enclosed, middle, half))
+                            add(enclosed, middle, half);
+                          else
+                            detail::for_each_part(path, from, from + width, parts, add);
                         });
   return box;
 }

@@ -78,7 +78,8 @@ class CutByLimits {
       const Part first{part.from, middle, limits(driven, part.from, middle, speed_)};
       const Part second{middle, part.to, limits(driven, middle, part.to, speed_)};
       const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
-      if (halves >= worth_it / part.limits.velocity) return top;
+      // Of a part without any speed nothing is known: the halves of its halves may have one.
+      if (part.limits.velocity > Scalar(0) && halves >= worth_it / part.limits.velocity) return top;
       open_[count_++] = {second, depth + 1};
       open_[count_++] = {first, depth + 1};
     }
@@ -288,6 +289,9 @@ class CellMaker {
   [[nodiscard]] Expected<void> cut_ahead() {
     if (cut_.done()) cut_on(cut_until_);
     const BasicPartLimits<Scalar>& part = cut_.next(driven_);
+    if (MappedModel<M> && !(part.limits.velocity > Scalar(0)))
+      return refusal(ErrorCode::unreachable, "singular place of the machine's map, after a length of",
+                     part.from);
     if (auto ok = validate(part.limits); !ok) return tl::unexpected(ok.error());
     const bool begins = entry_ < infinity;
     const Scalar length = part.to - part.from;

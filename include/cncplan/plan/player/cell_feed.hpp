@@ -178,7 +178,8 @@ class CellFeed {
 
   // Merging changes blocks that are not ready, so the other thread must not look at one.
   void tell_start(const B& block) {
-    const Start start{block.path.position_at(Scalar(0)), tool_point(block.path, Scalar(0), tool_).position};
+    const VectorN<Scalar, M::axis_count> axes = block.path.position_at(Scalar(0));
+    const Start start{axes, tool_position(machine_, block.path, Scalar(0), axes, tool_)};
     if (start.position.allFinite() && start.tool.allFinite()) start_ = start;
   }
 
