@@ -58,7 +58,7 @@ using ProgramBlock = typename detail::ProgramBlockOf<M>::type;
 template <MachineModel M>
 inline constexpr int program_coordinates = [] {
   if constexpr (MappedModel<M>)
-    return path::coordinate_count<detail::MapOf<M>>;
+    return path::coordinate_count<MapOf<M>>;
   else
     return M::axis_count;
 }();
@@ -70,7 +70,7 @@ template <MachineModel M>
   gcode::Dialect dialect;
   dialect.axes.clear();
   if constexpr (MappedModel<M>) {
-    for (const char letter : path::coordinate_letters<detail::MapOf<M>>)
+    for (const char letter : path::coordinate_letters<MapOf<M>>)
       dialect.axes.push_back({letter, path::coordinate_kind(letter)});
   } else {
     for (const auto& axis : machine.axes) dialect.axes.push_back({axis.letter, axis.kind});
@@ -103,7 +103,7 @@ class BlockBuilder {
     for (std::size_t k = 0; k < 3; ++k) space_[k] = index_of("XYZ"[k]);
     if constexpr (MappedModel<M>)
       for (std::size_t i = 0; i < coordinates; ++i)
-        words_[i] = index_of(path::coordinate_letters<detail::MapOf<M>>[i]);
+        words_[i] = index_of(path::coordinate_letters<MapOf<M>>[i]);
     else
       for (std::size_t i = 0; i < coordinates; ++i) words_[i] = index_of(machine.axes[i].letter);
   }
@@ -157,7 +157,7 @@ class BlockBuilder {
   using Programmed = detail::ProgrammedPath<Scalar, program_coordinates<M>>;
   static constexpr bool switchable = [] {
     if constexpr (MappedModel<M>)
-      return path::switchable<detail::MapOf<M>>;
+      return path::switchable<MapOf<M>>;
     else
       return false;
   }();

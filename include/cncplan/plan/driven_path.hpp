@@ -12,6 +12,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/path/mapped.hpp"
+#include "cncplan/path/switched.hpp"
 #include "cncplan/plan/machine.hpp"
 #include "cncplan/smooth/cubic.hpp"
 #include "cncplan/smooth/smoothed.hpp"
@@ -27,7 +28,7 @@ struct CurveOfMachine {
 template <MachineModel M>
   requires MappedModel<M>
 struct CurveOfMachine<M> {
-  using Map = std::remove_cvref_t<decltype(M::map)>;
+  using Map = path::BlockMap<MapOf<M>>;
   using Type = path::Mapped<Map, smooth::BasicCubic<typename M::Scalar, path::coordinate_count<Map>>>;
 };
 

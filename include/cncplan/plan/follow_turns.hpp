@@ -21,9 +21,9 @@ namespace cncplan::plan {
 /// along for a turn of its own, as the table does that C of a program names.
 template <MappedModel M>
 [[nodiscard]] std::uint32_t turning_joints(
-    const M& machine, const VectorN<typename M::Scalar, path::coordinate_count<detail::MapOf<M>>>& at) {
+    const M& machine, const VectorN<typename M::Scalar, path::coordinate_count<MapOf<M>>>& at) {
   using S = typename M::Scalar;
-  using Map = detail::MapOf<M>;
+  using Map = MapOf<M>;
   std::uint32_t result = 0;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     if (machine.axes[i].kind == AxisKind::rotary) result |= std::uint32_t{1} << i;

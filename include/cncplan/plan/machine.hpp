@@ -159,12 +159,9 @@ concept MappedModel = MachineModel<M> && requires(const M& machine) {
   machine.map;
 };
 
-namespace detail {
-
+/// The map of a machine.
 template <MappedModel M>
 using MapOf = std::remove_cvref_t<decltype(M::map)>;
-
-}  // namespace detail
 
 /// The lower of the limits upwards and downwards.
 template <std::floating_point S>

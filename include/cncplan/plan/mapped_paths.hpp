@@ -31,10 +31,10 @@ struct BasicMotionStart {
 template <MappedModel M>
 [[nodiscard]] auto block_map(const M& machine, const std::optional<double>& tool_point) {
   auto map = machine.map;
-  if constexpr (path::switchable<detail::MapOf<M>>) {
+  if constexpr (path::switchable<MapOf<M>>) {
     if constexpr (requires { map.tool_length; })
       map.tool_length += static_cast<typename M::Scalar>(tool_point.value_or(0.0));
-    return path::BlockMap<detail::MapOf<M>>{map, tool_point.has_value()};
+    return path::BlockMap<MapOf<M>>{map, tool_point.has_value()};
   } else {
     return map;
   }
@@ -44,7 +44,7 @@ template <MappedModel M>
 template <MappedModel M, class Coordinates>
 [[nodiscard]] std::uint32_t free_turns(const M& machine, const Coordinates& place,
                                        const std::optional<double>& tool_point) {
-  return path::switchable<detail::MapOf<M>> && !tool_point ? 0 : turning_joints(machine, place);
+  return path::switchable<MapOf<M>> && !tool_point ? 0 : turning_joints(machine, place);
 }
 
 /// An angle, and the fewest whole turns that bring it into the travel of an axis.
@@ -56,9 +56,9 @@ template <std::floating_point S>
 
 /// A feed move of the tool, from where the joints stand. Errors: those of `follow_turns`.
 template <MappedModel M, Path P, class Start>
-[[nodiscard]] Expected<path::Mapped<path::BlockMap<detail::MapOf<M>>, P>> mapped_path(
+[[nodiscard]] Expected<path::Mapped<path::BlockMap<MapOf<M>>, P>> mapped_path(
     const M& machine, const P& programmed, const std::optional<double>& tool_point, const Start& start) {
-  using Mapped = path::Mapped<path::BlockMap<detail::MapOf<M>>, P>;
+  using Mapped = path::Mapped<path::BlockMap<MapOf<M>>, P>;
   const Mapped path(block_map(machine, tool_point), programmed);
   const std::uint32_t joints = free_turns(machine, programmed.start(), tool_point);
   if (joints == 0) return path;
@@ -70,7 +70,7 @@ template <MappedModel M, Path P, class Start>
 /// No motion, where a motion begins.
 template <MappedModel M, Path P, class Start>
 [[nodiscard]] auto mapped_rest(const M& machine, const P& programmed, const Start& start) {
-  using Mapped = path::Mapped<path::BlockMap<detail::MapOf<M>>, P>;
+  using Mapped = path::Mapped<path::BlockMap<MapOf<M>>, P>;
   const auto map = block_map(machine, start.tool_point);
   if (!start.axes) return Mapped(map, programmed);
   return Mapped(map, programmed,
@@ -82,7 +82,7 @@ template <MappedModel M, Path P, class Start>
 template <MappedModel M, Path P, class Start>
 [[nodiscard]] auto mapped_rapid(const M& machine, const P& programmed,
                                 const std::optional<double>& tool_point, const Start& start) {
-  using Map = path::BlockMap<detail::MapOf<M>>;
+  using Map = path::BlockMap<MapOf<M>>;
   const path::Mapped<Map, P> ends(block_map(machine, tool_point), programmed);
   const std::uint32_t joints = free_turns(machine, programmed.start(), tool_point);
   auto from = ends.position_at(0), to = ends.position_at(programmed.length());
@@ -102,10 +102,10 @@ template <MappedModel M, Path P, class Start>
 /// `here`, and within the travel if any are; none where the map knows none.
 template <MappedModel M>
 [[nodiscard]] auto joints_of_direction(const M& machine, const std::array<typename M::Scalar, 3>& direction,
-                                       const path::MapJoints<detail::MapOf<M>, typename M::Scalar>& here) {
+                                       const path::MapJoints<MapOf<M>, typename M::Scalar>& here) {
   using S = typename M::Scalar;
   constexpr S upright = S(1e-9);  // rad; nearer than that the second angle may be any
-  std::optional<path::MapJoints<detail::MapOf<M>, S>> best;
+  std::optional<path::MapJoints<MapOf<M>, S>> best;
   S least{};
   bool within = false;
   for (const auto& angles : machine.map.angles(direction)) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "cncplan/core/concepts.hpp"
@@ -40,6 +41,16 @@ class ProgrammedPath {
     });
   }
 
+  [[nodiscard]] const Segment& segment() const { return *segment_; }
+  /// Joints that turn beyond what the map says, a bit for each.
+  [[nodiscard]] std::uint32_t turning() const {
+    return segment_->visit([](const auto& path) -> std::uint32_t {
+      if constexpr (ImageUnder<std::remove_cvref_t<decltype(path)>, M>)
+        return path.turns().joints;
+      else
+        return 0;
+    });
+  }
   [[nodiscard]] Scalar length() const { return segment_->length(); }
   [[nodiscard]] Vector position_at(Scalar s) const {
     return with(Vector(Vector::Constant(none)), [s](const auto& p) -> Vector { return p.position_at(s); });

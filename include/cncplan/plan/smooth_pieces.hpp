@@ -7,6 +7,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory_resource>
 #include <optional>
@@ -15,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/kinematics/azimuth.hpp"
+#include "cncplan/path/switched.hpp"
 #include "cncplan/plan/block_checks.hpp"
 #include "cncplan/plan/driven_path.hpp"
 #include "cncplan/plan/mapped_cells.hpp"
@@ -50,7 +53,7 @@ template <MachineModel M, Path P>
 [[nodiscard]] bool maps_agree([[maybe_unused]] const P& before, [[maybe_unused]] const P& after, const M&) {
   if constexpr (MappedModel<M>) {
     using S = typename M::Scalar;
-    using Programmed = ProgrammedPath<std::remove_cvref_t<decltype(M::map)>, P>;
+    using Programmed = ProgrammedPath<path::BlockMap<MapOf<M>>, P>;
     const Programmed path(after);
     const auto* own = path.map();
     const auto* other = Programmed(before).map();
@@ -78,9 +81,20 @@ template <MachineModel M, Path P>
 template <MachineModel M, Path P>
 [[nodiscard]] bool can_follow(const P& path, const M&) {
   if constexpr (MappedModel<M>)
-    return ProgrammedPath<std::remove_cvref_t<decltype(M::map)>, P>(path).map() != nullptr;
+    return ProgrammedPath<path::BlockMap<MapOf<M>>, P>(path).map() != nullptr;
   else
     return true;
+}
+
+/// The coordinates of a map as axes, by their letters.
+template <std::floating_point S, path::Map Map>
+[[nodiscard]] constexpr auto coordinate_axes() {
+  std::array<BasicAxis<S>, static_cast<std::size_t>(path::coordinate_count<Map>)> axes{};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    axes[i].letter = path::coordinate_letters<Map>[i];
+    axes[i].kind = path::coordinate_kind(axes[i].letter);
+  }
+  return axes;
 }
 
 /// How far smoothing may take each of these axes from a block.
@@ -126,7 +140,7 @@ class RunBlocks {
                         std::pmr::memory_resource* memory) const {
     return Run(blocks_, limits_, options, start, memory);
   }
-  [[nodiscard]] Piece piece(const Cubic& curve, std::size_t) const { return curve; }
+  [[nodiscard]] Piece piece(const Cubic& curve, std::size_t, S) const { return curve; }
   /// Whether the limits along them are finite, about.
   [[nodiscard]] bool bounded() const { return true; }
 
@@ -142,7 +156,7 @@ template <MappedModel M, BlockModel B>
 class RunBlocks<M, B> {
  public:
   using S = typename M::Scalar;
-  using Map = std::remove_cvref_t<decltype(M::map)>;
+  using Map = path::BlockMap<MapOf<M>>;
   static constexpr int coordinates = path::coordinate_count<Map>;
   using Path = ProgrammedPath<Map, typename B::Path>;
   using Piece = CurveOf<M>;
@@ -168,7 +182,7 @@ class RunBlocks<M, B> {
         std::max(limits_.tool.velocity, std::min(top_speed(block, machine_), most_speed_));
     paths_.emplace_back(block.path);
     maps_.push_back(paths_.back().map());
-    blocks_.push_back({&paths_.back(), speed, tolerances(block, default_axes<S, coordinates>(), rules)});
+    blocks_.push_back({&paths_.back(), speed, tolerances(block, coordinate_axes<S, Map>(), rules)});
     measure(block, speed);
   }
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
@@ -178,7 +192,20 @@ class RunBlocks<M, B> {
                         std::pmr::memory_resource* memory) const {
     return Run(blocks_, limits_, options, start, memory, Cells(maps_, limits_, along()));
   }
-  [[nodiscard]] Piece piece(const Cubic& curve, std::size_t block) const { return {*maps_[block], curve}; }
+  /// `from`: mm of the block before the piece. Its joints turn as often as those of the block there.
+  [[nodiscard]] Piece piece(const Cubic& curve, std::size_t block, S from) const {
+    Piece piece(*maps_[block], curve);
+    const std::uint32_t turning = paths_[block].turning();
+    if (turning == 0) return piece;
+    const auto& path = paths_[block].segment();
+    typename Piece::WholeTurns turns{piece.position_at(S(0)), piece.position_at(curve.length()), turning};
+    const auto start = path.position_at(from), end = path.position_at(from + curve.length());
+    for (int i = 0; i < M::axis_count; ++i) {
+      turns.from[i] = kinematics::near_turn(turns.from[i], start[i]);
+      turns.to[i] = kinematics::near_turn(turns.to[i], end[i]);
+    }
+    return Piece(*maps_[block], curve, turns);
+  }
   [[nodiscard]] bool bounded() const {
     const BasicLimits<S> limits = along();
     return std::isfinite(limits.acceleration) && std::isfinite(limits.jerk);

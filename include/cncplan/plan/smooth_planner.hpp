@@ -384,7 +384,7 @@ class SmoothPlanner {
     if (!ends && !MappedModel<M>) return true;
     std::optional<VectorN<S, n>> end;
     return std::all_of(run.pieces.begin(), run.pieces.end(), [&](const auto& piece) {
-      const auto path = blocks.piece(piece.path, piece.block);
+      const auto path = blocks.piece(piece.path, piece.block, piece.from);
       if constexpr (MappedModel<M>)
         if (!goes_on(end, path, machine_)) return false;
       return !ends || within_travel(path, machine_).has_value();
@@ -405,7 +405,7 @@ class SmoothPlanner {
         if (std::exchange(begun_, false) && source == planned_) out_.back().word = {};
       }
       places.push_back(pieces_.size());
-      pieces_.push_back({out_.size() - 1, from, given.blocks.piece(path, block)});
+      pieces_.push_back({out_.size() - 1, from, given.blocks.piece(path, block, from)});
     }
     if (next > end) {  // the last block goes on in what follows
       B& cut = out_.back();

@@ -48,8 +48,8 @@ template <MachineModel M>
   using S = typename M::Scalar;
   if constexpr (!MappedModel<M>) {
     return in_space(position, tool);
-  } else if constexpr (path::InvertibleMap<detail::MapOf<M>>) {
-    using Map = detail::MapOf<M>;
+  } else if constexpr (path::InvertibleMap<MapOf<M>>) {
+    using Map = MapOf<M>;
     path::MapJoints<Map, S> joints;
     for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = position[static_cast<Eigen::Index>(i)];
     const auto point = machine.map.point(joints);
@@ -80,7 +80,7 @@ template <MachineModel M, Path P>
     const M& machine, const P& path, typename M::Scalar s,
     const VectorN<typename M::Scalar, M::axis_count>& position, const std::array<int, 3>& tool) {
   if constexpr (MappedModel<M>) {
-    if constexpr (path::switchable<detail::MapOf<M>>)
+    if constexpr (path::switchable<MapOf<M>>)
       if (is_direct(path)) return tool_of_axes(machine, position, tool);
     return tool_point(path, s, tool).position;
   } else {
