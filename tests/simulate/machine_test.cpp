@@ -33,12 +33,6 @@ TEST_CASE("the mills that ship are read, and run a program") {
   CHECK(machines >= 1);
 }
 
-TEST_CASE("the manual shows the mill's file as it is") {
-  const std::string manual = test::text_of(CNCPLAN_EXAMPLES "/../docs/machine-file.md");
-  CHECK(manual.find("```toml\n" + test::text_of(CNCPLAN_EXAMPLES "/machines/mill3.toml") + "```\n") !=
-        std::string::npos);
-}
-
 TEST_CASE("a tool of the machine file may stand beside the spindle's axis") {
   const test::Folder folder;
   folder.write("m.toml", "unit = \"inch\"\n[tools]\n1 = { length = 1, X = 2, Y = -0.5 }\n");
