@@ -1,5 +1,5 @@
 // What corners within a tolerance must lose, by linear programming, beside what both levels of smoothing lose
-// there: the table of docs/smoothing-figures.md. Exit 1 if a plan is faster than its bound.
+// there: the table of tests/optimum/README.md. Exit 1 if a plan is faster than its bound.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>

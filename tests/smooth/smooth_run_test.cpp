@@ -163,7 +163,7 @@ TEST_CASE("one corner: limits, tolerance, and the time of the study") {
 }
 
 TEST_CASE("sharp corners take little more than any motion must") {
-  // The least losses are those of an independent program (docs/smoothing-figures.md, how far from the
+  // The least losses are those of an independent program (tests/optimum/README.md, how far from the
   // optimum).
   struct Row {
     double degrees, tolerance, least;
