@@ -177,7 +177,7 @@ TEST_CASE("under a map: the tool's point and its direction are smoothed, each wi
 
 std::string line_to(const std::vector<double>& point, const char* letters) {
   std::ostringstream out;
-  out << std::setprecision(9) << "G1";
+  out << std::fixed << std::setprecision(6) << "G1";
   for (std::size_t i = 0; i < point.size(); ++i) out << ' ' << letters[i] << point[i];
   return out.str() + "\n";
 }
@@ -215,7 +215,6 @@ TEST_CASE("under a map: random programs keep limits and tolerance") {
       for (auto& axis : machine.axes) axis.jerk *= random.log_uniform(0.3, 10);
       const double radius = random.log_uniform(5, 150);
       std::vector<double> at{radius, 0, 0};
-      std::string last;
       for (int i = 0; i < 15; ++i) {
         for (double& x : at) x += stride * random.uniform(-1, 1);
         at[0] = std::max(at[0], 0.2 * radius);  // not across the axis
