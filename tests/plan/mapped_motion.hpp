@@ -16,7 +16,8 @@ namespace cncplan::test {
 
 /// The most of each limit that third, second and first differences show, as a share, joints and tool; what
 /// rounding of positions may add is taken off: a position is known to half a unit in its last place, times 8
-/// in a third difference, and a transformation's sines and sums make of it a few units more.
+/// in a third difference, and a transformation's sines and sums make of it a few units more; so do the last
+/// places of the time at a speed.
 template <class T, class M, class Forward>
 Used used_under_map(const T& trajectory, const M& machine, const Forward& tip, double period = 2e-4) {
   constexpr int n = M::axis_count;
@@ -34,7 +35,7 @@ Used used_under_map(const T& trajectory, const M& machine, const Forward& tip, d
     if (++known < 4) continue;
     const V v = (p[0] - p[1]) / period, a = (p[0] - 2 * p[1] + p[2]) / (period * period),
             j = (p[0] - 3 * p[1] + 3 * p[2] - p[3]) / (period * period * period);
-    const V unit = all.cwiseAbs() * std::numeric_limits<double>::epsilon();
+    const V unit = (all.cwiseAbs() + v.cwiseAbs() * point.time) * std::numeric_limits<double>::epsilon();
     const auto include = [&](double& share, const V& value, double power, auto limit, double of_tool) {
       const V rounding = units * power * unit / std::pow(period, std::log2(power));
       for (int i = 0; i < n; ++i)
