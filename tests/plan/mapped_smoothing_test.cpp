@@ -8,6 +8,7 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cncplan/junction/exact_stop.hpp"
@@ -52,7 +53,7 @@ Polyline programmed_tip(const Blocks& blocks) {
 }
 
 // How far two directions are apart, rad.
-double angle(const Vector3& a, const Vector3& b) {
+double turn_between(const Vector3& a, const Vector3& b) {
   return 2 * std::atan2((a.normalized() - b.normalized()).norm(), (a.normalized() + b.normalized()).norm());
 }
 
@@ -61,7 +62,7 @@ double angle(const Vector3& a, const Vector3& b) {
 struct TiltingTable {
   using Scalar = double;
   static constexpr int axis_count = 5;
-  static constexpr int coordinate_count = 5;
+  static constexpr std::string_view coordinates = "XYZAB";
 
   double z = -20, y = 5;  // of the tilting axis
 
@@ -166,7 +167,7 @@ TEST_CASE("under a map: the tool's point and its direction are smoothed, each wi
         for (int i = 0; i <= 2000; ++i) {
           const VectorN<double, 5> q = block.path.position_at(block.path.length() * i / 2000.0);
           if ((machine.map.tip(q) - at).norm() < options.tolerance + 0.02)
-            least = std::min(least, angle(machine.map.direction(q), way));
+            least = std::min(least, turn_between(machine.map.direction(q), way));
         }
       most = std::max(most, least);
     }

@@ -47,8 +47,8 @@ Case draw(test::Random& random, const Vector3& middle, double reach, const std::
   const double stride = random.log_uniform(0.1, 0.6 * reach);
   Case result;
   result.options = {.tolerance = random.log_uniform(0.002, 0.1),
-                    .rotary_tolerance = random.log_uniform(1e-4, 3e-3),
                     .level = level,
+                    .rotary_tolerance = random.log_uniform(1e-4, 3e-3),
                     .start = {middle.x(), middle.y(), middle.z()}};
   result.text = before + "F" + std::to_string(random.log_uniform(200, 8000)) + "\n";
   Vector3 at = middle;
@@ -132,9 +132,9 @@ bool examine(std::uint64_t seed, SmoothLevel level, bool show, Errors& errors) {
                    const Vector3 d(q[0] - c[0], q[1] - c[1], q[2] - c[2]);
                    const double ca = std::cos(q[3]), sa = std::sin(q[3]), cc = std::cos(q[4]),
                                 sc = std::sin(q[4]);
-                   const Vector3 level(d.x(), ca * d.y() + sa * d.z(), -sa * d.y() + ca * d.z());
-                   return Vector3(cc * level.x() + sc * level.y() + c[0],
-                                  -sc * level.x() + cc * level.y() + c[1], level.z() + c[2]);
+                   const Vector3 tilted(d.x(), ca * d.y() + sa * d.z(), -sa * d.y() + ca * d.z());
+                   return Vector3(cc * tilted.x() + sc * tilted.y() + c[0],
+                                  -sc * tilted.x() + cc * tilted.y() + c[1], tilted.z() + c[2]);
                  });
     }
     case 2: {
