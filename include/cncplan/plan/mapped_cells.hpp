@@ -1,4 +1,4 @@
-// Smoothed pieces in a program's coordinates as the limits of a machine behind a map see them.
+// Smoothed pieces in a program's coordinates as the limits of a machine behind a map see them (set-up).
 #pragma once
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/path/mapped.hpp"
