@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -112,6 +113,47 @@ TEST_CASE("under G43.4 X Y Z is the tip in the part, and the axes keep their lim
   CHECK(velocity < 1 + 1e-9);
   CHECK(acceleration < 1 + 1e-9);
   CHECK(jerk < 1 + 1e-9);
+}
+
+TEST_CASE("under G43.4 corners are smoothed at the tip, within the axes' limits", "[tool point]") {
+  const std::vector<Vector3> points{{40, 0, 0}, {40, 30, 0}, {0, 40, 0}, {-30, 10, 5}, {-30, -20, 0}};
+  const std::array<std::array<double, 2>, 5> angles{{{0, 0}, {-30, 45}, {-45, 120}, {-20, 200}, {-20, 200}}};
+  std::string text = "F3000\nG43.4\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::array<char, 120> line;
+    std::snprintf(line.data(), line.size(), "G1 X%g Y%g Z%g A%g C%g\n", points[i].x(), points[i].y(),
+                  points[i].z(), angles[i][0], angles[i][1]);
+    text += line.data();
+  }
+  const PlanOptions options{.tolerance = 0.02, .rotary_tolerance = 0.05 * degree};
+  const auto trajectory = plan_text(text, mill(), options);
+  REQUIRE(trajectory);
+  CHECK(trajectory->fallbacks().empty());
+  double off = 0, told = 0, jerk = 0;
+  constexpr double period = 0.001;
+  std::vector<Vector5> axes;
+  for (const auto& point : trajectory->samples(period)) {
+    if (point.time > trajectory->duration() - 1e-9) break;
+    axes.push_back(point.position);
+    told = std::max(told, (tip(point.position) - point.tool).norm());
+    double nearest = (point.tool - Vector3(0, 0, 0)).norm();
+    nearest = std::min(nearest, off_line(point.tool, {0, 0, 0}, points[0]));
+    for (std::size_t i = 1; i < points.size(); ++i)
+      nearest = std::min(nearest, off_line(point.tool, points[i - 1], points[i]));
+    off = std::max(off, nearest);
+  }
+  const std::array most{40000., 40000., 30000., 7200 * degree, 14400 * degree};
+  for (std::size_t i = 3; i < axes.size(); ++i)
+    for (int k = 0; k < 5; ++k) {
+      const double third = axes[i][k] - 3 * axes[i - 1][k] + 3 * axes[i - 2][k] - axes[i - 3][k];
+      jerk = std::max(jerk, std::abs(third) / (period * period * period) / most[static_cast<std::size_t>(k)]);
+    }
+  CHECK(told < 1e-9);
+  CHECK(off > 0.001);
+  CHECK(off <= 0.02 * (1 + 1e-6));
+  CHECK(jerk <= 1.001);
+  const auto exact = plan_text(text, mill(), {.tolerance = 0});
+  CHECK(trajectory->duration() < exact->duration());
 }
 
 TEST_CASE("tool-point control is switched on and off, and the axes go on from where they are",

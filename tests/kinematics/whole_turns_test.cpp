@@ -108,6 +108,23 @@ TEST_CASE("a table that is told by atan2 goes on turning, round and round", "[tu
   CHECK(follow(*exact, polar_tip, 1).travel == Approx(-6 * pi));
 }
 
+TEST_CASE("a smoothed path turns on where the formula jumps", "[turns]") {
+  const std::string square = "X-30 Y20\nX-30 Y-20\nX30 Y-20\nX30 Y20\n";
+  const auto trajectory =
+      plan_text("F1200\nG1 " + square + square + "G3 X30 Y20 I-30 J-20\nG1 X-30 Y0\nX-30.5\n", polar(),
+                {.tolerance = 0.05, .start = {30, 20, 0}});
+  REQUIRE(trajectory);
+  const Followed seen = follow(*trajectory, polar_tip, 1);
+  CHECK(seen.jump < 1 + 1e-6);
+  CHECK(seen.tip < 1e-9);
+  CHECK(seen.travel == Approx(3 * 2 * pi + pi - std::atan2(20, 30)));
+  bool smoothed = false;
+  for (const auto& point : trajectory->samples(0.002))
+    smoothed = smoothed || (std::abs(point.tool.x() + 30) < 0.06 && point.tool.y() > 19.9 &&
+                            (point.tool - Vector3(-30, 20, 0)).norm() > 0.01 && point.velocity.norm() > 1);
+  CHECK(smoothed);
+}
+
 TEST_CASE("rapids turn the shorter way, and stay within the travel", "[turns]") {
   const std::string text = "G0 X-50 Y-10\n";
   const auto shorter = planned(text, polar(), {-50, 10, 0});

@@ -80,7 +80,7 @@ template <MappedModel M, class Mapped>
     auto last = at;
     visit(S(0), last.position);
     S s{}, step = longest;
-    for (int count = 0; s < length; ++count) {
+    for (int count = 0; s < length && count < most_steps; ++count) {
       const S to = s + step >= length ? length : s + step;
       auto next = path.point_at(to);
       if (!next.position.allFinite() || !next.first.allFinite()) return Way::not_finite;
@@ -97,7 +97,7 @@ template <MappedModel M, class Mapped>
       });
       if (worst > near) {
         step = (to - s) / S(2);
-        if (!(s + step > s) || count >= most_steps) return Way::jumps;
+        if (!(s + step > s)) return Way::jumps;
         continue;
       }
       visit(to, next.position);
@@ -106,7 +106,7 @@ template <MappedModel M, class Mapped>
       s = to;
       if (worst < near / S(4)) step = std::min(S(2) * step, longest);
     }
-    return Way::followed;
+    return s < length ? Way::jumps : Way::followed;
   };
   Vector low = at.position, high = at.position, end = at.position;
   each([&](int i) {
