@@ -27,6 +27,21 @@ auto planned(const std::string& text, const Machine<3>& machine) {
   return *std::move(trajectory);
 }
 
+// A proof about one trajectory.
+struct Clocked {
+  using B = ProgramBlock<Machine<3>>;
+
+  Clocked(const Trajectory<Machine<3>, B>& trajectory, const Machine<3>& machine) : proof(machine) {
+    chain.push_back(trajectory, {});
+  }
+  bool holds(const state::Motion& clock, bool backwards, double until, int& work) const {
+    return proof.holds(chain, clock, backwards, until, work);
+  }
+
+  plan::TrajectoryChain<Machine<3>, B> chain;
+  plan::ClockProof<Machine<3>, B> proof;
+};
+
 // From a rate of 1 or so to rest, with so much jerk and acceleration of the clock.
 state::Motion change(double at, double rate, double to, double jerk, double acceleration) {
   AxisLimits limits;
@@ -114,7 +129,7 @@ TEST_CASE("clock: the third derivative of an arc changes by no more than its bou
 
 TEST_CASE("clock: a hold on a line is proven just as far as the limits go", "[clock]") {
   const auto trajectory = planned("F1800 G1 X60\nY1\n", mill);
-  const plan::ClockProof proof(trajectory, mill);
+  const Clocked proof(trajectory, mill);
   const double jerk = 10000.0 / 30, acceleration = 1000.0 / 30;
   const auto holds = [&](double share) {
     int work = 10000;
@@ -135,7 +150,7 @@ TEST_CASE("clock: what is proven is within the limits, both ways, on lines, arcs
   const auto trajectory = planned(
       "F1800 G1 X8\nY5\nX9 Y5.5\nG3 X14 Y0.5 R6\nG1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\nG1 X4 Y0\n",
       with_reserve(machine, 0.1));
-  const plan::ClockProof proof(trajectory, machine);
+  const Clocked proof(trajectory, machine);
   Random random;
   int proven = 0, refused = 0;
   for (int i = 0; i < 600; ++i) {

@@ -9,7 +9,7 @@
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/plan/limits_along.hpp"
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/plan/trajectory_chain.hpp"
 #include "cncplan/smooth/cubic.hpp"
 #include "cncplan/state/motion.hpp"
 
@@ -53,19 +53,19 @@ template <MachineModel M, BlockModel B>
 class ClockProof {
  public:
   using S = typename M::Scalar;
+  using Chain = TrajectoryChain<M, B>;
   static constexpr int n = M::axis_count;
 
-  ClockProof(const Trajectory<M, B>& trajectory, const M& machine)
-      : trajectory_(&trajectory), limits_(machine_limits(machine)), tool_(tool_axes(machine)) {}
+  explicit ClockProof(const M& machine) : limits_(machine_limits(machine)), tool_(tool_axes(machine)) {}
 
   [[nodiscard]] const BasicMachineLimits<S, n>& limits() const { return limits_; }
 
   /// From the start of the motion of a clock to its end, or to where it shows `until`. It goes one way. Every
   /// interval that is looked at takes one from `work`: false too where nothing is left of it.
-  [[nodiscard]] bool holds(const state::BasicMotion<S>& clock, bool backwards, S until, int& work) const {
-    const auto phases = trajectory_->phases();
+  [[nodiscard]] bool holds(const Chain& chain, const state::BasicMotion<S>& clock, bool backwards, S until,
+                           int& work) const {
     const S sense = backwards ? S(-1) : S(1);
-    std::size_t now = trajectory_->phase_at(clock.start().position);
+    std::size_t now = chain.phase_at(clock.start().position);
     BasicAxisState<S> from = clock.start();
     for (const BasicJerkPhase<S>& part : clock.phases()) {
       const BasicPhase<S> way{S(0),
@@ -75,13 +75,14 @@ class ClockProof {
                               sense * part.acceleration,
                               sense * part.jerk};
       for (S t = S(0); t < part.duration;) {
-        const auto& phase = phases[now].phase;
+        const Interval in{chain.phase(now), chain.path(now), from, part};
+        const BasicPhase<S>& phase = in.phase;
         const S end = backwards ? std::max(phase.time, until) : std::min(phase.time + phase.duration, until);
         const S to = std::clamp(way.tau_at(sense * (end - from.position)), t, part.duration);
-        if (to > t && !keeps(now, from, part, t, to, 0, work)) return false;
+        if (to > t && !keeps(in, t, to, 0, work)) return false;
         t = to;
         if (t >= part.duration) break;
-        if (end == until || (backwards ? now == 0 : now + 1 == phases.size())) return true;
+        if (end == until || (backwards ? now == chain.first_phase() : now == chain.last_phase())) return true;
         backwards ? --now : ++now;
       }
       from = part.after(from, part.duration);
@@ -96,24 +97,25 @@ class ClockProof {
 
   enum class Answer { yes, no, unknown };
 
-  [[nodiscard]] bool keeps(std::size_t phase, const BasicAxisState<S>& from, const BasicJerkPhase<S>& part,
-                           S low, S high, int depth, int& work) const {
+  // One phase of a trajectory under one part of a clock's motion.
+  struct Interval {
+    BasicPhase<S> phase;
+    typename Chain::DrivenPath path;
+    const BasicAxisState<S>& from;
+    const BasicJerkPhase<S>& part;
+  };
+
+  [[nodiscard]] bool keeps(const Interval& in, S low, S high, int depth, int& work) const {
     if (--work < 0) return false;
-    const Answer answer = look(phase, from, part, low, high);
+    const Answer answer =
+        in.path.visit([&](const auto& path) { return look(path, in.phase, in.from, in.part, low, high); });
     if (answer != Answer::unknown) return answer == Answer::yes;
     if (depth == deepest) return false;
     const S middle = low + (high - low) / S(2);
-    return keeps(phase, from, part, low, middle, depth + 1, work) &&
-           keeps(phase, from, part, middle, high, depth + 1, work);
+    return keeps(in, low, middle, depth + 1, work) && keeps(in, middle, high, depth + 1, work);
   }
 
-  // One interval of a part of the clock's motion, within one phase.
-  [[nodiscard]] Answer look(std::size_t index, const BasicAxisState<S>& from, const BasicJerkPhase<S>& part,
-                            S low, S high) const {
-    const auto& [phase, piece] = trajectory_->phases()[index];
-    return trajectory_->path(piece).visit(
-        [&, &phase = phase](const auto& path) { return look(path, phase, from, part, low, high); });
-  }
+  // One interval of time, within one phase.
   template <Path P>
   [[nodiscard]] Answer look(const P& path, const BasicPhase<S>& phase, const BasicAxisState<S>& from,
                             const BasicJerkPhase<S>& part, S low, S high) const {
@@ -166,7 +168,6 @@ class ClockProof {
     return proven ? Answer::yes : Answer::unknown;
   }
 
-  const Trajectory<M, B>* trajectory_;
   BasicMachineLimits<S, n> limits_;
   std::array<int, 3> tool_;
 };

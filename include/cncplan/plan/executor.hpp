@@ -13,6 +13,10 @@ namespace cncplan {
 
 namespace plan {
 
+/// What drives an executor at the levels `good` and `best`: plan/executor_levels.hpp.
+template <MachineModel M, BlockModel B>
+struct ExecutorLevels;
+
 /// The memory of an executor that looks ahead over `capacity` cells and keeps as many behind.
 template <MachineModel M, BlockModel B, std::size_t capacity>
 class ExecutorRoom {
@@ -54,14 +58,29 @@ class ExecutorRoom {
 /// waits. `restart` is for a machine at rest while nothing else is called.
 template <MachineModel M, std::size_t capacity, BlockModel B = ProgramBlock<M>>
 class Executor : private plan::ExecutorRoom<M, B, capacity>, public plan::ExecutorCore<M, B> {
+  using Scalar = typename M::Scalar;
+
   static_assert(capacity >= 2, "an executor looks ahead over two blocks at least");
 
  public:
   using Options = typename plan::ExecutorCore<M, B>::Options;
 
+  using LevelOptions = BasicExecutorOptions<Scalar, SmoothLevel>;
+
   /// A machine that `validate` refuses is told by `error`.
   explicit Executor(const M& machine, const Options& options = {})
       : plan::ExecutorCore<M, B>(this->memory(), machine, options) {}
+
+  /// At any level; plan/executor_levels.hpp has what is behind it. What the levels `good` and `best` need
+  /// lies in a memory resource: the default one of now, or one that is given.
+  template <class Levels = plan::ExecutorLevels<M, B>>
+  explicit Executor(const M& machine, const LevelOptions& options)
+      : Executor(machine, options, Levels::memory()) {}
+  template <class Memory, class Levels = plan::ExecutorLevels<M, B>>
+  explicit Executor(const M& machine, const LevelOptions& options, Memory* memory)
+      : Executor(machine, Levels::fast(options)) {
+    if (auto* const level = Levels::make(machine, options, capacity, memory)) this->drive_by(*level);
+  }
 };
 
 }  // namespace cncplan

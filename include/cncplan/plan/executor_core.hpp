@@ -11,9 +11,11 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "cncplan/core/function_ref.hpp"
 #include "cncplan/plan/executor_state.hpp"
+#include "cncplan/plan/live/level_driver.hpp"
 #include "cncplan/plan/player/axis_part.hpp"
 #include "cncplan/plan/player/cell_feed.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
@@ -22,15 +24,24 @@
 #include "cncplan/plan/player/shared_count.hpp"
 #include "cncplan/plan/run_error.hpp"
 #include "cncplan/plan/set_point.hpp"
+#include "cncplan/plan/smooth_level.hpp"
 
 namespace cncplan {
 
-/// What holds for all that an executor runs.
-template <std::floating_point S>
+/// The level of an executor that only has one.
+struct FastLevel {
+  constexpr FastLevel() {}  // not made of a `SmoothLevel`
+};
+
+/// What holds for all that an executor runs. With a `level` of type `SmoothLevel` it can be any; an executor
+/// that is made so can do more, and is compiled and linked with more, than one that only has the level
+/// `fast`.
+template <std::floating_point S, class Level = FastLevel>
 struct BasicExecutorOptions {
   /// mm, >= 0: how far the tool may leave the programmed path, so that it moves without a jump of velocity or
   /// acceleration; 0: the exact path
   S tolerance = S(0.01);
+  Level level{};                                 ///< of smoothing
   S rotary_tolerance = S(8.726646259971648e-4);  ///< rad, > 0: the same for rotary axes; 0.05 degrees
   /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
   S junction_deviation = S(0.01);
@@ -42,9 +53,13 @@ struct BasicExecutorOptions {
                               ///< each axis may use in a quick stop; what drives and mechanics bear beyond
                               ///< the limits that machining has
   bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
+  /// 0 to 1: the share of the limits of acceleration and jerk that plans at the levels `good` and `best`
+  /// leave for holds. The more, the sooner a hold comes, and the longer the program takes.
+  S reserve = S(0.05);
 };
 
 using ExecutorOptions = BasicExecutorOptions<double>;
+using LevelExecutorOptions = BasicExecutorOptions<double, SmoothLevel>;
 
 namespace plan {
 
@@ -75,6 +90,9 @@ class ExecutorCore {
   ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options);
   ExecutorCore(const ExecutorCore&) = delete;
   ExecutorCore& operator=(const ExecutorCore&) = delete;
+  ~ExecutorCore() {
+    if (level_ != nullptr) level_->destroy();
+  }
 
   [[nodiscard]] const M& machine() const { return machine_; }
 
@@ -86,9 +104,10 @@ class ExecutorCore {
   /// that.
   [[nodiscard]] bool push(const B& block);
   /// How many blocks have been taken.
-  [[nodiscard]] std::int64_t pushed() const { return feed_.pushed(); }
+  [[nodiscard]] std::int64_t pushed() const { return level_ != nullptr ? level_->pushed() : feed_.pushed(); }
   /// Nothing will follow: marks the end. Ticks, or `plan`, do the work for it.
   void end_of_program() {
+    if (level_ != nullptr) return level_->end_of_program();
     feed_.end_part();
     end_.store(feed_.pushed());
     ended_.store(true, std::memory_order_release);
@@ -97,6 +116,7 @@ class ExecutorCore {
   /// that are smoothed; whether there is more to be done now or later. `push` and, without `background`,
   /// `tick` do this by themselves.
   bool plan(std::size_t most_steps = std::numeric_limits<std::size_t>::max()) {
+    if (level_ != nullptr) return level_->plan();
     return feed_.cut(most_steps, [this](const Cell& cell) { return player_.push(cell); });
   }
 
@@ -115,38 +135,52 @@ class ExecutorCore {
   /// Comes to rest as soon as the limits allow, a jog too; `resume` goes on from there, and behind every
   /// other rest.
   void feed_hold() {
-    player_.hold();
+    drive([&](auto& driver) { driver.hold(); });
     end_jog(Scalar(1));
   }
   void resume() {
-    player_.resume();
+    drive([&](auto& driver) { driver.resume(); });
     if (away_) returns_ = true;
   }
   /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is what is no number. Values outside are cut.
-  void feed_override(Scalar share) { player_.feed_override(share); }
+  void feed_override(Scalar share) {
+    drive([&](auto& driver) { driver.feed_override(share); });
+  }
   /// Share of the rapid rate, 0 to 1.
-  void rapid_override(Scalar share) { player_.rapid_override(share); }
+  void rapid_override(Scalar share) {
+    drive([&](auto& driver) { driver.rapid_override(share); });
+  }
   /// Comes to rest as `feed_hold` does, and the program ends there.
   void stop() {
-    player_.stop();
+    drive([&](auto& driver) { driver.stop(); });
     end_jog(Scalar(1));
   }
   /// Comes to rest as `feed_hold` does, with `quick_stop_share` times the limits of acceleration and jerk.
   void quick_stop() {
-    player_.quick_stop(quick_stop_share_);
+    drive([&](auto& driver) { driver.quick_stop(quick_stop_share_); });
     end_jog(quick_stop_share_);
   }
   /// Runs back along the path, as far as blocks are kept, or forwards again. It comes to rest in between.
-  void reverse(bool wanted) { player_.backwards(wanted); }
+  void reverse(bool wanted) {
+    drive([&](auto& driver) { driver.backwards(wanted); });
+  }
   /// Rests behind every block until it is resumed.
-  void single_step(bool wanted) { player_.single_step(wanted); }
+  void single_step(bool wanted) {
+    drive([&](auto& driver) { driver.single_step(wanted); });
+  }
   /// Rests at M1 until it is resumed.
-  void optional_stop(bool wanted) { player_.optional_stop(wanted); }
+  void optional_stop(bool wanted) {
+    drive([&](auto& driver) { driver.optional_stop(wanted); });
+  }
   /// Rests at M0 and M60 until it is resumed, which it does unless it is switched off. Then they stop the
   /// motion, and it goes on.
-  void program_stop(bool wanted) { player_.program_stop(wanted); }
+  void program_stop(bool wanted) {
+    drive([&](auto& driver) { driver.program_stop(wanted); });
+  }
   /// Rests before the first block of a line until it is resumed. 0: none.
-  void pause_at(int line) { player_.pause_at(line); }
+  void pause_at(int line) {
+    drive([&](auto& driver) { driver.pause_at(line); });
+  }
 
   // Jogs, while no program moves the axes: it is held, stopped or over, or there is none. A program goes on
   // once the axes are back on its path.
@@ -183,15 +217,33 @@ class ExecutorCore {
   /// Seconds that all ticks add up to.
   [[nodiscard]] Scalar time() const { return time_.since(Scalar(0)); }
   /// Seconds until the jerk changes next, if nothing is asked for and no block comes; infinity at rest.
-  [[nodiscard]] Scalar until_change() const { return player_.until_change(); }
+  [[nodiscard]] Scalar until_change() const {
+    return drive([](auto& driver) { return driver.until_change(); });
+  }
   /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
-  [[nodiscard]] Scalar rested() const { return player_.rested(); }
+  [[nodiscard]] Scalar rested() const {
+    return drive([](auto& driver) { return driver.rested(); });
+  }
+
+ protected:
+  /// It is driven by this from now on, and destroys it.
+  void drive_by(LevelDriver<M, B>& level) { level_ = &level; }
 
  private:
   using Cell = BasicPlayedBlock<Scalar>;
   using Tell = FunctionRef<void(const Part&)>;
   static constexpr std::size_t steps_in_tick = 3, steps_in_push = 8;
   static constexpr int ticks_to_go_on = 16;  // in which blocks that are let go are there to be run
+
+  // What moves the axes along the path: the player, or at higher levels another one.
+  template <class Ask>
+  decltype(auto) drive(Ask&& ask) {
+    return level_ != nullptr ? ask(*level_) : ask(player_);
+  }
+  template <class Ask>
+  decltype(auto) drive(Ask&& ask) const {
+    return level_ != nullptr ? ask(std::as_const(*level_)) : ask(player_);
+  }
 
   void stand_at(const Vector& position) {
     last_.position = position;
@@ -201,6 +253,12 @@ class ExecutorCore {
 
   // Nothing has moved the axes yet: they stand where the program begins, once somebody has told.
   void stand_at_start() {
+    if (level_ != nullptr) {
+      const auto place = level_->place();
+      placed_ = place.has_value();
+      if (placed_) stand_at(*place);
+      return;
+    }
     placed_ = feed_.pushed() > 0;
     if (!placed_) return;
     last_.position = feed_.start().position;
@@ -212,11 +270,12 @@ class ExecutorCore {
   Expected<void> begin_jog() {
     if (auto ok = validate(machine_); !ok) return ok;
     if (!placed_) stand_at_start();
-    if (away_ || (player_.rests() && !begins())) return {};
+    if (away_ || (drive([](auto& driver) { return driver.rests(); }) && !begins())) return {};
     return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
   }
   // Whether a program is there whose first blocks ticks, or `plan`, have yet to cut.
   [[nodiscard]] bool begins() const {
+    if (level_ != nullptr) return level_->begins();
     return ended_.load(std::memory_order_acquire) && feed_.ready() < end_.load() && !feed_.failed() &&
            !player_.held() && !player_.stopped();
   }
@@ -233,6 +292,7 @@ class ExecutorCore {
 
   // The axes are to go to a path that is not there yet: no block moves, or those that do are held back.
   void wait_for_path(Scalar period, std::int64_t ready) {
+    if (level_ != nullptr) return;
     tell_words(ready - 1);
     waited_ += period;
     if (waited_ >= longest_wait_) feed_.let_go();
@@ -249,6 +309,7 @@ class ExecutorCore {
   SetPoint advance(Scalar period, const Tell* tell);
   bool find_path();
   BasicPlayed<Scalar> play(Scalar period, const Tell* tell);
+  SetPoint tick_of_level(Scalar period, const Tell* tell);
   SetPoint tick_of_jog(Scalar period, const Tell* tell);
   void evaluate(const Cell& cell, const BasicPlayed<Scalar>& now);
   void release();
@@ -256,6 +317,7 @@ class ExecutorCore {
 
   M machine_;
   std::array<int, 3> tool_;
+  LevelDriver<M, B>* level_ = nullptr;  // at another level than `fast`
   std::int64_t capacity_;
   Scalar quick_stop_share_;
   bool background_;
@@ -300,6 +362,7 @@ ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& ma
 template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::push(const B& block) {
   if (failed_.load(std::memory_order_acquire)) return true;
+  if (level_ != nullptr) return level_->push(block);
   const bool taken = feed_.push(block);
   if (taken) ended_.store(false, std::memory_order_relaxed);
   plan(steps_in_push);
@@ -308,7 +371,10 @@ bool ExecutorCore<M, B>::push(const B& block) {
 
 template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::finished() const {
-  if (player_.stopped()) return !jog_.moves();
+  if (drive([](auto& driver) { return driver.stopped(); })) return !jog_.moves();
+  if (level_ != nullptr)
+    return level_->finished() && !(away_ && (has_run_ || level_->pushed() > 0)) &&
+           (level_->complete() || (level_->failed() && level_->pushed() == 0));
   if (!player_.finished() || (away_ && (has_run_ || player_.oldest() != player_.end()))) return false;
   if (feed_.failed()) return true;
   if (!ended_.load(std::memory_order_acquire)) return false;
@@ -321,15 +387,18 @@ ExecutorState ExecutorCore<M, B>::state() const {
   if (finished()) return error() ? ExecutorState::fault : ExecutorState::finished;
   if (jog_.moves()) return ExecutorState::jogging;
   if (away_) return ExecutorState::away;
-  if (!player_.stands()) return player_.asked_to_rest() ? ExecutorState::holding : ExecutorState::moving;
-  if (player_.dwells()) return ExecutorState::dwelling;
-  if (player_.at_program_stop()) return ExecutorState::stopped;
-  if (player_.asked_to_rest()) return ExecutorState::held;
-  return has_run_ && !player_.rests() ? ExecutorState::moving : ExecutorState::waiting;
+  return drive([this](const auto& driver) {
+    if (!driver.stands()) return driver.asked_to_rest() ? ExecutorState::holding : ExecutorState::moving;
+    if (driver.dwells()) return ExecutorState::dwelling;
+    if (driver.at_program_stop()) return ExecutorState::stopped;
+    if (driver.asked_to_rest()) return ExecutorState::held;
+    return has_run_ && !driver.rests() ? ExecutorState::moving : ExecutorState::waiting;
+  });
 }
 
 template <MachineModel M, BlockModel B>
 std::optional<RunError> ExecutorCore<M, B>::error() const {
+  if (level_ != nullptr && level_->failed()) return RunError{level_->fault()};
   if (feed_.failed()) return RunError{feed_.fault()};
   if (failed_.load(std::memory_order_acquire)) return RunError{{fault_, 0, 0, {}}};
   return std::nullopt;
@@ -357,9 +426,16 @@ Expected<void> ExecutorCore<M, B>::return_to_path() {
 
 template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::restart(int line, const Vector& position) {
-  if (jog_.moves() || !player_.skip_to(0)) return false;
-  feed_.restart(line, position);
-  away_ = returns_ = feed_.smooths();
+  if (jog_.moves()) return false;
+  if (level_ != nullptr) {
+    if (!level_->stands() || level_->dwells()) return false;
+    level_->restart(line);
+    away_ = returns_ = true;
+  } else {
+    if (!player_.skip_to(0)) return false;
+    feed_.restart(line, position);
+    away_ = returns_ = feed_.smooths();
+  }
   has_run_ = false;
   placed_ = true;
   waited_ = quiet_ = Scalar(0);
@@ -404,8 +480,12 @@ void ExecutorCore<M, B>::let_go_where_none_come(Scalar period) {
 template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
   const Scalar period = accepted(given);
-  let_go_where_none_come(period);
-  if (!background_) plan(steps_in_tick);
+  if (level_ != nullptr) {
+    level_->look(period);
+  } else {
+    let_go_where_none_come(period);
+    if (!background_) plan(steps_in_tick);
+  }
   const std::int64_t ready = feed_.ready();
   time_.add(period);
   last_.time = time();
@@ -416,9 +496,10 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
       wait_for_path(period, ready);
     else
       waited_ = Scalar(0);
-    release();
+    if (level_ == nullptr) release();
     return tick_of_jog(period, tell);
   }
+  if (level_ != nullptr) return tick_of_level(period, tell);
   const BasicPlayed<Scalar> now = play(period, tell);
   std::int64_t reached = -1;
   if (now.block >= 0) {
@@ -436,6 +517,11 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
 // while it has none and has not run.
 template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::find_path() {
+  if (level_ != nullptr) {
+    const auto place = level_->place();
+    if (place) path_place_ = *place;
+    return place.has_value();
+  }
   const BasicPlayed<Scalar> now = player_.place();
   if (now.block < 0) return has_run_;
   const Cell& cell = player_[now.block];
@@ -454,8 +540,19 @@ BasicPlayed<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Te
 }
 
 template <MachineModel M, BlockModel B>
+auto ExecutorCore<M, B>::tick_of_level(Scalar period, const Tell* tell) -> SetPoint {
+  level_->advance(period, last_);
+  if (const auto place = level_->place()) path_place_ = *place;
+  has_run_ = has_run_ || !level_->stands();
+  if (tell == nullptr) return last_;
+  for (std::size_t i = 0; i < level_->part_count(); ++i) (*tell)(Part(*level_, level_->part(i)));
+  return last_;
+}
+
+template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::tick_of_jog(Scalar period, const Tell* tell) -> SetPoint {
-  const bool goes_on = returns_ && !player_.held() && !player_.stopped();
+  const bool goes_on =
+      returns_ && drive([](const auto& driver) { return !driver.held() && !driver.stopped(); });
   if (goes_on && !(jog_.moves() && goes_back_) && !return_to_path()) returns_ = false;
   if (jog_.moves()) {
     const bool rests = jog_.advance(period);

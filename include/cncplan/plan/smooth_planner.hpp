@@ -64,6 +64,49 @@ class SmoothPlanner {
   /// Plans all that was pushed, to rest.
   [[nodiscard]] Expected<void, ProgramError> finish() { return plan(true); }
 
+  /// Whether as many blocks are held as may be: the next one makes it plan.
+  [[nodiscard]] bool full() const { return blocks_.size() >= most_; }
+  /// Whether what was planned last ends at a speed.
+  [[nodiscard]] bool open() const { return cut_.has_value(); }
+  /// From there to rest along blocks that are known, which is proven; nothing that is planned changes. Only
+  /// where it is open and all that was planned has been taken.
+  [[nodiscard]] Part tail() {
+    const auto cut = cut_;
+    const std::size_t planned = planned_;
+    const bool begun = begun_;
+    const auto go_back = [&] {
+      cut_ = cut;
+      planned_ = planned;
+      begun_ = begun;
+    };
+    try {
+      add_slow(known_);
+      Part part = take();
+      go_back();
+      return part;
+    } catch (...) {
+      take_nothing();
+      go_back();
+      throw;
+    }
+  }
+  /// Keeps what it takes to go back to where it is open, from now on.
+  void keep_cuts() { keeps_cuts_ = true; }
+  /// The tail is driven: plans go on from rest at its end. If it is that of the part before the last, what
+  /// the last plan made is void; nothing may have been pushed since that was made, and cuts are to be kept.
+  void drive_tail(bool of_part_before) {
+    if (of_part_before) {
+      take_nothing();
+      blocks_.swap(last_cut_.blocks);
+      first_source_ = last_cut_.first_source;
+      known_ = last_cut_.known;
+    }
+    planned_ = known_;
+    cut_.reset();
+    begun_ = false;
+    let_go(planned_);
+  }
+
   /// Whether there are blocks that `take` has not given.
   [[nodiscard]] bool ready() const { return !out_.empty(); }
   /// What was planned since the last call; its time begins at 0.
@@ -96,6 +139,11 @@ class SmoothPlanner {
 
   // Plans what later blocks cannot change; if there is no room for more blocks, at least a part of them.
   [[nodiscard]] Expected<void, ProgramError> plan(bool all) {
+    if (keeps_cuts_ && cut_) {
+      last_cut_.blocks = blocks_;
+      last_cut_.first_source = first_source_;
+      last_cut_.known = known_;
+    }
     const auto ok = plan_runs(all);
     if (!cut_) let_go(planned_);
     return ok;
@@ -182,6 +230,17 @@ class SmoothPlanner {
       direction = way;
     }
     return false;
+  }
+
+  // What is planned is void.
+  void take_nothing() {
+    out_.clear();
+    pieces_.clear();
+    phases_.clear();
+    fallbacks_.clear();
+    smoothing_.corrections.clear();
+    smoothing_.blocks.clear();
+    time_ = S(0);
   }
 
   // A planned block has another level than was asked for. There is room.
@@ -466,6 +525,13 @@ class SmoothPlanner {
   smooth::BasicApproach<S, Run::axis_count> approach_{memory_};
   std::size_t known_ = 0;
   bool begun_ = false;  // a piece of the block in which it goes on is planned
+  // Before the last plan, if that began at a cut.
+  struct LastCut {
+    std::pmr::vector<B> blocks;
+    std::size_t first_source{}, known{};
+  };
+  bool keeps_cuts_ = false;
+  LastCut last_cut_{std::pmr::vector<B>(memory_), {}, {}};
   // What is planned.
   std::pmr::vector<B> out_{memory_};
   std::size_t out_first_ = 0;  // the program's number of the first of them

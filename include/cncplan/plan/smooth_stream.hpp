@@ -82,6 +82,26 @@ class SmoothStream {
     return tl::unexpected(plan::no_memory());
   }
 
+  /// Whether the next block makes it plan first.
+  [[nodiscard]] bool full() const { return planner_.full(); }
+  /// Plans a part if it is full, as the next `push` would. Errors as for that.
+  [[nodiscard]] Expected<void, ProgramError> make_room() try {
+    return planner_.prepare(merging_.size() + 1);
+  } catch (const std::bad_alloc&) {
+    return tl::unexpected(plan::no_memory());
+  }
+
+  /// Whether what was planned last ends at a speed.
+  [[nodiscard]] bool open() const { return planner_.open(); }
+  /// The slow motion from there to rest, which is proven, in a time that begins at 0; nothing that is planned
+  /// changes. Only where it is open, behind `take`. Throws std::bad_alloc where the memory gives out.
+  [[nodiscard]] Part tail() { return planner_.tail(); }
+  /// Keeps with each plan that begins at a speed what it takes to go back there.
+  void keep_cuts() { planner_.keep_cuts(); }
+  /// The tail is driven: plans go on from rest at its end. If it is that of the part before the last, what
+  /// the last plan made is void: nothing may have been pushed since, and cuts are to be kept.
+  void drive_tail(bool of_part_before = false) { planner_.drive_tail(of_part_before); }
+
   /// Whether a part is there to be taken.
   [[nodiscard]] bool ready() const { return planner_.ready(); }
   /// What was planned since the last call, in a time that begins at 0; no blocks where that is nothing.

@@ -6,6 +6,7 @@
 
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/core/phase.hpp"
+#include "cncplan/plan/live/level_driver.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/player/jog.hpp"
 #include "cncplan/smooth/smoothed.hpp"
@@ -30,6 +31,12 @@ class AxisPart {
   AxisPart(const Jog<M>& jog, Scalar behind)
       : jog_(&jog), phase_{Scalar(0), behind, Scalar(0), Scalar(0), Scalar(0), Scalar(0)}, from_(behind) {}
 
+  /// By a clock.
+  AxisPart(const LevelDriver<M, B>& level, const BasicTickPart<Scalar>& part)
+      : level_(&level),
+        phase_{part.start, part.duration, Scalar(0), Scalar(0), Scalar(0), Scalar(0)},
+        from_(part.start) {}
+
   /// Seconds from the start of the tick.
   [[nodiscard]] Scalar start() const { return phase_.time; }
   [[nodiscard]] Scalar length() const { return phase_.duration; }
@@ -42,6 +49,7 @@ class AxisPart {
  private:
   [[nodiscard]] AxisMotion<Vector> at(Scalar t) const {
     if (jog_ != nullptr) return jog_->at(t - from_);
+    if (level_ != nullptr) return level_->axes_at(from_ + t);
     const auto sense = static_cast<Scalar>(direction_);
     BasicState<Scalar> state = phase_.at(t);
     state.position = std::clamp(from_ + sense * state.position, Scalar(0), path_.length());
@@ -53,6 +61,7 @@ class AxisPart {
 
   Driven path_;
   const Jog<M>* jog_ = nullptr;
+  const LevelDriver<M, B>* level_ = nullptr;
   BasicPhase<Scalar> phase_{};
   Scalar from_{};
   int direction_ = 1;

@@ -1,0 +1,350 @@
+// The clock by which trajectories are driven: its rate changes only as is proven (set-up).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "cncplan/core/axis_limits.hpp"
+#include "cncplan/plan/clock_proof.hpp"
+#include "cncplan/plan/trajectory_chain.hpp"
+#include "cncplan/state/velocity_change.hpp"
+
+namespace cncplan::plan {
+
+/// A clock that shows the running time of a chain of trajectories. Its rate is 1 at the planned speed, 0 at a
+/// hold, -1 all the way back. It stands where they stand, and passes over dwells on the way back.
+///
+/// A change of the rate is begun only once it is proven over all of its way (`ClockProof`). Each step looks
+/// for such a change, fast ones first, and for a faster one while one goes on. Where none is proven, the
+/// clock goes on as it does, which keeps the limits because the trajectories do.
+template <MachineModel M, BlockModel B>
+class TrajectoryClock {
+ public:
+  using S = typename M::Scalar;
+  using Chain = TrajectoryChain<M, B>;
+  using Rest = BasicRest<S>;
+  using Motion = state::BasicMotion<S>;
+
+  static constexpr S infinity = std::numeric_limits<S>::infinity();
+
+  /// With the limits that changes of the rate keep. The axes stand where the chain begins.
+  explicit TrajectoryClock(const M& machine)
+      : machine_(machine), tool_(tool_axes(machine)), proof_(machine), braked_(machine) {}
+
+  /// Trajectories are added while the clock does not show a time behind what stays, and no change of its rate
+  /// that goes on reaches there.
+  [[nodiscard]] Chain& chain() { return chain_; }
+  [[nodiscard]] const Chain& chain() const { return chain_; }
+
+  /// Whether the axes stand; at a rest of the trajectories, or by the rate.
+  [[nodiscard]] bool rests() const {
+    return standing_ || (ramp_.end().velocity == S(0) && ramp_.duration() <= elapsed_);
+  }
+  /// Whether they stand at a rest of the trajectories.
+  [[nodiscard]] bool standing() const { return standing_; }
+  /// Seconds of a dwell that are left.
+  [[nodiscard]] S dwell() const { return standing_ ? dwell_ : S(0); }
+  /// Whether it stands where the chain ends, or begins.
+  [[nodiscard]] bool at_end() const { return standing_ && !chain_.rest_after(rest_.to); }
+  /// When it comes to the next rest of the trajectories, forwards.
+  [[nodiscard]] S next_rest() const { return standing_ ? rest_.from : high_.from; }
+  /// Whether it runs back.
+  [[nodiscard]] bool heads_back() const {
+    return !standing_ && (ramp_.start().velocity < S(0) || ramp_.end().velocity < S(0));
+  }
+  /// How far a change of the rate leads that goes on; no farther than now where there is none.
+  [[nodiscard]] S reach() const {
+    return standing_ || elapsed_ >= ramp_.duration() ? state().position : ramp_.end().position;
+  }
+
+  /// What it shows, s, and how it runs: its rate, 1/s and 1/s^2.
+  [[nodiscard]] BasicState<S> state() const { return state_after(S(0)); }
+  /// The same in some seconds, if nothing is asked for and no rest is come to.
+  [[nodiscard]] BasicState<S> state_after(S seconds) const {
+    if (standing_) return {shown_, S(0), S(0), S(0)};
+    return state_of(ramp_, elapsed_ + seconds);
+  }
+  /// By a change of the rate, some seconds after it began.
+  [[nodiscard]] static BasicState<S> state_of(const Motion& ramp, S elapsed) {
+    const BasicAxisState<S> now = ramp.at(elapsed);
+    S second{}, left = elapsed;
+    for (const auto& phase : ramp.phases()) {
+      second = left < phase.duration ? phase.jerk : S(0);
+      if (left < phase.duration) break;
+      left -= phase.duration;
+    }
+    return {now.position, now.velocity, now.acceleration, second};
+  }
+  /// The change that goes on, and for how long it has.
+  [[nodiscard]] const Motion& ramp() const { return ramp_; }
+  [[nodiscard]] S elapsed() const { return elapsed_; }
+
+  /// The axes stand at a time of the chain's where it begins or ends at rest.
+  void stand_at(S time) {
+    rest_ = {time, time};
+    if (!chain_.empty())
+      if (const auto rest = chain_.rest_after(time - S(1)); rest && rest->from <= time) rest_ = *rest;
+    stand(rest_, false);
+  }
+
+  /// Asks for a brake with so many times the limits, until the axes stand.
+  void brake_with(S share) {
+    M stronger = machine_;
+    const auto raise = [&](auto& limits) {
+      limits.acceleration *= share;
+      limits.jerk *= share;
+    };
+    raise(stronger.limits);
+    for (auto& axis : stronger.axes) {
+      raise(axis);
+      axis.acceleration_down *= share;
+    }
+    braked_ = ClockProof<M, B>(stronger);
+    brakes_ = true;
+    search_from(S(1));
+  }
+
+  /// One step: dwells, leaves a rest, or drives on to the next one, at most for `left` seconds; whether more
+  /// may happen in what is left of them. `wanted()` is the rate that is asked for, `may_leave()` is asked at
+  /// rests, and `may_change(ramp)` before a change of the rate begins.
+  template <class Wanted, class MayLeave, class MayChange>
+  bool step(S& left, Wanted&& wanted, MayLeave&& may_leave, MayChange&& may_change) {
+    return standing_ ? leave(left, wanted, may_leave) : move(left, wanted(), may_change);
+  }
+
+  /// s that a hold takes which is asked for where the clock shows a time behind a rest: that of a change that
+  /// is proven at once, or by what steps do.
+  S time_to_hold(const Rest& rest, S shown, S longest) {
+    run_at({shown, S(1), S(0)});
+    low_ = rest;
+    high_ = chain_.rest_after(shown).value_or(rest);
+    asked_ = S(0);
+    int work = levels * work_in_tick;
+    if (const auto motion = find_change(ramp_.start(), S(0), false, infinity, work))
+      return std::min(motion->duration(), high_.from - shown);
+    search_from(S(1));
+    S time{};
+    while (!rests()) {
+      const S tick = time < longest ? S(1e-3) : longest / S(100);
+      S left = tick;
+      move(left, S(0), [](const Motion&) { return true; });
+      time += tick - left;
+    }
+    return time;
+  }
+
+  /// A change to rest that is proven and may begin now, fast ones first.
+  [[nodiscard]] std::optional<Motion> brake() {
+    const int level = level_;
+    level_ = 0;
+    int work = work_in_tick;
+    const BasicAxisState<S> now = ramp_.at(elapsed_);
+    const auto motion = find_change(now, S(0), heads_back(), infinity, work);
+    level_ = level;
+    return motion;
+  }
+
+  /// The way ahead has changed: what is driven to is looked for anew.
+  void look_ahead() {
+    if (standing_) return;
+    high_ = chain_.rest_after(state().position).value_or(high_);
+    search_from(S(1));
+  }
+
+ private:
+  using Change = state::BasicVelocityChange<S>;
+  using AxisState = BasicAxisState<S>;
+
+  static constexpr int work_in_tick = 1000;  // intervals of proofs
+  static constexpr int levels = 32;          // of changes of the rate, each slower than the one before
+  static constexpr int no_level = levels + 1;
+  static constexpr S growth = S(1.2599210498948732);  // 2^(1/3)
+  static constexpr S least_portion = S(0.1);
+
+  [[nodiscard]] const ClockProof<M, B>& proof() const { return brakes_ ? braked_ : proof_; }
+
+  // It comes to a rest, forwards or back, where a dwell is passed over.
+  void stand(const Rest& rest, bool back) {
+    standing_ = true;
+    brakes_ = false;
+    rest_ = rest;
+    shown_ = back ? rest.to : rest.from;
+    dwell_ = back ? S(0) : rest.to - rest.from;
+  }
+
+  // Dwells; goes on if that is wanted, and there is a rest to drive to. At a rest the clock may take any rate
+  // at once.
+  template <class Wanted, class MayLeave>
+  bool leave(S& left, Wanted&& wanted, MayLeave&& may_leave) {
+    if (!may_leave()) return false;
+    if (dwell_ > S(0)) {
+      const S now = std::min(dwell_, left);
+      dwell_ -= now;
+      left -= now;
+      shown_ = rest_.to - dwell_;
+      if (dwell_ > S(0) || !may_leave()) return false;
+    }
+    const S rate = wanted();
+    if (rate == S(0) || chain_.empty()) return false;
+    const S from = rate > S(0) ? rest_.to : rest_.from;
+    const auto next = rate > S(0) ? chain_.rest_after(from) : chain_.rest_before(from);
+    if (!next) return false;
+    low_ = rate > S(0) ? rest_ : *next;
+    high_ = rate > S(0) ? *next : rest_;
+    run_at({from, rate, S(0)});
+    return true;
+  }
+
+  // Drives on to the next rest, or to the end of the time.
+  template <class MayChange>
+  bool move(S& left, S wanted, MayChange&& may_change) {
+    change_rate(wanted, may_change);
+    const bool back = heads_back();
+    const S end = back ? low_.to : high_.from;
+    const S arrival = time_to(end) - elapsed_;
+    if (arrival > left) {
+      elapsed_ += left;
+      left = S(0);
+      if (rests()) brakes_ = false;
+      return false;
+    }
+    left -= std::max(arrival, S(0));
+    stand(back ? low_ : high_, back);
+    return true;
+  }
+
+  void run_at(const AxisState& state) {
+    standing_ = false;
+    ramp_ = Motion(state, state);
+    elapsed_ = S(0);
+    goal_ = state.velocity;
+    search_from(S(1));
+  }
+
+  // When the clock shows a time, from the ramp's start.
+  [[nodiscard]] S time_to(S shown) const {
+    const AxisState& end = ramp_.end();
+    if (heads_back() ? shown >= end.position : shown <= end.position)
+      if (const auto at = ramp_.time_at(shown)) return *at;
+    if (end.velocity == S(0)) return infinity;
+    return ramp_.duration() + (shown - end.position) / end.velocity;
+  }
+
+  // Looks for a change to the rate that is wanted, or for a faster one than the one that goes on. Where there
+  // is none, for one that goes a part of the way: a slower clock leaves more of the limits.
+  template <class MayChange>
+  void change_rate(S wanted, MayChange&& may_change) {
+    const AxisState now = ramp_.at(elapsed_);
+    S goal = wanted;
+    if (goal * now.velocity < S(0)) goal = S(0);
+    const bool changes = elapsed_ < ramp_.duration();
+    if (goal == goal_ && !changes) return;
+    if (goal != asked_) search_from(S(1));
+    asked_ = goal;
+    const bool back = now.velocity < S(0) || (now.velocity == S(0) && goal < S(0));
+    const S sooner = goal == goal_ ? S(0.99) * (ramp_.duration() - elapsed_) : infinity;
+    const S to = now.velocity + portion_ * (goal - now.velocity);
+    int work = work_in_tick;
+    const auto motion = find_change(now, to, back, sooner, work);
+    if (motion && !may_change(*motion)) return search_from(S(1));
+    if (motion) {
+      ramp_ = *motion;
+      elapsed_ = S(0);
+      goal_ = to;
+    }
+    if (motion || level_ == no_level) return search_from(S(1));
+    if (level_ < levels) return;  // more in the next tick
+    search_from(changes || portion_ < least_portion ? S(1) : portion_ / S(2));
+  }
+
+  // The next change of the rate that is proven, from where the search stands: fast ones first. Nothing where
+  // there is none, where all that are left take as long as `sooner` (the level is `no_level` then), or where
+  // there is no work left: what is too much for all of it is passed over.
+  [[nodiscard]] std::optional<Motion> find_change(const AxisState& now, S to, bool back, S sooner,
+                                                  int& work) {
+    const S until = back ? low_.to : high_.from;
+    const BasicAxisLimits<S> fastest = fastest_change(now.position);
+    const int all_work = work;
+    for (; level_ < levels; ++level_) {
+      const S slower = std::pow(growth, static_cast<S>(level_));
+      BasicAxisLimits<S> limits = fastest;
+      limits.acceleration_up = limits.acceleration_down = fastest.acceleration_up / slower;
+      limits.jerk /= slower;
+      const Motion motion = Change(now, to, limits).fastest();
+      if (!(motion.duration() < sooner)) {
+        level_ = no_level;
+        return std::nullopt;
+      }
+      if (!one_way(motion, back)) continue;
+      const bool whole = work == all_work;
+      if (proof().holds(chain_, motion, back, until, work)) return motion;
+      if (work < 0) {
+        level_ += whole ? 1 : 0;
+        return std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+  void search_from(S portion) {
+    portion_ = portion;
+    level_ = 0;
+  }
+
+  // Limits of the clock's rate for a change at twice the speed that the tool's and the axes' limits allow
+  // where the clock shows a time, if the path were straight and its speed constant.
+  [[nodiscard]] BasicAxisLimits<S> fastest_change(S shown) const {
+    const auto point = chain_.at({shown, S(1), S(0), S(0)});
+    BasicAxisLimits<S> limits;
+    limits.velocity_up = limits.velocity_down = S(2);
+    S acceleration = limits.acceleration_up, jerk = limits.jerk;
+    const auto lower = [&](S speed, const BasicLimits<S>& own) {
+      speed = std::max(speed, S(1e-3) * std::min(own.velocity, machine_.limits.velocity)) / S(2);
+      acceleration = std::min(acceleration, own.acceleration / speed);
+      jerk = std::min(jerk, own.jerk / speed);
+    };
+    lower(in_space(point.velocity, tool_).norm(), proof().limits().tool);
+    for (const auto& [i, own] : proof().limits().axes) lower(std::abs(point.velocity[i]), own);
+    limits.acceleration_up = limits.acceleration_down = acceleration;
+    limits.jerk = jerk;
+    return limits;
+  }
+
+  // Whether the rate stays between 0 and the planned speed, in its direction.
+  [[nodiscard]] static bool one_way(const Motion& motion, bool back) {
+    constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
+    const auto within = [&](S rate) {
+      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= S(1) + rounding;
+    };
+    AxisState state = motion.start();
+    for (const auto& phase : motion.phases()) {
+      const S turn = phase.jerk != S(0) ? -phase.acceleration / phase.jerk : S(0);
+      if (turn > S(0) && turn < phase.duration && !within(phase.after(state, turn).velocity)) return false;
+      state = phase.after(state, phase.duration);
+      if (!within(state.velocity)) return false;
+    }
+    return true;
+  }
+
+  M machine_;
+  std::array<int, 3> tool_;
+  ClockProof<M, B> proof_, braked_;
+  bool brakes_ = false;
+  Chain chain_;
+  // At a rest, for so long; else between two, by a ramp of the clock that began some time ago.
+  bool standing_ = true;
+  Rest rest_{}, low_{}, high_{};
+  S shown_{};
+  S dwell_{};
+  Motion ramp_;
+  S elapsed_{};
+  S goal_{};          // the ramp's
+  S asked_{};         // the one that is looked for
+  S portion_ = S(1);  // of the way to it, and how slow the change: where the search goes on
+  int level_ = 0;
+};
+
+}  // namespace cncplan::plan

@@ -1,0 +1,357 @@
+// Executors at the levels good and best: limits by differences, the path by brute force, words, dwells,
+// holds.
+#include "cncplan/plan/executor_levels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <memory_resource>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "plan/live_run.hpp"
+#include "plan/rows_program.hpp"
+#include "soak/smooth_program.hpp"
+#include "support/catch.hpp"
+#include "support/no_heap.hpp"
+
+using namespace cncplan;
+using namespace cncplan::test;
+
+namespace {
+
+using Runner = Executor<Machine<3>, 64>;
+constexpr double period = 1e-3;
+
+std::unique_ptr<Runner> runner(LevelExecutorOptions options = {.level = SmoothLevel::good}) {
+  return std::make_unique<Runner>(mill, options);
+}
+
+template <class E>
+void feed(E& executor, const MillBlocks& blocks, std::size_t& fed) {
+  while (fed < blocks.size() && executor.push(blocks[fed]))
+    if (++fed == blocks.size()) executor.end_of_program();
+}
+
+// To the end, with as many blocks as it takes; s.
+template <class E>
+double run_to_end(E& executor, const MillBlocks& blocks, double most = 600) {
+  std::size_t fed = 0;
+  double time = 0;
+  while (!executor.finished() && time < most) {
+    feed(executor, blocks, fed);
+    executor.tick(period);
+    time += period;
+  }
+  return time;
+}
+
+void check(const LiveFaults& faults, double tolerance) {
+  CHECK(faults.velocity <= 1 + 1e-6);
+  CHECK(faults.acceleration <= 1 + 1e-5);
+  CHECK(faults.jerk <= 1 + 1e-4);
+  CHECK(faults.place <= tolerance * (1 + 1e-6) + 1e-6);
+  CHECK(faults.missed <= 2 * tolerance + 0.02);  // by chords of a tick
+  CHECK(faults.dwell <= 2e-3);
+  CHECK(faults.end < 1e-6);
+  CHECK_FALSE(faults.words_wrong);
+  CHECK(faults.finished);
+  CHECK_FALSE(faults.failed);
+}
+
+}  // namespace
+
+TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X10\nX10.7 Y0.7\nX11.4 Y0\nX20\nX20.5 Y0.5\nX21 Y0\nX30\n");
+  double last = std::numeric_limits<double>::infinity();
+  for (const auto level : {SmoothLevel::exact, SmoothLevel::fast, SmoothLevel::good}) {
+    const auto executor = runner({.level = level, .reserve = 0});
+    const double time = run_to_end(*executor, blocks);
+    CAPTURE(static_cast<int>(level), time);
+    CHECK(time < last);
+    last = time;
+  }
+  const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
+  REQUIRE(whole);
+  CHECK(last == Approx(whole->duration()).margin(2 * period));
+  const auto best = runner({.level = SmoothLevel::best, .reserve = 0});
+  const auto whole_best = plan_blocks(blocks, mill, at_level(SmoothLevel::best, within));
+  CHECK(run_to_end(*best, blocks) == Approx(whole_best->duration()).margin(2 * period));
+}
+
+TEST_CASE("executor levels: a long run in parts goes through the cuts, within limits and tolerance",
+          "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(12, 50));
+  const auto executor = runner({.level = SmoothLevel::good, .reserve = 0});
+  test::Random random;
+  const LiveFaults faults = LiveRun(*executor, blocks, mill, {.small = 0.0098}, random).run(600);
+  check(faults, 0.01);
+  const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
+  REQUIRE(whole);
+  CHECK(faults.time < 1.02 * whole->duration());
+}
+
+TEST_CASE("executor levels: starved, it drives the proven way to rest, and goes on", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(6, 50));
+  for (const double wait : {0.05, 100.0}) {  // with the second one only the way to rest is there
+    const auto executor = runner({.level = SmoothLevel::good, .longest_wait = wait});
+    std::size_t fed = 0;
+    test::Random random;
+    std::array<Vector3, 4> p;
+    p.fill(Vector3::Zero());
+    int rests = 0, ticks = 0, pause = 0;
+    bool stood = true;
+    for (; !executor->finished() && ticks < 200000; ++ticks) {
+      // Two thirds of it, then nothing until it has rested for a second.
+      const std::size_t most = pause < 1000 ? blocks.size() * 2 / 3 : blocks.size();
+      while (fed < most && executor->push(blocks[fed]))
+        if (++fed == blocks.size()) executor->end_of_program();
+      const auto point = executor->tick(period);
+      p = {point.position, p[0], p[1], p[2]};
+      CHECK((p[0] - 2 * p[1] + p[2]).norm() <= 1000 * period * period * (1 + 1e-5));
+      CHECK((p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm() <= 10000 * period * period * period * (1 + 1e-3));
+      const bool stands = point.velocity.norm() == 0;
+      rests += stands && !stood ? 1 : 0;
+      stood = stands;
+      if (stands && fed == most) ++pause;
+      if (wait > 1 && pause == 500) {
+        CHECK(executor->state() == ExecutorState::waiting);
+        pause = 1000;
+      }
+    }
+    CHECK(executor->finished());
+    CHECK(rests >= 2);  // one for want of blocks, one at the end
+    CHECK((executor->tick(period).position - blocks.back().path.position_at(blocks.back().path.length()))
+              .norm() < 1e-9);
+  }
+}
+
+TEST_CASE("executor levels: random programs, random requests, random feeding", "[executor-levels]") {
+  test::Random seeds;
+  for (int round = 0; round < 12; ++round) {
+    const auto seed = static_cast<std::uint64_t>(seeds.integer(1, 1 << 30));
+    const auto c = draw_smooth_case(seed);
+    INFO("CNCPLAN_SEED=" << test::seed() << ", case " << seed);
+    test::Random random(seed);
+    std::string text;
+    int lines = 0;
+    for (std::size_t at = 0, end; at < c.program.size() && lines < 60; at = end, ++lines) {
+      end = c.program.find('\n', at) + 1;
+      text += c.program.substr(at, end - at);
+      const int more = random.integer(0, 19);
+      if (more == 0) text += "G4 P0.0123\n";
+      if (more == 1) text += "M8\n";
+      if (more == 2) text += "M0\n";
+    }
+    const auto program = read_text(text, c.machine, {.tolerance = c.tolerance});
+    REQUIRE_FALSE(program.failed());
+    const LiveBlocks blocks(program.blocks().begin(), program.blocks().end());
+    LiveCase how;
+    how.pace = round % 3 == 0 ? 0 : random.log_uniform(0.02, 0.5);
+    how.starved = random.coin() ? 0 : random.integer(1, 30);
+    how.jogs = random.coin();
+    how.restless = random.uniform(0.5, 5);
+    how.small = 0.98 * c.tolerance;
+    const auto executor = std::make_unique<Runner>(
+        c.machine, LevelExecutorOptions{.tolerance = c.tolerance, .level = SmoothLevel::good});
+    if (how.pace == 0) executor->program_stop(false);
+    check(LiveRun(*executor, blocks, c.machine, how, random).run(600), c.tolerance);
+  }
+}
+
+TEST_CASE("executor levels: what it is doing, at every change", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("G21 G90 F1200\nG1 X20\nG4 P0.2\nG1 Y20\nG1 X0\nM30\n");
+  const auto executor = runner();
+  std::size_t fed = 0;
+  feed(*executor, blocks, fed);
+  std::vector<std::string_view> states;
+  for (int tick = 0; !executor->finished() && tick < 60000; ++tick) {
+    if (tick == 1800) executor->feed_hold();
+    if (tick == 2400) REQUIRE(executor->jog_to({10, 10, 5}));
+    if (tick == 5000) executor->resume();
+    executor->tick(period);
+    if (const auto now = to_text(executor->state()); states.empty() || states.back() != now)
+      states.push_back(now);
+  }
+  CHECK(states == std::vector<std::string_view>{"moving", "dwelling", "moving", "holding", "held", "jogging",
+                                                "away", "jogging", "moving", "finished"});
+}
+
+TEST_CASE("executor levels: a hold comes soon, and the time goes on where it was", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(3, 50));
+  const auto undisturbed = runner();
+  const double time = run_to_end(*undisturbed, blocks);
+  for (double at = 0.1; at < time - 0.3; at += 0.37) {
+    const auto executor = runner();
+    std::size_t fed = 0;
+    for (double t = 0; t < at; t += period) {
+      feed(*executor, blocks, fed);
+      executor->tick(period);
+    }
+    executor->feed_hold();
+    double hold = 0;
+    while (executor->tick(period).velocity.norm() > 0 && hold < 10) hold += period;
+    CHECK(hold < 0.4);
+    CHECK(executor->state() == ExecutorState::held);
+    executor->resume();
+    double rest = 0;
+    while (!executor->finished() && rest < 100) {
+      feed(*executor, blocks, fed);
+      executor->tick(period);
+      rest += period;
+    }
+    CHECK(at + hold + rest < time + 1);
+  }
+}
+
+TEST_CASE("executor levels: single steps and a pause rest just before the next block", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
+  const auto executor = runner();
+  std::size_t fed = 0;
+  feed(*executor, blocks, fed);
+  executor->single_step(true);
+  int pauses = 0;
+  for (int tick = 0; !executor->finished() && tick < 20000; ++tick) {
+    const auto point = executor->tick(period);
+    if (executor->state() != ExecutorState::held) continue;
+    ++pauses;
+    const auto& path = blocks[static_cast<std::size_t>(pauses) - 1].path;
+    CHECK((path.position_at(path.length()) - point.position).norm() < 0.1);  // 2 ms at 30 mm/s, and a corner
+    executor->resume();
+  }
+  CHECK(executor->finished());
+  CHECK(pauses == 3);
+
+  const auto paused = runner();
+  fed = 0;
+  feed(*paused, blocks, fed);
+  paused->pause_at(3);
+  int held = 0;
+  for (int tick = 0; !paused->finished() && tick < 20000; ++tick) {
+    const auto point = paused->tick(period);
+    if (paused->state() != ExecutorState::held) continue;
+    ++held;
+    CHECK((Vector3(30, 10, 0) - point.position).norm() < 0.1);
+    paused->resume();
+  }
+  CHECK(held == 1);
+}
+
+TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\nG4 P0.1\nX30 Y10\nX30 Y30\nX10\n");
+  const auto executor = runner();
+  std::size_t fed = 0;
+  feed(*executor, blocks, fed);
+  for (int tick = 0; tick < 2000; ++tick) executor->tick(period);
+  executor->reverse(true);
+  for (int tick = 0; tick < 4000; ++tick) executor->tick(period);
+  CHECK(executor->tick(period).position.norm() < 1e-9);
+  CHECK_FALSE(executor->finished());
+  executor->reverse(false);
+  for (int tick = 0; tick < 10000 && !executor->finished(); ++tick) executor->tick(period);
+  CHECK(executor->finished());
+  CHECK((executor->tick(period).position - Vector3(10, 30, 0)).norm() < 1e-9);
+}
+
+TEST_CASE("executor levels: a share of the feed slows all, and one above 1 acts as 1", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
+  const auto time_at = [&](double share) {
+    const auto executor = runner();
+    executor->feed_override(share);
+    return run_to_end(*executor, blocks);
+  };
+  const double full = time_at(1);
+  CHECK(time_at(0.5) == Approx(2 * full).margin(3 * period));
+  CHECK(time_at(2) == full);
+}
+
+TEST_CASE("executor levels: a block that is refused ends the motion where it begins", "[executor-levels]") {
+  MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\n");
+  MillBlock apart = blocks.back();
+  apart.path = path::Line<3>(Vector3(5, 5, 5), Vector3(6, 5, 5));
+  apart.line = 77;
+  blocks.push_back(apart);
+  const auto executor = runner();
+  run_to_end(*executor, blocks, 20);
+  REQUIRE(executor->error());
+  CHECK(executor->error()->error().code == ErrorCode::discontinuous);
+  CHECK(executor->error()->about.line == 77);
+  CHECK(executor->state() == ExecutorState::fault);
+  CHECK((executor->tick(period).position - Vector3(30, 10, 0)).norm() < 1e-9);
+  // It begins anew on a line, and goes to its start first.
+  blocks.pop_back();
+  REQUIRE(executor->restart(2, Vector3(30, 10, 0)));
+  run_to_end(*executor, blocks, 20);
+  CHECK(executor->finished());
+  CHECK_FALSE(executor->error());
+  CHECK((executor->tick(period).position - Vector3(30, 10, 0)).norm() < 1e-9);
+}
+
+TEST_CASE("executor levels: a tick allocates nothing where blocks are planned elsewhere",
+          "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(6, 50));
+  const auto executor = runner({.level = SmoothLevel::good, .background = true});
+  std::size_t fed = 0, allocations = 0;
+  for (int tick = 0; !executor->finished() && tick < 100000; ++tick) {
+    feed(*executor, blocks, fed);
+    executor->plan();
+    if (tick == 1000) executor->feed_hold();
+    if (tick == 1500) REQUIRE(executor->jog_to({1, 1, 1}));
+    if (tick == 2500) executor->resume();
+    allocations += heap_allocations_of([&] { executor->tick(period); });
+  }
+  CHECK(executor->finished());
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("executor levels: all memory is that of a resource that it is given", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(6, 50));
+  std::vector<std::byte> room(64 << 20);
+  std::pmr::monotonic_buffer_resource all(room.data(), room.size(), std::pmr::null_memory_resource());
+  std::pmr::unsynchronized_pool_resource memory(&all);
+  const auto executor =
+      std::make_unique<Runner>(mill, LevelExecutorOptions{.level = SmoothLevel::good}, &memory);
+  const auto allocations = heap_allocations_of([&] { run_to_end(*executor, blocks); });
+  CHECK(executor->finished());
+  CHECK_FALSE(executor->error());
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(10, 50));
+  const auto executor = runner({.level = SmoothLevel::good, .background = true});
+  std::atomic<bool> over = false;
+  std::thread planner([&] {
+    std::size_t fed = 0;
+    while (!over) {
+      feed(*executor, blocks, fed);
+      executor->plan();
+      std::this_thread::yield();
+    }
+  });
+  test::Random random;
+  std::array<Vector3, 4> p;
+  p.fill(Vector3::Zero());
+  double jerk = 0;
+  long ticks = 0;
+  for (; !executor->finished() && ticks < 400000; ++ticks) {
+    if (random.integer(0, 300) == 0) executor->feed_override(random.uniform(0.2, 1));
+    if (random.integer(0, 500) == 0) executor->feed_hold();
+    if (random.integer(0, 100) == 0) executor->resume();
+    p = {executor->tick(period).position, p[0], p[1], p[2]};
+    jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
+    if (ticks % 20 == 0) std::this_thread::yield();
+  }
+  over = true;
+  planner.join();
+  CHECK(executor->finished());
+  CHECK(jerk <= 10000 * period * period * period * (1 + 1e-3));
+  CHECK((p[0] - blocks.back().path.position_at(blocks.back().path.length())).norm() < 1e-9);
+}
