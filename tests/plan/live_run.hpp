@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "cncplan/plan/block_reader.hpp"
@@ -26,6 +27,7 @@ struct LiveCase {
   double restless = 1e9;    ///< s for which there are requests
   double share = 1;         ///< of a quick stop
   bool jogs = false;
+  double small = 0;  ///< mm: distances that need not be told exactly
 };
 
 /// The worst of what was seen; limits as shares, above 1 is over them.
@@ -42,6 +44,25 @@ struct LiveFaults {
   long requests = 0, tails = 0;
 };
 
+/// As `farthest`; a distance of no more than `small` may be told as a larger one that is. Points that follow
+/// each other are near the same piece of the curve, so only those that seem far are held against all of it.
+inline double farthest_above(const Polyline& points, const Polyline& curve, double small) {
+  double most = 0;
+  std::size_t near = 0;
+  for (const Vector3& p : points) {
+    const auto nearest = [&](std::size_t from, std::size_t to) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = from; i + 1 < curve.size() && i < to; ++i)
+        if (const double d = distance(p, curve[i], curve[i + 1]); d < least) least = d, near = i;
+      return least;
+    };
+    double d = nearest(near - std::min<std::size_t>(near, 30), near + 60);
+    if (d > small) d = nearest(0, curve.size());
+    most = std::max(most, d);
+  }
+  return most;
+}
+
 template <class E>
 class LiveRun {
  public:
@@ -51,7 +72,7 @@ class LiveRun {
     p_.fill(blocks.front().path.position_at(0));
     for (const auto& block : blocks) {
       if (block.word.letter != '\0') words_.push_back(block.word);
-      dwell_ += block.pause;
+      dwell_ += std::max(0.0, block.pause - 2 * how.period);  // less than a tick on each side is not seen
     }
   }
 
@@ -178,8 +199,8 @@ class LiveRun {
     for (const Vector3& p : track_)
       if (track.empty() || (p - track.back()).norm() > 1e-6) track.push_back(p);
     if (track.empty()) track.push_back(last_);
-    faults.place = farthest(track, path);
-    faults.missed = track.size() > 1 ? farthest(path, track) : 0;
+    faults.place = farthest_above(track, path, how_.small);
+    faults.missed = track.size() > 1 ? farthest_above(path, track, how_.small) : 0;
     faults.end = (last_ - path.back()).norm();
     faults.dwell = dwell_ - rested_;
     if (told_ != words_.size()) faults.words_wrong = true;
