@@ -4,6 +4,7 @@
 #include "cncplan/compiled.hpp"
 #include "cncplan/compiled/block_reader.hpp"
 #include "cncplan/compiled/executor.hpp"
+#include "cncplan/compiled/executor_levels.hpp"
 #include "cncplan/compiled/plan_blocks.hpp"
 #include "cncplan/compiled/plan_program.hpp"
 #include "cncplan/core/axis_kind.hpp"

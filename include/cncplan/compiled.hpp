@@ -4,6 +4,7 @@
 
 #include "cncplan/compiled/block_reader.hpp"
 #include "cncplan/compiled/executor.hpp"
+#include "cncplan/compiled/executor_levels.hpp"
 #include "cncplan/compiled/plan_blocks.hpp"
 #include "cncplan/compiled/plan_program.hpp"
 
@@ -15,5 +16,6 @@
   CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
   CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
   CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)      \
+  CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, ProgramBlock<MACHINE>)      \
   CNCPLAN_READ_BLOCKS(PREFIX, MACHINE)                            \
   CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "plan/at_level.hpp"
 #include "plan/live_run.hpp"
 #include "plan/rows_program.hpp"
 #include "soak/smooth_program.hpp"

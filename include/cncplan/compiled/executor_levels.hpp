@@ -1,0 +1,17 @@
+// What drives executors at the levels `good` and `best` that the library `cncplan::compiled` has ready:
+// included where that is used (set-up).
+#pragma once
+
+#include "cncplan/plan/executor_levels.hpp"
+
+/// Running blocks of a type at these levels, whatever the capacity of the executor.
+#define CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, BLOCK) PREFIX template class plan::LiveDriver<MACHINE, BLOCK>;
+
+#ifdef CNCPLAN_COMPILED
+namespace cncplan {
+
+CNCPLAN_RUN_LEVELS(extern, Machine<3>, Block<3>)
+CNCPLAN_RUN_LEVELS(extern, Machine<6>, Block<6>)
+
+}  // namespace cncplan
+#endif
