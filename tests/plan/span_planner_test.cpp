@@ -197,6 +197,41 @@ TEST_CASE("the same blocks give the same bits, without heap") {
   }
 }
 
+TEST_CASE("where blocks are alike but for rounding, that decides nothing") {
+  // Chords of circles: the same few blocks again and again, and back.
+  test::Random random;
+  constexpr double last_bit = std::numeric_limits<double>::epsilon();
+  double worst = 0.0;
+  std::vector<plan::BlockCaps> where;
+  for (int draws = 0; draws < 2000; ++draws) {
+    std::vector<plan::BlockCaps> blocks;
+    const int kinds = random.integer(1, 6), rings = random.integer(2, 12);
+    for (int i = 0; i < kinds; ++i)
+      blocks.push_back({random.log_uniform(0.05, 2),
+                        random.coin() ? infinity : random.uniform(3, 30),
+                        {random.uniform(3, 30), random.log_uniform(100, 1000), random.log_uniform(1e3, 1e4)},
+                        0.0});
+    if (random.coin())
+      for (int i = kinds; i-- > 0;) blocks.push_back(blocks[static_cast<std::size_t>(i)]);
+    const std::vector<plan::BlockCaps> ring = blocks;
+    for (int i = 1; i < rings; ++i) blocks.insert(blocks.end(), ring.begin(), ring.end());
+    const double planned = test::duration(test::spans_of(blocks));
+    std::vector<plan::BlockCaps> other = blocks;
+    const auto shake = [&](double& number) { number *= 1.0 + random.integer(-4, 4) * last_bit; };
+    for (plan::BlockCaps& block : other) {
+      shake(block.length);
+      shake(block.entry);
+      shake(block.limits.velocity);
+      shake(block.limits.acceleration);
+      shake(block.limits.jerk);
+    }
+    const double change = std::abs(test::duration(test::spans_of(other)) / planned - 1.0);
+    if (change > worst) worst = change, where = blocks;
+  }
+  INFO("seed " << test::seed() << ", worst: " << test::literal(where));
+  CHECK(worst < 1e-9);
+}
+
 TEST_CASE("random programs in float keep their limits to float's digits") {
   test::Random random;
   test::PlanErrors worst;

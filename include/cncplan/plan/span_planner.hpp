@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/laws.hpp"
+#include "cncplan/plan/level_limits.hpp"
 #include "cncplan/plan/shared_limits.hpp"
 #include "cncplan/plan/solver_cache.hpp"
 #include "cncplan/plan/span.hpp"
@@ -39,6 +41,18 @@ using Waypoint = BasicWaypoint<double>;
 /// limit alone binds, by the highest value of (1 + x) sqrt(1 - x), rounded up.
 inline constexpr double longest_ramp = 1.09;
 
+/// Whether numbers differ by more than rounding makes of them.
+template <std::floating_point S>
+[[nodiscard]] bool differ(S a, S b) {
+  constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();
+  return !(a == b || std::abs(a - b) <= rounding * std::abs(b));
+}
+template <std::floating_point S>
+[[nodiscard]] bool alike(const BasicLimits<S>& a, const BasicLimits<S>& b) {
+  return !differ(a.velocity, b.velocity) && !differ(a.acceleration, b.acceleration) &&
+         !differ(a.jerk, b.jerk);
+}
+
 /// Reduces blocks to waypoints: writes at most one more than there are blocks into `waypoints`, the last
 /// behind the end, and returns how many. The motion starts at `start_speed` and ends at rest. The start of
 /// block `divide`, if there is one, becomes steady.
@@ -51,12 +65,17 @@ std::size_t make_waypoints(std::span<const BasicBlockCaps<S>> blocks, S start_sp
                               blocks.front().length);  // since the last one that is steady by force
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicLimits<S>& limits = blocks[i].limits;
-    const BasicLimits<S>& before = i == 0 ? limits : blocks[i - 1].limits;
+    const BasicLimits<S> before = i == 0 ? limits : waypoints[count - 1].limits;
     const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before.velocity, limits.velocity});
     const bool fixed = !shared.take(limits, blocks[i].length) || i == 0 || i == divide;
     if (fixed) shared = BasicSharedLimits<S>(limits, blocks[i].length);
-    if (fixed || limits != before || cap < limits.velocity)
+    if (fixed || !alike(limits, before) || differ(cap, limits.velocity)) {
       waypoints[count++] = {i, cap, cap, S(0), limits, true, fixed, false, S(0)};
+    } else {
+      BasicWaypoint<S>& last = waypoints[count - 1];
+      last.limits = lowest(before, limits);
+      last.cap = last.speed = std::min(last.cap, last.limits.velocity);
+    }
     waypoints[count - 1].gap += blocks[i].length;
   }
   waypoints[count++] = {blocks.size(), S(0), S(0), S(0), blocks.back().limits, true, true, false, S(-1)};
@@ -237,6 +256,7 @@ class WaypointPlanner {
     const auto planned = profile(from, to);
     if (!planned) return fix_all();
     constexpr S tolerance = S(1) + S(64) * std::numeric_limits<S>::epsilon();
+    constexpr S no_difference = S(1) + (std::numeric_limits<S>::digits > 30 ? S(1e-9) : S(1e-4));
     const auto phases = planned->phases();
     const S top = planned->top_velocity();
     const S top_from = phases[3].position;
@@ -246,7 +266,8 @@ class WaypointPlanner {
     const auto weigh = [&](std::size_t waypoint, S speed, S allowed) {
       if (!(speed > allowed * tolerance) || waypoint == from || waypoint == to) return;
       if (round >= careful_rounds) waypoints_[waypoint].fixed = true;
-      if (speed <= worst * allowed) return;
+      // Of ones as bad as each other the first, whatever rounding makes of them.
+      if (speed <= worst * allowed * no_difference) return;
       worst = speed / allowed;
       worst_waypoint = waypoint;
     };
