@@ -82,6 +82,13 @@ class Executor:
         return None if found is None else Error(*found)
 
     @property
+    def state(self) -> str:
+        """What it is doing: "moving", "holding" (on the way to a rest that was asked for), "held" (at rest until it is
+        resumed), "dwelling", "stopped" (at M0, M1 or M60 until it is resumed), "jogging", "away" (at rest beside the
+        path), "waiting" (for blocks), "fault" (`error` says why) or "finished"."""
+        return self._core.state()
+
+    @property
     def warnings(self) -> list[str]:
         """What the last line has that has no effect."""
         return self._core.warnings()

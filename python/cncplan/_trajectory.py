@@ -14,10 +14,12 @@ from ._blocks import Block, tuples_of
 from ._errors import Error, choice, kind, not_negative, number, path_of, positive, row, text_of
 from ._machine import Machine, core_of
 
-LEVELS = ("exact", "fast", "good", "best")
+LEVELS = _core.level_names
+_REASONS = np.array([*_core.reasons, ""], dtype=object)  # the last one for no reason
 
 BLOCK_DTYPE = np.dtype([("block", "i8"), ("line", "i8"), ("length", "f8"), ("start", "f8"), ("duration", "f8"),
-                        ("entry", "f8"), ("peak", "f8"), ("exit", "f8")])
+                        ("entry", "f8"), ("peak", "f8"), ("exit", "f8"), ("level", "U5"), ("reason", "O")])
+FALLBACK_DTYPE = np.dtype([("first", "i8"), ("last", "i8"), ("level", "U5"), ("reason", "O")])
 WORD_DTYPE = np.dtype([("letter", "U1"), ("number", "f8"), ("time", "f8"), ("line", "i8"), ("arguments", "O")])
 EDGE_DTYPE = np.dtype([("time", "f8"), ("motor", "i8"), ("axis", "i8"), ("direction", "i8")])
 
@@ -72,6 +74,18 @@ class Peaks:
     along: tuple[float, float, float]  #: of the motion along the path
 
 
+def _named(rows: np.ndarray, dtype: np.dtype) -> np.ndarray:
+    """Rows of the extension module, which has numbers for the level and the reason."""
+    numbers = np.dtype([(name, "i8" if name in ("level", "reason") else dtype[name]) for name in dtype.names])
+    rows = np.asarray(rows).view(numbers)
+    made = np.empty(len(rows), dtype)
+    for name in dtype.names:
+        made[name] = rows[name]
+    made["level"] = np.array(LEVELS)[rows["level"]]
+    made["reason"] = _REASONS[rows["reason"]]
+    return made
+
+
 def _available_bytes() -> int:
     return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
@@ -79,8 +93,11 @@ def _available_bytes() -> int:
 class Trajectory:
     """A planned program: where everything is at any instant. `plan_file` and its kin make it."""
 
-    def __init__(self, core: Any, machine: Machine, level: str, tolerance: float) -> None:
+    def __init__(self, core: Any, machine: Machine, level: str, tolerance: float, name: str = "",
+                 text: bytes | None = b"") -> None:
         self._core = core
+        self._name = name
+        self._text = text  # None: that of the file of this name
         self.machine = machine
         self.level = level  #: what was asked for
         self.tolerance = tolerance  #: mm
@@ -104,8 +121,15 @@ class Trajectory:
     def blocks(self) -> np.ndarray:
         """When each block that moves runs, as a structured array: block (from 0), line, length (mm; rad where
         only rotary axes move), start and duration (s), entry, peak and exit (speed at its start, at most, and
-        at its end; mm/s)."""
-        return np.asarray(self._core.blocks()).view(BLOCK_DTYPE)
+        at its end; mm/s), level (at which it was planned), reason (why not at the level that was asked for, a
+        clause; empty where it was)."""
+        return _named(self._core.blocks(), BLOCK_DTYPE)
+
+    @property
+    def fallbacks(self) -> np.ndarray:
+        """Blocks that have another level than was asked for, in order, as a structured array: first and last
+        (number of a block, from 0), level, reason (a clause). Blocks that need no smoothing are not among them."""
+        return _named(self._core.fallbacks(), FALLBACK_DTYPE)
 
     @property
     def words(self) -> np.ndarray:
@@ -174,15 +198,49 @@ class Trajectory:
         # no number is -0
         np.savetxt(path_of(path), table + 0.0, fmt="%.17g", delimiter=",", header=heading, comments="")
 
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Writes one page of HTML that shows the motion beside its program: the path in space, speeds and axes over
+        time, a player. It is that of `cncplan_simulate --report`, without the deviation from the programmed path,
+        and needs nothing beside it.
+
+        Parameters
+        ----------
+        path
+            The file that is made, or made anew.
+
+        Raises
+        ------
+        Error
+            not_supported: three.js or dygraphs were not there when the module was built; unreadable: the program's
+            file is not there any more.
+        """
+        file_name = path_of(path)
+        if self._text is not None:
+            text = self._text
+        else:
+            try:
+                with open(self._name, "rb") as file:
+                    text = file.read()
+            except OSError:
+                raise Error(f"{self._name}: cannot be read", "unreadable", "file", file=self._name) from None
+        summary = [("Time", f"{self.duration:.3f} s"), ("Length", f"{self.length:.3f} mm"), ("Level", self.level),
+                   ("Tolerance", f"{self.tolerance:g} mm"), ("Blocks", str(len(self.blocks)))]
+        summary += [("Other levels", f"blocks {part['first']} to {part['last']}: {part['level']}, {part['reason']}")
+                    for part in self.fallbacks[:20]]
+        page = self._core.report(self._name or "program", text, summary)
+        with open(file_name, "wb") as file:
+            file.write(page)
+
     def __repr__(self) -> str:
         return f"<cncplan.Trajectory {self.duration:.6g} s, {self.length:.6g} mm>"
 
 
-def options_of(machine: Machine, tolerance: Any, rotary_tolerance: Any, junction_deviation: Any, start: Any) -> Any:
+def options_of(machine: Machine, tolerance: Any, rotary_tolerance: Any, junction_deviation: Any, start: Any,
+               level: Any = "best") -> Any:
     core_of(machine)
     turn = not_negative(rotary_tolerance, "rotary_tolerance")
-    return _core.PlanOptions(not_negative(tolerance, "tolerance"), turn * (np.pi / 180),
-                             not_negative(junction_deviation, "junction_deviation"),
+    return _core.PlanOptions(not_negative(tolerance, "tolerance"), LEVELS.index(choice(level, "level", LEVELS)),
+                             turn * (np.pi / 180), not_negative(junction_deviation, "junction_deviation"),
                              [] if start is None else row(start, "start", len(machine)))
 
 
@@ -214,18 +272,18 @@ def plan_file(path: str | os.PathLike[str], machine: Machine, tolerance: float =
     Error
         With the place in the program.
     """
-    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start)
-    core = _core.plan_file(core_of(machine), path_of(path), options, LEVELS.index(choice(level, "level", LEVELS)))
-    return Trajectory(core, machine, level, float(tolerance))
+    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
+    name = path_of(path)
+    return Trajectory(_core.plan_file(core_of(machine), name, options), machine, level, float(tolerance), name, None)
 
 
 def plan_text(text: str, machine: Machine, tolerance: float = 0.01, level: str = "best", *,
               rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
               start: Sequence[float] | None = None) -> Trajectory:
     """Plans the text of a G-code program. Parameters and errors are those of `plan_file`."""
-    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start)
-    core = _core.plan_text(core_of(machine), _program(text), options, LEVELS.index(choice(level, "level", LEVELS)))
-    return Trajectory(core, machine, level, float(tolerance))
+    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
+    program = _program(text)
+    return Trajectory(_core.plan_text(core_of(machine), program, options), machine, level, float(tolerance), "", program)
 
 
 def _program(text: Any) -> bytes:
@@ -237,7 +295,6 @@ def plan_blocks(blocks: Sequence[Block], machine: Machine, tolerance: float = 0.
                 rotary_tolerance: float = 0.05, junction_deviation: float = 0.01) -> Trajectory:
     """Plans blocks made by hand (`line`, `arc`, `curve`), from rest to rest. Each begins where the one before
     ends. Parameters as of `plan_file`; errors have the number of the block."""
-    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, None)
-    core = _core.plan_blocks(core_of(machine), tuples_of(blocks, len(machine)), options,
-                             LEVELS.index(choice(level, "level", LEVELS)))
+    options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, None, level)
+    core = _core.plan_blocks(core_of(machine), tuples_of(blocks, len(machine)), options)
     return Trajectory(core, machine, level, float(tolerance))

@@ -39,6 +39,7 @@ void bind_executor(py::module_& module) {
              if (!error) return py::none();
              return error_arguments(*error, to_text(*error));
            })
+      .def("state", [](const E& e) { return std::string(to_text(e.state())); })
       .def("pushed", &E::pushed)
       .def("time", &E::time)
       .def("until_change", &E::until_change)

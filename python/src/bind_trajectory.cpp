@@ -25,8 +25,7 @@ PlanOptions options_of(double tolerance, int level, double rotary_tolerance, dou
 
 TrajectoryPointer plan(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
                        const std::string& file) {
-  return with_size(machine.axes.size(),
-                   [&](auto n) { return plan_text<n>(machine, text, options, file); });
+  return with_size(machine.axes.size(), [&](auto n) { return plan_text<n>(machine, text, options, file); });
 }
 
 TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options) {
@@ -34,7 +33,8 @@ TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, 
   return plan(machine, text, here, file);
 }
 
-TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text, const PlanOptions& options) {
+TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text,
+                              const PlanOptions& options) {
   return plan(machine, text, options, {});
 }
 
@@ -94,6 +94,17 @@ void bind_trajectory(py::module_& module) {
              return arrays.named;
            })
       .def("blocks", [](const AnyTrajectory& trajectory) { return bytes_of(trajectory.blocks()); })
+      .def("fallbacks", [](const AnyTrajectory& trajectory) { return bytes_of(trajectory.fallbacks()); })
+      .def("report",
+           [](const AnyTrajectory& trajectory, const std::string& name, const std::string& text,
+              const std::vector<std::pair<std::string, std::string>>& summary) {
+             std::string page;
+             {
+               const py::gil_scoped_release released;
+               page = trajectory.report({name, text, summary});
+             }
+             return py::bytes(page);
+           })
       .def("words",
            [](const AnyTrajectory& trajectory) {
              py::list rows;
@@ -123,18 +134,28 @@ void bind_trajectory(py::module_& module) {
                               limits(found.tool), limits(found.along));
       });
 
+  module.attr("level_names") = [] {
+    py::list names;
+    for (int i = 0; i <= static_cast<int>(SmoothLevel::best); ++i)
+      names.append(std::string(to_text(static_cast<SmoothLevel>(i))));
+    return py::tuple(names);
+  }();
+  module.attr("reasons") = [] {
+    py::list texts;
+    for (int i = 0; i <= static_cast<int>(FallbackReason::memory); ++i)
+      texts.append(std::string(to_text(static_cast<FallbackReason>(i))));
+    return py::tuple(texts);
+  }();
   py::class_<PlanOptions>(module, "PlanOptions").def(py::init(&options_of));
   module.def("plan_file", &plan_file, Released());
   module.def("plan_text", &plan_string, Released());
-  module.def("plan_blocks",
-             [](const AnyMachine& machine, const py::list& given, const PlanOptions& options) {
-               std::vector<AnyBlock> blocks;
-               for (const auto& block : given) blocks.push_back(block_from(block.cast<py::tuple>()));
-               const py::gil_scoped_release released;
-               return with_size(machine.axes.size(), [&](auto n) {
-                 return plan_hand_made<n>(machine, blocks, options);
-               });
-             });
+  module.def("plan_blocks", [](const AnyMachine& machine, const py::list& given, const PlanOptions& options) {
+    std::vector<AnyBlock> blocks;
+    for (const auto& block : given) blocks.push_back(block_from(block.cast<py::tuple>()));
+    const py::gil_scoped_release released;
+    return with_size(machine.axes.size(),
+                     [&](auto n) { return plan_hand_made<n>(machine, blocks, options); });
+  });
 }
 
 }  // namespace cncplan::python

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blocks.hpp"
+#include "cncplan/plan/executor_state.hpp"
 #include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/set_point.hpp"
@@ -52,6 +53,7 @@ class AnyExecutor {
 
   [[nodiscard]] virtual bool finished() const = 0;
   [[nodiscard]] virtual std::optional<ProgramError> error() const = 0;
+  [[nodiscard]] virtual ExecutorState state() const = 0;
   [[nodiscard]] virtual std::int64_t pushed() const = 0;
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual double until_change() const = 0;

@@ -41,6 +41,7 @@ AnyMachine read_machine(const std::string& text, const std::string& name, const 
   if (std::isfinite(file.feed_limit)) machine.feed_limit = file.feed_limit;
   for (std::size_t i = 0; i < file.axes.size(); ++i) machine.axes.push_back(file.axis(i));
   machine.dialect = file.dialect;
+  machine.file = file;
   return machine;
 }
 

@@ -8,6 +8,7 @@
 
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/plan/machine.hpp"
+#include "support/machine_file.hpp"
 
 namespace cncplan::python {
 
@@ -20,6 +21,7 @@ struct AnyMachine {
   double rapid_rate{};
   double feed_limit{};
   gcode::Dialect dialect;
+  support::Machine file;  ///< as it was read
 };
 
 /// A machine file, as its text. Throws `Fault` for one that has an unknown or wrong entry.

@@ -11,6 +11,7 @@
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/trajectory.hpp"
 #include "interruption.hpp"
+#include "report/report.hpp"
 #include "trajectory.hpp"
 
 namespace cncplan::python {
@@ -22,8 +23,14 @@ using Planned = Trajectory<Machine<N>, ReadBlock<N>>;
 
 /// The trajectory for Python, with the memory that it lies in.
 template <int N>
-[[nodiscard]] TrajectoryPointer any_trajectory(std::unique_ptr<InterruptibleMemory> memory,
+[[nodiscard]] TrajectoryPointer any_trajectory(const AnyMachine& machine,
+                                               std::unique_ptr<InterruptibleMemory> memory,
                                                Planned<N>&& trajectory);
+
+/// What a report shows.
+template <int N>
+[[nodiscard]] report::Report report_of(const Planned<N>& trajectory, const AnyMachine& machine,
+                                       const ReportText& text);
 
 /// The options that read a program for a machine.
 [[nodiscard]] inline PlanOptions with_dialect(PlanOptions options, const AnyMachine& machine) {

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "blocks.hpp"
@@ -16,7 +16,6 @@
 #include "machine.hpp"
 
 namespace cncplan::python {
-
 
 /// Arrays that samples are written to: `axes` numbers a row of position to jerk, three of tool, one of the
 /// others.
@@ -32,6 +31,11 @@ struct Columns {
 struct BlockRow {
   std::int64_t block{}, line{};
   double length{}, start{}, duration{}, entry{}, peak{}, exit{};
+  std::int64_t level{};
+  std::int64_t reason = -1;  ///< of another level; -1: it is the one that was asked for
+};
+struct FallbackRow {
+  std::int64_t first{}, last{}, level{}, reason{};
 };
 struct EdgeRow {
   double time{};
@@ -40,6 +44,13 @@ struct EdgeRow {
 struct PeakRow {
   std::vector<double> velocity, acceleration, jerk;  ///< of each axis
   Limits tool, along;
+};
+
+/// What a report tells beside the motion.
+struct ReportText {
+  std::string name;  ///< the program's
+  std::string text;
+  std::vector<std::pair<std::string, std::string>> summary;  ///< names and values
 };
 
 class AnyTrajectory {
@@ -56,11 +67,14 @@ class AnyTrajectory {
   virtual void sample(double period, const Columns& out) const = 0;
   virtual void at(std::span<const double> times, const Columns& out) const = 0;
   [[nodiscard]] virtual std::vector<BlockRow> blocks() const = 0;
+  [[nodiscard]] virtual std::vector<FallbackRow> fallbacks() const = 0;
   [[nodiscard]] virtual std::vector<TimedWord> words() const = 0;
   [[nodiscard]] virtual std::vector<std::string> warnings() const = 0;
   /// Error above_limit where there are more than `most`.
   [[nodiscard]] virtual std::vector<EdgeRow> step_edges(std::size_t most) const = 0;
   [[nodiscard]] virtual PeakRow peaks() const = 0;
+  /// One page of HTML. Throws `Fault` where the build had no libraries to make it of.
+  [[nodiscard]] virtual std::string report(const ReportText& text) const = 0;
 };
 
 using TrajectoryPointer = std::unique_ptr<AnyTrajectory>;

@@ -139,6 +139,34 @@ def test_every_request_can_be_made(mill):
     executor.return_to_path()
 
 
+def test_state(mill):
+    executor = cncplan.Executor(mill)
+    seen = [executor.state]
+
+    def tick(count=1):
+        for _ in range(count):
+            executor.tick(0.001)
+            if executor.state != seen[-1]:
+                seen.append(executor.state)
+
+    for text in ["G1 F1200 X10", "G4 P0.3", "X0", "M0", "X5"]:
+        executor.push(text)
+    executor.end_of_program()
+    tick(200)
+    executor.feed_hold()
+    tick(500)
+    executor.resume()
+    tick(1500)
+    executor.resume()
+    tick(2000)
+    executor.jog([10, 0, 0])
+    tick(300)
+    executor.jog([0, 0, 0])
+    tick(300)
+    assert seen == ["waiting", "moving", "holding", "held", "moving", "dwelling", "moving", "stopped", "moving",
+                    "finished", "jogging", "away"]
+
+
 def test_many_lines_come_in_by_and_by(mill):
     lines = ["G1 F1800"] + [f"X{i / 10} Y{math.sin(i / 5):.4f}" for i in range(1000)]
     executor = cncplan.Executor(mill)

@@ -2,6 +2,7 @@
 
 import copy
 import inspect
+import json
 import math
 import os
 import pickle
@@ -153,6 +154,29 @@ def test_ctrl_c_ends_a_long_call(mill, level):
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
     assert cncplan.plan_text("G1 X1", mill, level=level).length == 1  # nothing is left behind
+
+
+def test_report(mill, tmp_path):
+    program = "G21 G90 F1800 (a comment: <b>&)\nG1 X20\nM3 S1000\nG3 X10 Y10 R10\n"
+    (tmp_path / "part.ngc").write_text(program)
+    for trajectory in (cncplan.plan_file(tmp_path / "part.ngc", mill), cncplan.plan_text(program, mill, level="fast"),
+                       cncplan.plan_blocks([cncplan.line([0, 0, 0], [5, 0, 0])], mill)):
+        trajectory.report(tmp_path / "page.html")
+        page = (tmp_path / "page.html").read_text()
+        assert page.startswith("<!doctype html>") and page.rstrip().endswith("</html>")
+        data = json.loads(re.search(r'<script[^>]*type="application/json"[^>]*>(.*?)</script>', page, re.S)[1])
+        assert ["Time", f"{trajectory.duration:.3f} s"] in data["summary"]
+        if len(trajectory.words):
+            assert data["text"] == program
+            assert [mark["text"] for mark in data["marks"]] == ["S1000", "M3"]
+            assert [mark["time"] for mark in data["marks"]] == trajectory.words["time"].tolist()
+    trajectory = cncplan.plan_file(tmp_path / "part.ngc", mill)
+    (tmp_path / "part.ngc").unlink()
+    with pytest.raises(cncplan.Error) as caught:
+        trajectory.report(tmp_path / "other.html")
+    assert caught.value.code == "unreadable" and not (tmp_path / "other.html").exists()
+    with pytest.raises(TypeError, match="path: expected a path"):
+        trajectory.report(3)
 
 
 def test_everything_public_is_explained():

@@ -136,6 +136,42 @@ def test_blocks(mill, level):
     assert trajectory.length == pytest.approx(blocks["length"].sum())
 
 
+@pytest.mark.parametrize("level", LEVELS)
+def test_levels_of_blocks(mill, level):
+    trajectory = cncplan.plan_text(SQUARE, mill, level=level)
+    assert trajectory.blocks["level"].tolist() == [level] * 4 and not any(trajectory.blocks["reason"])
+    assert len(trajectory.fallbacks) == 0
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_fallbacks_say_where_and_why(level):
+    axes = [cncplan.Axis("X", backlash=0.02), cncplan.Axis("Y"), cncplan.Axis("Z")]
+    trajectory = cncplan.plan_text(SQUARE, cncplan.Machine(**LIMITS, axes=axes), level=level)
+    if level in ("exact", "fast"):
+        assert len(trajectory.fallbacks) == 0 and trajectory.blocks["level"].tolist() == [level] * 4
+        return
+    assert trajectory.fallbacks.tolist() == [(0, 3, "fast", "backlash takes time")]
+    assert trajectory.blocks["level"].tolist() == ["fast"] * 4
+    assert trajectory.blocks["reason"].tolist() == ["backlash takes time"] * 4
+    assert trajectory.duration == cncplan.plan_text(SQUARE, cncplan.Machine(**LIMITS, axes=axes), level="fast").duration
+
+
+def test_fallbacks_of_simulate(simulate, tmp_path):
+    """The same parts, by lines, of a program whose axes turn alone in between."""
+    machine_file = tmp_path / "mill.toml"
+    machine_file.write_text("".join(
+        f'[[axis]]\nletter = "{letter}"\nkind = "{kind}"\nvelocity = 40\nacceleration = 900\njerk = 9000\n'
+        for letter, kind in (("X", "linear"), ("Y", "linear"), ("Z", "linear"), ("A", "rotary"))))
+    program = tmp_path / "part.ngc"
+    program.write_text("G21 G90 F1800\nG1 X10\nY10\nA90\nX0\nY0\n")
+    summary, _ = simulated(simulate, program, tmp_path, "--machine", machine_file, *OPTIONS["best"])
+    trajectory = cncplan.plan_file(program, cncplan.Machine(machine_file, **LIMITS))
+    lines = trajectory.blocks["line"]
+    assert [{"lines": [lines[part["first"]], lines[part["last"]]], "level": part["level"], "reason": part["reason"]}
+            for part in trajectory.fallbacks] == summary["fallbacks"]
+    assert trajectory.duration == summary["time_s"]
+
+
 def test_samples_are_on_the_grid(mill):
     trajectory = cncplan.plan_text(SQUARE, mill)
     samples = trajectory.sample(0.01)

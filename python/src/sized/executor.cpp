@@ -78,6 +78,11 @@ class ExecutorOfSize final : public AnyExecutor {
     return executor_.finished() && (!pending() || executor_.error());
   }
   [[nodiscard]] std::optional<ProgramError> error() const override { return executor_.error(); }
+  [[nodiscard]] ExecutorState state() const override {
+    const ExecutorState state = executor_.state();
+    // What a line had no room for is still to come.
+    return state == ExecutorState::finished && !finished() ? ExecutorState::waiting : state;
+  }
   [[nodiscard]] std::int64_t pushed() const override { return executor_.pushed(); }
   [[nodiscard]] double time() const override { return executor_.time(); }
   [[nodiscard]] double until_change() const override { return executor_.until_change(); }

@@ -5,12 +5,12 @@
 #include <limits>
 #include <span>
 
-#include "cncplan/compiled.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "fault.hpp"
 #include "planned.hpp"
+#include "planner.hpp"
 #include "program.hpp"
 
 namespace cncplan::python {
@@ -146,7 +146,7 @@ TrajectoryPointer plan_text<AXES>(const AnyMachine& given, std::string_view text
     raise(planned.error());
   }
   plan::tell(*planned, program, level_of(options) != SmoothLevel::exact);
-  return any_trajectory<AXES>(std::move(memory), std::move(*planned));
+  return any_trajectory<AXES>(given, std::move(memory), std::move(*planned));
 }
 
 template <>
@@ -159,7 +159,7 @@ TrajectoryPointer plan_hand_made<AXES>(const AnyMachine& given, const std::vecto
   auto memory = std::make_unique<InterruptibleMemory>();
   auto planned = plan_blocks(std::move(own), machine, options, memory.get());
   if (!planned) raise(planned.error());
-  return any_trajectory<AXES>(std::move(memory), std::move(*planned));
+  return any_trajectory<AXES>(given, std::move(memory), std::move(*planned));
 }
 
 }  // namespace cncplan::python

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
-#include "cncplan/compiled.hpp"
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/step_edges.hpp"
 #include "fault.hpp"
 #include "planned.hpp"
+#include "planner.hpp"
+#include "support/failure.hpp"
 
 namespace cncplan::python {
 
@@ -36,8 +38,9 @@ void write(const Planned<AXES>::SetPoint& point, std::size_t row, const Columns&
 
 class TrajectoryOfSize final : public AnyTrajectory {
  public:
-  TrajectoryOfSize(std::unique_ptr<InterruptibleMemory> memory, Planned<AXES>&& planned)
-      : memory_(std::move(memory)), planned_(std::move(planned)) {
+  TrajectoryOfSize(const AnyMachine& machine, std::unique_ptr<InterruptibleMemory> memory,
+                   Planned<AXES>&& planned)
+      : machine_(machine), memory_(std::move(memory)), planned_(std::move(planned)) {
     memory_->stop_asking();
   }
 
@@ -69,7 +72,16 @@ class TrajectoryOfSize final : public AnyTrajectory {
     std::vector<BlockRow> rows;
     for (const BlockMotion& motion : planned_.blocks())
       rows.push_back({static_cast<std::int64_t>(motion.block), motion.line, motion.length, motion.start,
-                      motion.duration, motion.entry, motion.peak, motion.exit});
+                      motion.duration, motion.entry, motion.peak, motion.exit,
+                      static_cast<std::int64_t>(motion.level),
+                      motion.reason ? static_cast<std::int64_t>(*motion.reason) : -1});
+    return rows;
+  }
+  [[nodiscard]] std::vector<FallbackRow> fallbacks() const override {
+    std::vector<FallbackRow> rows;
+    for (const Fallback& part : planned_.fallbacks())
+      rows.push_back({static_cast<std::int64_t>(part.first), static_cast<std::int64_t>(part.last),
+                      static_cast<std::int64_t>(part.level), static_cast<std::int64_t>(part.reason)});
     return rows;
   }
 
@@ -101,7 +113,18 @@ class TrajectoryOfSize final : public AnyTrajectory {
     return {list(found.velocity), list(found.acceleration), list(found.jerk), found.tool, found.along};
   }
 
+  [[nodiscard]] std::string report(const ReportText& text) const override {
+    std::ostringstream page;
+    try {
+      report::write(page, report_of<AXES>(planned_, machine_, text));
+    } catch (const support::Failure& failure) {
+      throw Fault{{{{ErrorCode::not_supported, "report", 0, 0}, 0, 0, {}}, {}, {}}, failure.what()};
+    }
+    return std::move(page).str();
+  }
+
  private:
+  AnyMachine machine_;
   std::unique_ptr<InterruptibleMemory> memory_;  // of all that follows
   Planned<AXES> planned_;
 };
@@ -109,8 +132,9 @@ class TrajectoryOfSize final : public AnyTrajectory {
 }  // namespace
 
 template <>
-TrajectoryPointer any_trajectory<AXES>(std::unique_ptr<InterruptibleMemory> memory, Planned<AXES>&& planned) {
-  return std::make_unique<TrajectoryOfSize>(std::move(memory), std::move(planned));
+TrajectoryPointer any_trajectory<AXES>(const AnyMachine& machine, std::unique_ptr<InterruptibleMemory> memory,
+                                       Planned<AXES>&& planned) {
+  return std::make_unique<TrajectoryOfSize>(machine, std::move(memory), std::move(planned));
 }
 
 }  // namespace cncplan::python
