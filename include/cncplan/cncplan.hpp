@@ -153,6 +153,7 @@
 #include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/executor_core.hpp"
 #include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/plan/executor_options.hpp"
 #include "cncplan/plan/executor_state.hpp"
 #include "cncplan/plan/fallback.hpp"
 #include "cncplan/plan/follow_steps.hpp"

@@ -1,5 +1,4 @@
-// Blocks of a run as the levels `good` and `best` see them, on a machine with a map and on one without
-// (set-up).
+// Blocks of a run as the levels `good` and `best` see them, with a map and without (set-up).
 #pragma once
 
 #include <algorithm>
