@@ -56,16 +56,29 @@ class ExecutorRoom {
 ///
 /// Two threads: one calls `push`, `end_of_program` and `plan`, the other one `tick` and all requests; neither
 /// waits. `restart` is for a machine at rest while nothing else is called.
+///
+/// All of this is the level `fast`. With a `SmoothLevel` in its options (`LevelOptions`) an executor has any
+/// level. At `good` and `best` it drives parts of a `SmoothStream` that holds `capacity` blocks, 40 at least,
+/// by a clock as a `TrajectoryExecutor` does; of a part that ends at a speed the way to rest is known, and is
+/// driven if no other part comes in time. What differs:
+///
+/// - a lower override slows all of the motion, its ramps too, and one above 1 acts as 1;
+/// - a hold comes once a change of the rate is proven: soon, with the `reserve` of the options;
+/// - `single_step` and `pause_at` rest less than two ticks before the next block, on the curve that is
+/// driven;
+///   behind its start where limits do not allow it sooner;
+/// - `reverse` goes back to the first rest of the parts that are kept, three behind this one;
+/// - `restart` begins where the first block of the line begins, and the axes go there first;
+/// - without `background` the work of a whole part is done in a `push`, `end_of_program` or `tick`: with it,
+///   only in `push` and `plan`, and a tick asks for no memory.
 template <MachineModel M, std::size_t capacity, BlockModel B = ProgramBlock<M>>
 class Executor : private plan::ExecutorRoom<M, B, capacity>, public plan::ExecutorCore<M, B> {
-  using Scalar = typename M::Scalar;
-
   static_assert(capacity >= 2, "an executor looks ahead over two blocks at least");
 
  public:
   using Options = typename plan::ExecutorCore<M, B>::Options;
 
-  using LevelOptions = BasicExecutorOptions<Scalar, SmoothLevel>;
+  using LevelOptions = BasicExecutorOptions<typename M::Scalar, SmoothLevel>;
 
   /// A machine that `validate` refuses is told by `error`.
   explicit Executor(const M& machine, const Options& options = {})

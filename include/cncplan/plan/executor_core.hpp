@@ -340,8 +340,7 @@ template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::finished() const {
   if (drive([](auto& driver) { return driver.stopped(); })) return !jog_.moves();
   if (level_ != nullptr)
-    return level_->finished() && !(away_ && (has_run_ || level_->pushed() > 0)) &&
-           (level_->complete() || (level_->failed() && level_->pushed() == 0));
+    return level_->finished() && level_->complete() && !(away_ && (has_run_ || level_->pushed() > 0));
   if (!player_.finished() || (away_ && (has_run_ || player_.oldest() != player_.end()))) return false;
   if (feed_.failed()) return true;
   if (!ended_.load(std::memory_order_acquire)) return false;

@@ -57,11 +57,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] std::int64_t pushed() const override { return planner_.pushed(); }
 
   void hold() override { held_ = true; }
-  void resume() override {
-    if (stopped_) return;
-    held_ = program_holds_ = false;
-  }
-  void stop() override { held_ = stopped_ = true; }
+  void resume() override { held_ = program_holds_ = false; }
+  void stop() override { stopped_ = true; }
   void quick_stop(S share) override {
     held_ = true;
     if (!clock_.rests()) clock_.brake_with(std::max(share, S(1)));
@@ -103,7 +100,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S rested() const override { return rested_; }
 
   [[nodiscard]] bool complete() const override {
-    return planner_.ended() && planner_.all_planned() && nothing_ahead();
+    return (planner_.ended() || planner_.failed()) && planner_.all_planned() && nothing_ahead();
   }
   [[nodiscard]] bool begins() const override {
     return planner_.ended() && !planner_.failed() && !held_ && !stopped_ && !complete();
@@ -172,7 +169,8 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
   static constexpr std::int64_t parts_behind = 3;
-  static constexpr S same_time = S(1e-9);  // s
+  static constexpr S same_time = S(1e-9);    // s
+  static constexpr S time_to_plan = S(0.5);  // s of motion that is left when blocks go on without others
 
   // A part of a tick.
   struct Driven {
@@ -265,8 +263,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     pushed_before_ = pushed;
     if (planner_.all_planned() || quiet_ < longest_wait_) return;
     const S end = tail_ahead_ ? cut_ : end_of_chain();
-    const S ahead = end - clock_.state().position;
-    if (clock_.rests() ? nothing_ahead() || ahead < S(0.5) : ahead < S(0.5)) planner_.let_go();
+    if (end - clock_.state().position < time_to_plan) planner_.let_go();
   }
 
   [[nodiscard]] S wanted() const {
