@@ -316,7 +316,10 @@ class LiveDriver final : public LevelDriver<M, B> {
     const auto pause = next_pause();
     if (!pause || clock_.next_rest() <= *pause + same_time) return;
     const auto brake = clock_.brake();
-    if (brake && brake->end().position + S(1.5) * period * clock_.state().velocity >= *pause) hold_at(*pause);
+    if (!brake || brake->end().position + S(1.5) * period * clock_.state().velocity < *pause) return;
+    if (!may_change(*brake)) return;
+    clock_.keep_to(*brake);
+    hold_at(*pause);
   }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
