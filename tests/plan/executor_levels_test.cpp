@@ -86,11 +86,11 @@ TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
     CHECK(time < last);
     last = time;
   }
-  const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
+  const auto whole = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::good, within));
   REQUIRE(whole);
   CHECK(last == Approx(whole->duration()).margin(2 * period));
   const auto best = runner({.level = SmoothLevel::best, .reserve = 0});
-  const auto whole_best = plan_blocks(blocks, mill, at_level(SmoothLevel::best, within));
+  const auto whole_best = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::best, within));
   CHECK(run_to_end(*best, blocks) == Approx(whole_best->duration()).margin(2 * period));
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("executor levels: single steps and a pause rest just before the next b
     if (executor->state() != ExecutorState::held) continue;
     ++pauses;
     const auto& path = blocks[static_cast<std::size_t>(pauses) - 1].path;
-    CHECK((path.position_at(path.length()) - point.position).norm() < 0.1);  // 2 ms at 30 mm/s, and a corner
+    CHECK((path.position_at(path.length()) - point.position).norm() < 0.3);  // 10 ms at 30 mm/s
     executor->resume();
   }
   CHECK(executor->finished());
@@ -247,7 +247,7 @@ TEST_CASE("executor levels: single steps and a pause rest just before the next b
     const auto point = paused->tick(period);
     if (paused->state() != ExecutorState::held) continue;
     ++held;
-    CHECK((Vector3(30, 10, 0) - point.position).norm() < 0.1);
+    CHECK((Vector3(30, 10, 0) - point.position).norm() < 0.3);
     paused->resume();
   }
   CHECK(held == 1);

@@ -105,7 +105,6 @@ class TrajectoryClock {
     }
     braked_ = ClockProof<M, B>(stronger);
     brakes_ = true;
-    keeps_ = false;
     search_from(S(1));
   }
 
@@ -147,16 +146,6 @@ class TrajectoryClock {
     const auto motion = find_change(now, S(0), heads_back(), infinity, work);
     level_ = level;
     return motion;
-  }
-
-  /// Begins a change that `brake` has given, and keeps to it: no faster one is looked for, so that the axes
-  /// stand where it ends.
-  void keep_to(const Motion& change) {
-    ramp_ = change;
-    elapsed_ = S(0);
-    goal_ = change.end().velocity;
-    keeps_ = true;
-    search_from(S(1));
   }
 
   /// The way ahead has changed: what is driven to is looked for anew.
@@ -229,7 +218,7 @@ class TrajectoryClock {
   }
 
   void run_at(const AxisState& state) {
-    standing_ = keeps_ = false;
+    standing_ = false;
     ramp_ = Motion(state, state);
     elapsed_ = S(0);
     goal_ = state.velocity;
@@ -253,8 +242,7 @@ class TrajectoryClock {
     S goal = wanted;
     if (goal * now.velocity < S(0)) goal = S(0);
     const bool changes = elapsed_ < ramp_.duration();
-    if (goal == goal_ && (!changes || keeps_)) return;
-    keeps_ = false;
+    if (goal == goal_ && !changes) return;
     if (goal != asked_) search_from(S(1));
     asked_ = goal;
     const bool back = now.velocity < S(0) || (now.velocity == S(0) && goal < S(0));
@@ -353,10 +341,9 @@ class TrajectoryClock {
   S dwell_{};
   Motion ramp_;
   S elapsed_{};
-  S goal_{};            // the ramp's
-  bool keeps_ = false;  // to the ramp
-  S asked_{};           // the one that is looked for
-  S portion_ = S(1);    // of the way to it, and how slow the change: where the search goes on
+  S goal_{};          // the ramp's
+  S asked_{};         // the one that is looked for
+  S portion_ = S(1);  // of the way to it, and how slow the change: where the search goes on
   int level_ = 0;
 };
 

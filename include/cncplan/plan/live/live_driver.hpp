@@ -310,16 +310,14 @@ class LiveDriver final : public LevelDriver<M, B> {
     passed_ = time;
     held_ = true;
   }
-  // Brakes so that the axes come to rest at the start of a block, or less than two ticks before it.
+  // Brakes so that the axes come to rest at the start of a block, or before it: a brake that has begun
+  // may give way to a faster one.
   void brake_for_pause(S period) {
     if (!pauses() || held_ || stopped_) return;
     const auto pause = next_pause();
     if (!pause || clock_.next_rest() <= *pause + same_time) return;
     const auto brake = clock_.brake();
-    if (!brake || brake->end().position + S(1.5) * period * clock_.state().velocity < *pause) return;
-    if (!may_change(*brake)) return;
-    clock_.keep_to(*brake);
-    hold_at(*pause);
+    if (brake && brake->end().position + S(1.5) * period * clock_.state().velocity >= *pause) hold_at(*pause);
   }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
