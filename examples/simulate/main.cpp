@@ -4,6 +4,7 @@
 
 #include "execute.hpp"
 #include "machine.hpp"
+#include "mapped.hpp"
 #include "options.hpp"
 #include "report/report.hpp"
 #include "serve/web_server.hpp"
@@ -47,7 +48,7 @@ void settle(Options& options, const support::Machine& machine) {
     refuse("--compare above 0 is for what --tolerance above 0 is for");
   if (options.events && options.smooth.value_or(SmoothLevel::fast) != SmoothLevel::fast)
     refuse("--smooth good and best are for motion without events: its speed is planned as a whole");
-  if (machine.kinematics != Kinematics::cartesian) {
+  if (machine.kinematics != Kinematics::cartesian && machine.kinematics != Kinematics::mapped) {
     if (options.tolerance_given && options.tolerance > 0.0)
       refuse(
           "--tolerance above 0 is for machines whose axes are the program's: paths on a table or a mold are "
@@ -65,6 +66,7 @@ int run(Options options) {
   support::Machine file;
   if (options.machine) file = support::read_machine(*options.machine);
   settle(options, file);
+  if (file.kinematics == Kinematics::mapped) return run_mapped(options, file);
   if (options.report || options.serve) report::check_libraries();
   if (options.serve) serve::check_libraries();
   if (file.kinematics == Kinematics::tire_mold) {

@@ -254,8 +254,84 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
   }
 }
 
+// What a machine behind a map must say, by its name.
+struct MapRules {
+  std::string_view name, coordinates, kinds;  // kinds: L or R for each axis
+  std::vector<std::string_view> lengths;      // those that it may have
+  std::vector<std::string_view> needed;       // and must have, above 0
+  bool named_axes;                            // its axes have the letters of the coordinates
+};
+const std::array<MapRules, 5>& map_rules() {
+  static const std::array<MapRules, 5> rules{{
+      {"table-table-ac", "XYZAC", "LLLRR", {"center", "apart"}, {}, true},
+      {"table-table-bc", "XYZBC", "LLLRR", {"center", "apart"}, {}, true},
+      {"head-table", "XYZBC", "LLLRR", {"center", "pivot_length"}, {}, true},
+      {"scara", "XYZ", "RRL", {"upper", "fore", "left"}, {"upper", "fore"}, false},
+      {"core-xy", "XYZ", "LLL", {}, {}, false},
+  }};
+  return rules;
+}
+
+// A machine whose file names its kinematics.
+void read_map(const Section& top, const toml::node& node, Machine& machine) {
+  const std::string name = top.text(node, "kinematics");
+  const auto& all = map_rules();
+  const auto rules = std::find_if(all.begin(), all.end(), [&](const MapRules& r) { return r.name == name; });
+  if (rules == all.end())
+    top.refuse(node,
+               "kinematics must be \"table-table-ac\", \"table-table-bc\", \"head-table\", \"scara\" or "
+               "\"core-xy\"");
+  std::string letters, kinds;
+  for (const MachineAxis& axis : machine.axes) {
+    if (letters.find(axis.letter) != std::string::npos) top.refuse(node, "an axis is there twice");
+    letters += axis.letter;
+    kinds += axis.rotary ? 'R' : 'L';
+  }
+  if (rules->named_axes && letters != rules->coordinates)
+    top.refuse(node, fmt::format("the axes of {} must be {}, in this order", name, rules->coordinates));
+  if (kinds != rules->kinds) {
+    std::string wanted;
+    for (const char kind : rules->kinds)
+      wanted += fmt::format("{}{}", wanted.empty() ? "" : ", ", kind == 'R' ? "rotary" : "linear");
+    top.refuse(node, fmt::format("the axes of {} must be {}", name, wanted));
+  }
+  machine.kinematics = Kinematics::mapped;
+  machine.map.name = name;
+  machine.dialect.axes.clear();
+  for (const char letter : rules->coordinates)
+    machine.dialect.axes.push_back(
+        {letter, letter < 'X' ? gcode::AxisKind::rotary : gcode::AxisKind::linear});
+  const toml::node* const found = top.find("lengths");
+  if (found == nullptr) {
+    if (!rules->needed.empty()) top.refuse(node, fmt::format("{} needs a table of lengths: [lengths]", name));
+    return;
+  }
+  const Section lengths = top.section("lengths", *found);
+  lengths.allow(rules->lengths);
+  for (const std::string_view key : rules->needed)
+    if (lengths.find(key) == nullptr) top.refuse(*found, fmt::format("{} of {} is missing", key, name));
+  MapEntry& map = machine.map;
+  for (const auto& [key, place] : {std::pair{"center", &map.center}, std::pair{"apart", &map.apart}})
+    if (const toml::node* numbers = lengths.find(key)) {
+      const auto values = lengths.numbers(*numbers, key, 3);
+      for (std::size_t k = 0; k < 3; ++k) (*place)[k] = values[k] * machine.unit;
+    }
+  lengths.not_negative("pivot_length", map.pivot_length, machine.unit);
+  lengths.positive("upper", map.upper, machine.unit);
+  lengths.positive("fore", map.fore, machine.unit);
+  if (const toml::node* left = lengths.find("left")) map.left = lengths.flag(*left, "left");
+}
+
 // Which machine its axes make, and what its programs name.
 void settle_kinematics(const Section& top, Machine& machine) {
+  if (const toml::node* node = top.find("kinematics")) {
+    if (const toml::node* center = top.find("table_center"))
+      top.refuse(*center, "table_center is for machines of two slides and a rotary table");
+    if (machine.smallest_radius) top.refuse(*node, "smallest_radius is for machines with a rotary table");
+    return read_map(top, *node, machine);
+  }
+  if (const toml::node* lengths = top.find("lengths"))
+    top.refuse(*lengths, "lengths are those of the machine that kinematics names");
   const auto refuse = [&](const char* why) {
     throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {}", top.file(), why));
   };
@@ -293,7 +369,7 @@ void settle_kinematics(const Section& top, Machine& machine) {
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
   top.allow({"name", "dialect", "g18", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home",
-             "pass_through", "smallest_radius", "table_center"});
+             "pass_through", "smallest_radius", "table_center", "kinematics", "lengths"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
   if (const toml::node* dialect = top.find("dialect")) {

@@ -47,6 +47,16 @@ enum class Kinematics {
   cartesian,  ///< X, Y and maybe Z
   tire_mold,  ///< radial and vertical slide, tilting spindle, rotary table; programs name these axes
   polar,      ///< radial and vertical slide, rotary table; programs name X, Y, Z
+  mapped,     ///< what `map` says
+};
+
+/// A ready-made machine of the library's (docs/kinematics.md) and its lengths, mm. Those that a machine has
+/// not are 0.
+struct MapEntry {
+  std::string name;  ///< as in the file: "table-table-ac"
+  std::array<double, 3> center{}, apart{};
+  double pivot_length{}, upper{}, fore{};
+  bool left{};
 };
 
 struct Machine {
@@ -54,6 +64,7 @@ struct Machine {
   cncplan::gcode::Dialect dialect;
   std::vector<MachineAxis> axes{{.letter = 'X'}, {.letter = 'Y'}, {.letter = 'Z'}};
   Kinematics kinematics = Kinematics::cartesian;
+  MapEntry map;
   std::optional<double> rapid_rate;                             ///< mm/s
   double feed_limit = std::numeric_limits<double>::infinity();  ///< mm/s
   std::optional<double> smallest_radius;  ///< mm from a rotary table's axis; nothing nearer is driven
