@@ -65,8 +65,7 @@ class ExecutorRoom {
 /// - a lower override slows all of the motion, its ramps too, and one above 1 acts as 1;
 /// - a hold comes once a change of the rate is proven: soon, with the `reserve` of the options;
 /// - `single_step` and `pause_at` rest less than two ticks before the next block, on the curve that is
-/// driven;
-///   behind its start where limits do not allow it sooner;
+///   driven; behind its start where limits do not allow it sooner;
 /// - `reverse` goes back to the first rest of the parts that are kept, three behind this one;
 /// - `restart` begins where the first block of the line begins, and the axes go there first;
 /// - without `background` the work of a whole part is done in a `push`, `end_of_program` or `tick`: with it,
@@ -76,6 +75,7 @@ class Executor : private plan::ExecutorRoom<M, B, capacity>, public plan::Execut
   static_assert(capacity >= 2, "an executor looks ahead over two blocks at least");
 
  public:
+  using Scalar = typename M::Scalar;
   using Options = typename plan::ExecutorCore<M, B>::Options;
 
   using LevelOptions = BasicExecutorOptions<typename M::Scalar, SmoothLevel>;
