@@ -70,15 +70,15 @@ void ask(plan::Player& player, const Event& event) {
 }  // namespace
 
 std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(const Options& options,
-                                                    const plan::BasicCells<double>& cells) {
+                                                             const plan::BasicCells<double>& cells) {
   const auto spans = spans_of(options, cells.caps);
   return plan::block_phases(std::span<const plan::Span>(spans), cells);
 }
 
 std::pmr::vector<cncplan::BasicPiecePhase<double>> played(const Options& options,
-                                                 const plan::BasicCells<double>& cells,
-                                                 const std::vector<plan::PlayedBlock>& blocks,
-                                                 const std::vector<Event>& events) {
+                                                          const plan::BasicCells<double>& cells,
+                                                          const std::vector<plan::PlayedBlock>& blocks,
+                                                          const std::vector<Event>& events) {
   std::vector<plan::TimedRequest> requests;
   for (const Event& event : events)
     requests.push_back({event.time, [&event](plan::Player& player) { ask(player, event); }});

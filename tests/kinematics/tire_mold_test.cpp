@@ -8,7 +8,6 @@
 using namespace cncplan;
 using namespace cncplan::kinematics;
 
-
 namespace {
 
 constexpr double pi = std::numbers::pi;

@@ -21,11 +21,11 @@ using LiveBlocks = std::vector<LiveBlock>;
 
 /// What is done to a run.
 struct LiveCase {
-  double period = 1e-3;     ///< s
-  double pace = 0;          ///< s between requests; 0: none
-  int starved = 0;          ///< ticks between blocks, on the average; 0: as many as are taken
-  double restless = 1e9;    ///< s for which there are requests
-  double share = 1;         ///< of a quick stop
+  double period = 1e-3;   ///< s
+  double pace = 0;        ///< s between requests; 0: none
+  int starved = 0;        ///< ticks between blocks, on the average; 0: as many as are taken
+  double restless = 1e9;  ///< s for which there are requests
+  double share = 1;       ///< of a quick stop
   bool jogs = false;
   double small = 0;  ///< mm: distances that need not be told exactly
 };

@@ -28,7 +28,9 @@ std::vector<SpeedCell<3>> straight(double length, double first, double widest, d
     half.pop_back();
   }
   std::vector<SpeedCell<3>> cells;
-  const auto add = [&](double h) { cells.push_back({h, feed, way, Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), 0}); };
+  const auto add = [&](double h) {
+    cells.push_back({h, feed, way, Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), 0});
+  };
   for (const double h : half) add(h);
   for (auto h = half.rbegin(); h != half.rend(); ++h) add(*h);
   return cells;
