@@ -34,7 +34,7 @@ AnyMachine read_machine(const std::string& text, const std::string& name, const 
     }
   }();
   if (file.kinematics != support::Kinematics::cartesian)
-    refuse(name + ": error: machines with a rotary table that turns the work are not known to Python", name);
+    refuse(name + ": error: machines with joints of their own (kinematics) are not known to Python", name);
   AnyMachine machine;
   machine.limits = limits;
   machine.rapid_rate = file.rapid_rate.value_or(0.0);
