@@ -143,7 +143,7 @@ TEST_CASE("what has no effect is told beside the blocks, all of it", "[reader]")
   CHECK(reader.warnings().size() == 1);
   CHECK(take(reader, "G0 X2").size() == 1);
   CHECK(reader.warnings().empty());
-  Reader many(mill);
+  Reader many(mill, {.tolerance = 0});
   take(many, "G15 G50 G69 G64 P0.1 Q0.1 G0 X1");
   CHECK(many.warnings().size() == 5);
   // P and Q of G64 act where paths are smoothed, as for `plan_file`.

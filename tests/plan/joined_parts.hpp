@@ -26,9 +26,9 @@ class JoinedParts {
       phase.piece += pieces_.size();
       phases_.push_back(phase);
     }
-    for (auto piece : part.pieces()) {
-      piece.block += part.first_block();
+    for (const auto& piece : part.pieces()) {
       pieces_.push_back(piece);
+      pieces_.back().block += part.first_block();
     }
     for (std::size_t b = 0; b < part.program().size(); ++b) {
       const std::size_t number = part.first_block() + b;

@@ -228,7 +228,7 @@ TEST_CASE("the level best merges as well, within the tolerance", "[merge_lines]"
     CHECK(test::farthest(program, motion) <= tolerance * (1 + 1e-9));
     CHECK(planned->duration() <= plan_blocks(blocks, mill, within)->duration() * (1 + 1e-9));
     std::vector<bool> seen(blocks.size());
-    for (const auto& piece : planned->program()) seen[piece.source] = true;
+    for (const auto& piece : planned->pieces()) seen[piece.block] = true;
     CHECK(std::count(seen.begin(), seen.end(), false) == 0);
   }
 }

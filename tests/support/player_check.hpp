@@ -35,7 +35,7 @@ struct PlayerFaults {
 /// Cells to be played, and the block and the machine's limits that each stands for.
 struct PlayedProgram {
   struct Motion {
-    path::Segment<3> path;
+    Block<3>::Path path;
     double from{};  ///< mm from the block's start to the cell's
     Limits limits;
   };
