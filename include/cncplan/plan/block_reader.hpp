@@ -114,7 +114,7 @@ class BlockReader {
   BlockReader(const M& machine, const PlanOptions& options, const gcode::Dialect& dialect)
       : machine_(machine),
         machine_ok_(validate(machine)),
-        smoothed_(options.tolerance > 0 && !MappedModel<M>),
+        smoothed_(level_of(options) != SmoothLevel::exact),
         builder_(machine, dialect, options.arcs),
         lines_(builder_.with_tool_point(dialect), start_position(options)) {
     builder_.start_at(start_position(options));

@@ -46,11 +46,7 @@ template <MachineModel M, BlockModel B>
       for (const B& block : blocks)
         if (const auto ok = stream.push(block); !ok) return tl::unexpected(ok.error());
       if (const auto ok = stream.finish(); !ok) return tl::unexpected(ok.error());
-      try {
-        return stream.take();
-      } catch (const std::bad_alloc&) {
-        return tl::unexpected(no_memory());
-      }
+      return stream.take();
     }
   return plan_by_look_ahead(std::move(blocks), machine, options);
 }
@@ -76,8 +72,10 @@ template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(
     R&& blocks, const M& machine, const PlanOptions& options = {},
-    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) try {
   return plan::plan_own_blocks(plan::own_blocks(std::forward<R>(blocks), memory), machine, options);
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(plan::no_memory());
 }
 
 /// The same on the exact path, with a policy of one's own for joints (`JunctionPolicy`) and a law for changes

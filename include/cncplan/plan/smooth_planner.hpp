@@ -390,7 +390,7 @@ class SmoothPlanner {
         const std::size_t before = out_.size();
         add_pieces(planned, given, at);
         if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
-        begun_ = out_.size() > before && out_first_ + out_.size() - 1 == first_source_ + at;
+        begun_ = !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + at;
         approach_ = std::move(planned.approach);
         cut_ = next;
         cut_->approach = &approach_;
@@ -459,10 +459,7 @@ class SmoothPlanner {
     for (const auto& [path, block, from] : run.pieces) {
       const std::size_t source = given.sources[block];
       for (; next < source; ++next) add_whole(next);
-      if (next == source) {
-        add_block(next++);
-        if (std::exchange(begun_, false) && source == planned_) out_.back().word = {};
-      }
+      if (next == source) add_begun(next++);
       places.push_back(pieces_.size());
       pieces_.push_back({out_.size() - 1, from, given.blocks.piece(path, block, from)});
     }
@@ -498,6 +495,18 @@ class SmoothPlanner {
     if (out_.empty()) out_first_ = first_source_ + i;
     smoothing_.blocks.emplace_back();
     out_.push_back(blocks_[i]);
+  }
+  // A block of a curve, which may go on in it: then its word is told, or it is there already.
+  void add_begun(std::size_t i) {
+    const bool goes_on = std::exchange(begun_, false) && i == planned_;
+    if (goes_on && !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + i) {
+      const gcode::Word word = out_.back().word;
+      out_.back() = blocks_[i];
+      out_.back().word = word;
+      return;
+    }
+    add_block(i);
+    if (goes_on) out_.back().word = {};
   }
   // The last block as a piece of the path.
   void add_piece() { pieces_.push_back({out_.size() - 1, S(0), std::nullopt}); }
