@@ -236,6 +236,7 @@
 #include "cncplan/plan/trajectory_clock.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
 #include "cncplan/plan/turnings.hpp"
+#include "cncplan/plan/valid_tolerances.hpp"
 #include "cncplan/profile/boundary.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/from_state.hpp"

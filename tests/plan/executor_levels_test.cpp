@@ -365,3 +365,42 @@ TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[e
   CHECK(jerk <= 10000 * period * period * period * (1 + 1e-3));
   CHECK((p[0] - blocks.back().path.position_at(blocks.back().path.length())).norm() < 1e-9);
 }
+
+TEST_CASE("executor levels: options that are none run nothing, and that is told", "[executor-levels]") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\n");
+  const auto refused = [&](const auto& options, std::string_view field) {
+    CAPTURE(field);
+    const auto executor = std::make_unique<Runner>(mill, options);
+    run_to_end(*executor, blocks, 2);
+    REQUIRE(executor->error());
+    CHECK(executor->error()->error().field == field);
+    CHECK(executor->state() == ExecutorState::fault);
+    CHECK(executor->tick(period).position.norm() == 0);
+    CHECK(executor->restart(0, Vector3::Zero()));
+    run_to_end(*executor, blocks, 2);
+    CHECK(executor->error());
+    CHECK(executor->tick(period).position.norm() == 0);
+  };
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good}) {
+    for (const double reserve : {-0.5, 1.0, 2.0, nan})
+      refused(LevelExecutorOptions{.level = level, .reserve = reserve}, "reserve");
+    for (const double tolerance : {-1.0, nan})
+      refused(LevelExecutorOptions{.tolerance = tolerance, .level = level}, "tolerance");
+  }
+  refused(ExecutorOptions{.tolerance = nan}, "tolerance");
+  refused(ExecutorOptions{.rotary_tolerance = 0}, "rotary tolerance");
+  refused(ExecutorOptions{.junction_deviation = -1}, "junction deviation");
+}
+
+TEST_CASE("executor levels: no time of a long tick is lost", "[executor-levels]") {
+  std::string text = "F1800 G61.1\n";
+  for (int i = 1; i <= 20; ++i) text += "G1 X" + std::to_string(i) + "\n";
+  const MillBlocks blocks = blocks_of(text);
+  const auto executor = runner();
+  std::size_t fed = 0;
+  feed(*executor, blocks, fed);
+  executor->tick(10);  // 20 rests on the way
+  CHECK(executor->finished());
+  CHECK((executor->tick(period).position - Vector3(20, 0, 0)).norm() < 1e-9);
+}

@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cncplan/plan/joint_jumps.hpp"
@@ -152,4 +155,29 @@ TEST_CASE("levels: a smoothed path that would leave the travel is exact there, a
     CHECK_FALSE(planned->fallbacks().empty());
   }
   CHECK_FALSE(plan_text("F1800 G1 X10 Y-0.001\nX20\n", machine));
+}
+
+TEST_CASE("levels: a tolerance that is none is an error at every door", "[levels]") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<PlanOptions, std::string_view>> wrong;
+  for (const double value : {-1.0, nan, infinity}) wrong.push_back({{.tolerance = value}, "tolerance"});
+  for (const double value : {-1.0, 0.0, nan, infinity})
+    wrong.push_back({{.rotary_tolerance = value}, "rotary tolerance"});
+  for (const double value : {-1.0, nan})
+    wrong.push_back({{.junction_deviation = value}, "junction deviation"});
+  const auto program = read_text(text, mill);
+  for (const auto& [options, field] : wrong)
+    for (const SmoothLevel level : levels) {
+      CAPTURE(field, to_text(level));
+      const PlanOptions given = at_level(level, options);
+      const auto planned = plan_blocks(program.blocks(), mill, given);
+      REQUIRE_FALSE(planned);
+      CHECK(planned.error().error().field == field);
+      CHECK_FALSE(plan_text(text, mill, given));
+      CHECK_FALSE(plan_program(program, mill, given));
+      SmoothStream<Machine<3>, Block<3>> stream(mill, given);
+      CHECK_FALSE(stream.push(program.blocks()[0]));
+      CHECK_FALSE(stream.finish());
+    }
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "cncplan/core/jet.hpp"
 
@@ -27,6 +28,26 @@ template <class T>
   using std::cos, std::sin;
   const T s = sin(angle), c = cos(angle);
   return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
+}
+
+/// Which axis tilts the tool or the part: A about X, or B about Y.
+enum class Tilt { a, b };
+
+template <Tilt tilt, class T>
+[[nodiscard]] std::array<T, 3> about_tilt(const T& angle, const std::array<T, 3>& p) {
+  if constexpr (tilt == Tilt::a)
+    return about_x(angle, p);
+  else
+    return about_y(angle, p);
+}
+
+/// The two positions of a tilting axis and of C, rad, that give a direction of the tool. (x, y) is where that
+/// leans to, as C counts; an upright one leans nowhere, and C is 0 then.
+template <class S>
+[[nodiscard]] std::array<std::array<S, 2>, 2> tilt_and_turn(const std::array<S, 3>& direction, S x, S y) {
+  const S tilt = std::atan2(std::hypot(direction[0], direction[1]), direction[2]);
+  const S turn = tilt > S(0) ? std::atan2(y, x) : S(0);
+  return {{{tilt, turn}, {-tilt, turn + std::numbers::pi_v<S>}}};
 }
 
 /// Sums and differences of points, of which some may be plain numbers.

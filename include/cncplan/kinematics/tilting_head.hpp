@@ -30,6 +30,20 @@ template <class T, class S>
           axes[2] - arm * direction[2] + T(pivot_length)};
 }
 
+/// The same of a head that has both rotary axes, the last two coordinates.
+template <class T, class S>
+[[nodiscard]] std::array<T, 5> axes_of_head(const std::array<T, 5>& at, const std::array<T, 3>& direction,
+                                            S pivot_length, S tool_length) {
+  const auto q = at_tip(std::array<T, 3>{at[0], at[1], at[2]}, direction, pivot_length, tool_length);
+  return {q[0], q[1], q[2], at[3], at[4]};
+}
+template <class T, class S>
+[[nodiscard]] std::array<T, 5> point_of_head(const std::array<T, 5>& at, const std::array<T, 3>& direction,
+                                             S pivot_length, S tool_length) {
+  const auto p = tip_at(std::array<T, 3>{at[0], at[1], at[2]}, direction, pivot_length, tool_length);
+  return {p[0], p[1], p[2], at[3], at[4]};
+}
+
 /// A spindle that tilts about B over a table that turns about C. Program: X Y Z of the tip in the part, mm, B
 /// and C, rad. The tip stands in the machine at center + Rz(c) (p - center), the tool along
 /// t = (sin b, 0, cos b), and the axes X Y Z at that tip + (pivot_length + tool_length) t - pivot_length ez.
@@ -68,9 +82,7 @@ struct BasicHeadTable {
   }
   /// The two positions of B and C that give a direction, rad; C is 0 of an upright one.
   [[nodiscard]] std::array<std::array<S, 2>, 2> angles(const std::array<S, 3>& direction) const {
-    const auto& [i, j, k] = direction;
-    const S b = std::atan2(std::hypot(i, j), k), c = b > S(0) ? std::atan2(-j, i) : S(0);
-    return {{{b, c}, {-b, c + std::numbers::pi_v<S>}}};
+    return tilt_and_turn(direction, direction[0], -direction[1]);
   }
 
  private:
@@ -83,15 +95,16 @@ struct BasicHeadTable {
 
 using HeadTable = BasicHeadTable<double>;
 
-/// A fork that turns about C and holds a spindle that tilts about A. Program: X Y Z of the tip, mm, A and C,
-/// rad. The tool lies along t = Rz(c) Rx(a) ez = (sin a sin c, -sin a cos c, cos a), and the axes X Y Z stand
-/// at p + (pivot_length + tool_length) t - pivot_length ez. Singular for A 0: every C gives the same
-/// direction. Source: LinuxCNC, Five Axis Kinematics.
-template <std::floating_point S>
-struct BasicHeadHeadAC {
+/// A fork that turns about C and holds a spindle that tilts about A or B. Program: X Y Z of the tip, mm, A or
+/// B and C, rad. The tool lies along t = Rz(c) Rx(a) ez = (sin a sin c, -sin a cos c, cos a), or along
+/// Rz(c) Ry(b) ez = (sin b cos c, sin b sin c, cos b), and the axes X Y Z stand at
+/// p + (pivot_length + tool_length) t - pivot_length ez. Singular where it is upright: every C gives the same
+/// direction. Source: LinuxCNC, Five Axis Kinematics, and 5axiskins.
+template <std::floating_point S, Tilt tilt>
+struct BasicHeadHead {
   using Scalar = S;
   static constexpr int axis_count = 5;
-  static constexpr std::string_view coordinates = "XYZAC";
+  static constexpr std::string_view coordinates = tilt == Tilt::a ? "XYZAC" : "XYZBC";
   static constexpr bool switchable = true;
 
   S pivot_length{};  ///< mm: from the nose of the spindle to where both axes meet
@@ -99,70 +112,31 @@ struct BasicHeadHeadAC {
 
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> joints(const std::array<T, 5>& at) const {
-    const auto& [x, y, z, a, c] = at;
-    const auto q = at_tip(std::array<T, 3>{x, y, z}, direction(at), pivot_length, tool_length);
-    return {q[0], q[1], q[2], a, c};
+    return axes_of_head(at, direction(at), pivot_length, tool_length);
   }
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> point(const std::array<T, 5>& at) const {
-    const auto& [x, y, z, a, c] = at;
-    const auto p = tip_at(std::array<T, 3>{x, y, z}, direction(at), pivot_length, tool_length);
-    return {p[0], p[1], p[2], a, c};
+    return point_of_head(at, direction(at), pivot_length, tool_length);
   }
 
   /// Of the tool, of length 1, from the tip to the spindle.
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> direction(const std::array<T, 5>& joints) const {
-    return about_z(joints[4], about_x(joints[3], std::array<T, 3>{T(0), T(0), T(1)}));
+    return about_z(joints[4], about_tilt<tilt>(joints[3], std::array<T, 3>{T(0), T(0), T(1)}));
   }
-  /// The two positions of A and C that give a direction, rad; C is 0 of an upright one.
+  /// The two positions of the tilting axis and C that give a direction, rad; C is 0 of an upright one.
   [[nodiscard]] std::array<std::array<S, 2>, 2> angles(const std::array<S, 3>& direction) const {
     const auto& [i, j, k] = direction;
-    const S a = std::atan2(std::hypot(i, j), k), c = a > S(0) ? std::atan2(i, -j) : S(0);
-    return {{{a, c}, {-a, c + std::numbers::pi_v<S>}}};
+    return tilt == Tilt::a ? tilt_and_turn(direction, -j, i) : tilt_and_turn(direction, i, j);
   }
 };
+
+template <std::floating_point S>
+using BasicHeadHeadAC = BasicHeadHead<S, Tilt::a>;
+template <std::floating_point S>
+using BasicHeadHeadBC = BasicHeadHead<S, Tilt::b>;
 
 using HeadHeadAC = BasicHeadHeadAC<double>;
-
-/// The same with a spindle that tilts about B: t = Rz(c) Ry(b) ez = (sin b cos c, sin b sin c, cos b).
-/// Singular for B 0. Source: LinuxCNC, 5axiskins.
-template <std::floating_point S>
-struct BasicHeadHeadBC {
-  using Scalar = S;
-  static constexpr int axis_count = 5;
-  static constexpr std::string_view coordinates = "XYZBC";
-  static constexpr bool switchable = true;
-
-  S pivot_length{};  ///< mm: from the nose of the spindle to where both axes meet
-  S tool_length{};   ///< mm
-
-  template <NumberOver<S> T>
-  [[nodiscard]] std::array<T, 5> joints(const std::array<T, 5>& at) const {
-    const auto& [x, y, z, b, c] = at;
-    const auto q = at_tip(std::array<T, 3>{x, y, z}, direction(at), pivot_length, tool_length);
-    return {q[0], q[1], q[2], b, c};
-  }
-  template <NumberOver<S> T>
-  [[nodiscard]] std::array<T, 5> point(const std::array<T, 5>& at) const {
-    const auto& [x, y, z, b, c] = at;
-    const auto p = tip_at(std::array<T, 3>{x, y, z}, direction(at), pivot_length, tool_length);
-    return {p[0], p[1], p[2], b, c};
-  }
-
-  /// Of the tool, of length 1, from the tip to the spindle.
-  template <NumberOver<S> T>
-  [[nodiscard]] std::array<T, 3> direction(const std::array<T, 5>& joints) const {
-    return about_z(joints[4], about_y(joints[3], std::array<T, 3>{T(0), T(0), T(1)}));
-  }
-  /// The two positions of B and C that give a direction, rad; C is 0 of an upright one.
-  [[nodiscard]] std::array<std::array<S, 2>, 2> angles(const std::array<S, 3>& direction) const {
-    const auto& [i, j, k] = direction;
-    const S b = std::atan2(std::hypot(i, j), k), c = b > S(0) ? std::atan2(j, i) : S(0);
-    return {{{b, c}, {-b, c + std::numbers::pi_v<S>}}};
-  }
-};
-
 using HeadHeadBC = BasicHeadHeadBC<double>;
 
 /// A head that turns about C and carries a spindle on an axis B that leans by `lean` from Z (nutating head):
@@ -188,15 +162,11 @@ struct BasicNutatingHead {
 
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> joints(const std::array<T, 5>& at) const {
-    const auto& [x, y, z, b, c] = at;
-    const auto q = at_tip(std::array<T, 3>{x, y, z}, direction(at), pivot_length, tool_length);
-    return {q[0], q[1], q[2], b, c};
+    return axes_of_head(at, direction(at), pivot_length, tool_length);
   }
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> point(const std::array<T, 5>& at) const {
-    const auto& [x, y, z, b, c] = at;
-    const auto p = tip_at(std::array<T, 3>{x, y, z}, direction(at), pivot_length, tool_length);
-    return {p[0], p[1], p[2], b, c};
+    return point_of_head(at, direction(at), pivot_length, tool_length);
   }
 
   /// Of the tool, of length 1, from the tip to the spindle.

@@ -80,7 +80,7 @@ class Executor : private plan::ExecutorRoom<M, B, capacity>, public plan::Execut
 
   using LevelOptions = BasicExecutorOptions<typename M::Scalar, SmoothLevel>;
 
-  /// A machine that `validate` refuses is told by `error`.
+  /// A machine or options that `validate` refuses are told by `error`; nothing runs then.
   explicit Executor(const M& machine, const Options& options = {})
       : plan::ExecutorCore<M, B>(this->memory(), machine, options) {}
 

@@ -53,7 +53,7 @@ class ExecutorCore {
   using Part = AxisPart<M, B>;
   using Core = ExecutorCore;
 
-  /// A machine that `validate` refuses is told by `error`.
+  /// A machine or options that `validate` refuses are told by `error`.
   ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options);
   ExecutorCore(const ExecutorCore&) = delete;
   ExecutorCore& operator=(const ExecutorCore&) = delete;
@@ -283,6 +283,7 @@ class ExecutorCore {
   void tell_words(std::int64_t reached);
 
   M machine_;
+  Expected<void> options_;  // nothing, or why nothing runs with them
   std::array<int, 3> tool_;
   LevelDriver<M, B>* level_ = nullptr;  // at another level than `fast`
   std::int64_t capacity_;
@@ -314,6 +315,7 @@ class ExecutorCore {
 template <MachineModel M, BlockModel B>
 ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options)
     : machine_(machine),
+      options_(validate(options)),
       tool_(tool_axes(machine)),
       capacity_(static_cast<std::int64_t>(memory.look_ahead)),
       quick_stop_share_(brake_share(options.quick_stop_share)),
@@ -328,7 +330,7 @@ ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& ma
 
 template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::push(const B& block) {
-  if (failed_.load(std::memory_order_acquire)) return true;
+  if (!options_ || failed_.load(std::memory_order_acquire)) return true;
   if (level_ != nullptr) return level_->push(block);
   const bool taken = feed_.push(block);
   if (taken) ended_.store(false, std::memory_order_relaxed);
@@ -338,6 +340,7 @@ bool ExecutorCore<M, B>::push(const B& block) {
 
 template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::finished() const {
+  if (!options_) return !jog_.moves();
   if (drive([](auto& driver) { return driver.stopped(); })) return !jog_.moves();
   if (level_ != nullptr)
     return level_->finished() && level_->complete() && !(away_ && (has_run_ || level_->pushed() > 0));
@@ -364,6 +367,7 @@ ExecutorState ExecutorCore<M, B>::state() const {
 
 template <MachineModel M, BlockModel B>
 std::optional<RunError> ExecutorCore<M, B>::error() const {
+  if (!options_) return RunError{{options_.error(), 0, 0, {}}};
   if (level_ != nullptr && level_->failed()) return RunError{level_->fault()};
   if (feed_.failed()) return RunError{feed_.fault()};
   if (failed_.load(std::memory_order_acquire)) return RunError{{fault_, 0, 0, {}}};

@@ -28,7 +28,8 @@ struct ExecutorLevels {
             .exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds,
             .longest_wait = options.longest_wait,
             .quick_stop_share = options.quick_stop_share,
-            .background = options.background};
+            .background = options.background,
+            .reserve = options.reserve};
   }
 
   /// Nothing where the level is `fast` at most.

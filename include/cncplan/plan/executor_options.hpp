@@ -1,9 +1,12 @@
 // How an executor is to run programs.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 
+#include "cncplan/core/error.hpp"
 #include "cncplan/plan/smooth_level.hpp"
+#include "cncplan/plan/valid_tolerances.hpp"
 
 namespace cncplan {
 
@@ -32,10 +35,21 @@ struct BasicExecutorOptions {
                               ///< each axis may use in a quick stop; what drives and mechanics bear beyond
                               ///< the limits that machining has
   bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
-  /// 0 to 1: the share of the limits of acceleration and jerk that plans at the levels `good` and `best`
+  /// In [0, 1): the share of the limits of acceleration and jerk that plans at the levels `good` and `best`
   /// leave for holds. The more, the sooner a hold comes, and the longer the program takes.
   S reserve = S(0.05);
 };
+
+/// Nothing, or the first number that is out of its domain.
+template <std::floating_point S, class Level>
+[[nodiscard]] Expected<void> validate(const BasicExecutorOptions<S, Level>& options) {
+  if (const S share = options.reserve; !(share >= S(0) && share < S(1)))
+    return refusal(std::isnan(share) ? ErrorCode::not_finite
+                   : share < S(0)    ? ErrorCode::negative
+                                     : ErrorCode::above_limit,
+                   "reserve", share, share < S(0) ? S(0) : S(1));
+  return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation);
+}
 
 using ExecutorOptions = BasicExecutorOptions<double>;
 using LevelExecutorOptions = BasicExecutorOptions<double, SmoothLevel>;

@@ -39,6 +39,7 @@ template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_own_blocks(std::pmr::vector<B>&& blocks,
                                                                        const M& machine,
                                                                        const PlanOptions& options) {
+  if (const auto ok = validate(options); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   if constexpr (!without_smoothing<M, B>())
     if (has_curves<M>(options)) {
       constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
@@ -66,8 +67,8 @@ template <MachineModel M, BlockModel B>
 /// `good`, and what has no curve, as rapids straight in the joints, rests at its corners.
 ///
 /// Where a level cannot be had, a lower one takes its place, and `fallbacks` of the trajectory says where and
-/// why: `FallbackReason` lists it. Errors: those of `validate` for the machine; a block that leaves the
-/// travel of an axis or that no limit bounds; too little of `memory`.
+/// why: `FallbackReason` lists it. Errors: those of `validate` for the machine and the options; a block that
+/// leaves the travel of an axis or that no limit bounds; too little of `memory`.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(

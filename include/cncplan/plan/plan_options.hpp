@@ -9,6 +9,7 @@
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
 #include "cncplan/plan/smooth_level.hpp"
+#include "cncplan/plan/valid_tolerances.hpp"
 
 namespace cncplan {
 
@@ -32,6 +33,11 @@ struct PlanOptions {
 /// The level that the options ask for: `exact` where there is no tolerance.
 [[nodiscard]] constexpr SmoothLevel level_of(const PlanOptions& options) {
   return options.tolerance > 0 ? options.level : SmoothLevel::exact;
+}
+
+/// Nothing, or the first tolerance that is none.
+[[nodiscard]] inline Expected<void> validate(const PlanOptions& options) {
+  return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation);
 }
 
 /// Where a program starts, as its reader has it.

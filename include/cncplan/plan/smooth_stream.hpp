@@ -50,6 +50,7 @@ class SmoothStream {
   explicit SmoothStream(const M& machine, const PlanOptions& options = {}, std::size_t most_blocks = 4000,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : machine_(machine),
+        options_(validate(options)),
         merger_(machine_, plan::smoothing_rules<Scalar>(options)),
         planner_(machine_, options, std::max(most_blocks, least_blocks), memory),
         merging_(memory) {}
@@ -111,7 +112,9 @@ class SmoothStream {
 
  private:
   [[nodiscard]] Expected<void, ProgramError> check_machine() const {
-    if (const auto ok = validate(machine_); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+    auto ok = validate(machine_);
+    if (ok) ok = options_;
+    if (!ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
     return {};
   }
   // What single blocks and runs cannot see.
@@ -137,6 +140,7 @@ class SmoothStream {
   }
 
   M machine_;
+  Expected<void> options_;  // nothing, or why there is no plan with them
   plan::LineMerger<M, B> merger_;
   plan::SmoothPlanner<M, B> planner_;
   std::pmr::vector<B> merging_;  // the last blocks, which may become parts of one line

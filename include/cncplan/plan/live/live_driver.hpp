@@ -40,7 +40,12 @@ class LiveDriver final : public LevelDriver<M, B> {
   static Base* make(const M& machine, const Options& options, std::size_t most_blocks,
                     std::pmr::memory_resource* memory) {
     void* const room = memory->allocate(sizeof(LiveDriver), alignof(LiveDriver));
-    return new (room) LiveDriver(machine, options, most_blocks, memory);
+    try {
+      return new (room) LiveDriver(machine, options, most_blocks, memory);
+    } catch (...) {
+      memory->deallocate(room, sizeof(LiveDriver), alignof(LiveDriver));
+      throw;
+    }
   }
   void destroy() override {
     std::pmr::memory_resource* const memory = memory_;
@@ -125,7 +130,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     parts_.clear();
     words_.clear();
     S left = period;
-    while (left > S(0) && !parts_.full() && step(left, period)) {
+    while (left > S(0) && step(left, period)) {
     }
     rested_ = rests() ? (parts_.empty() ? rested_ : S(0)) + left : S(0);
     tell_words();
