@@ -162,11 +162,14 @@ TEST_CASE("levels: a tolerance that is none is an error at every door", "[levels
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<std::pair<PlanOptions, std::string_view>> wrong;
   for (const double value : {-1.0, nan, infinity}) wrong.push_back({{.tolerance = value}, "tolerance"});
-  for (const double value : {-1.0, 0.0, nan, infinity})
+  for (const double value : {-1.0, nan, infinity})
     wrong.push_back({{.rotary_tolerance = value}, "rotary tolerance"});
   for (const double value : {-1.0, nan})
     wrong.push_back({{.junction_deviation = value}, "junction deviation"});
   const auto program = read_text(text, mill);
+  for (const SmoothLevel level : levels)  // of the exact path, 0 is a rest at each corner
+    CHECK(plan_blocks(program.blocks(), mill, at_level(level, {.rotary_tolerance = 0})).has_value() ==
+          (level == SmoothLevel::exact));
   for (const auto& [options, field] : wrong)
     for (const SmoothLevel level : levels) {
       CAPTURE(field, to_text(level));

@@ -48,7 +48,8 @@ template <std::floating_point S, class Level>
                    : share < S(0)    ? ErrorCode::negative
                                      : ErrorCode::above_limit,
                    "reserve", share, share < S(0) ? S(0) : S(1));
-  return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation);
+  return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
+                                options.tolerance > S(0));
 }
 
 using ExecutorOptions = BasicExecutorOptions<double>;

@@ -37,7 +37,8 @@ struct PlanOptions {
 
 /// Nothing, or the first tolerance that is none.
 [[nodiscard]] inline Expected<void> validate(const PlanOptions& options) {
-  return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation);
+  return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
+                                level_of(options) != SmoothLevel::exact);
 }
 
 /// Where a program starts, as its reader has it.

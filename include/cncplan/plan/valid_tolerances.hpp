@@ -3,21 +3,21 @@
 
 #include <cmath>
 #include <concepts>
-#include <string_view>
 
 #include "cncplan/core/error.hpp"
 
 namespace cncplan::plan {
 
 /// Nothing, or the first of them that is none: a tolerance that is negative or not finite, a rotary one that
-/// is not above 0 either, a junction deviation that is negative or no number.
+/// is 0 where paths are smoothed, a junction deviation that is negative or no number.
 template <std::floating_point S>
-[[nodiscard]] Expected<void> valid_tolerances(S tolerance, S rotary_tolerance, S junction_deviation) {
+[[nodiscard]] Expected<void> valid_tolerances(S tolerance, S rotary_tolerance, S junction_deviation,
+                                              bool smooths) {
   if (!std::isfinite(tolerance)) return refusal(ErrorCode::not_finite, "tolerance", tolerance);
   if (tolerance < S(0)) return refusal(ErrorCode::negative, "tolerance", tolerance);
   if (!std::isfinite(rotary_tolerance))
     return refusal(ErrorCode::not_finite, "rotary tolerance", rotary_tolerance);
-  if (!(rotary_tolerance > S(0)))
+  if (rotary_tolerance < S(0) || (smooths && rotary_tolerance == S(0)))
     return refusal(ErrorCode::not_positive, "rotary tolerance", rotary_tolerance);
   if (std::isnan(junction_deviation))
     return refusal(ErrorCode::not_finite, "junction deviation", junction_deviation);
