@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -16,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/plan/live_steps.hpp"
 #include "plan/at_level.hpp"
 #include "plan/live_run.hpp"
 #include "plan/rows_program.hpp"
@@ -357,7 +359,8 @@ TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[e
     if (random.integer(0, 100) == 0) executor->resume();
     p = {executor->tick(period).position, p[0], p[1], p[2]};
     jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
-    if (ticks % 20 == 0) std::this_thread::yield();
+    if (executor->state() == ExecutorState::waiting)  // however slow the other thread is
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   over = true;
   planner.join();
@@ -403,4 +406,70 @@ TEST_CASE("executor levels: no time of a long tick is lost", "[executor-levels]"
   executor->tick(10);  // 20 rests on the way
   CHECK(executor->finished());
   CHECK((executor->tick(period).position - Vector3(20, 0, 0)).norm() < 1e-9);
+}
+
+TEST_CASE("executor levels: a part comes while the rate changes", "[executor-levels]") {
+  // The first part with its way to rest is there; a change of the rate begins, and then the next part comes.
+  // Wherever the cut is, one of these changes leads beyond it.
+  const MillBlocks blocks = blocks_of(rows(10, 50));
+  for (const auto& [before, behind] : {std::pair(0.3, 1.0), std::pair(1.0, 0.2)}) {
+    CAPTURE(before, behind);
+    double acceleration = 0, jerk = 0, latest = 0;
+    for (double at = 0.02; at < 2 / before; at += 0.01) {
+      const auto executor =
+          runner({.level = SmoothLevel::good, .longest_wait = 1e9, .background = true, .reserve = 0});
+      std::size_t fed = 0;
+      while (fed < 65 && executor->push(blocks[fed])) ++fed;  // one more than are held
+      executor->feed_override(before);
+      std::array<Vector3, 4> p;
+      p.fill(Vector3::Zero());
+      for (double t = 0; t < at + 0.5; t += period) {
+        if (std::abs(t - at) < period / 2) executor->feed_override(behind);
+        if (std::abs(t - at - 0.01) < period / 2) {
+          if (p[0] != p[1]) latest = at;
+          feed(*executor, blocks, fed);
+          executor->plan();
+        }
+        p = {executor->tick(period).position, p[0], p[1], p[2]};
+        acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).norm() / (period * period));
+        jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm() / (period * period * period));
+      }
+    }
+    CAPTURE(latest);
+    CHECK(latest < 1.9 / before);  // it came to rest: the cut was passed
+    CHECK(acceleration <= 1000 * (1 + 1e-4));
+    CHECK(jerk <= 10000 * (1 + 1e-3));
+  }
+}
+
+TEST_CASE("executor levels: step edges are where the axes are, at every tick", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800\nG1 X10\nX20 Y1\nG4 P0.2\nG3 X30 Y11 J10\nG1 Y20\nX10\nX0 Y0\n");
+  Machine<3> machine = with_axes();
+  for (auto& axis : machine.axes) axis.motors = {step::Drive{.steps_per_unit = 200}};
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(to_text(level));
+    const auto executor = std::make_unique<Runner>(machine, LevelExecutorOptions{.level = level});
+    LiveSteps steps(*executor);
+    std::array<long, 3> counts{};
+    std::size_t fed = 0;
+    double last = 0, worst = 0;
+    bool in_order = true;
+    for (int tick = 0; !executor->finished() && tick < 40000; ++tick) {
+      feed(*executor, blocks, fed);
+      if (tick % 333 == 100) executor->feed_hold();
+      if (tick % 333 == 250) executor->resume();
+      const auto point = steps.tick(period);
+      while (const auto edge = steps.next()) {
+        counts[static_cast<std::size_t>(edge->axis)] += edge->direction;
+        in_order = in_order && edge->time >= last;
+        last = edge->time;
+      }
+      for (std::size_t i = 0; i < 3; ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(counts[i]) -
+                                         200 * point.position[static_cast<Eigen::Index>(i)]));
+    }
+    CHECK(executor->finished());
+    CHECK(in_order);
+    CHECK(worst <= 0.5 + 1e-6);
+  }
 }
