@@ -164,6 +164,18 @@ template <std::floating_point S, int N>
          (bounds.third.array() == S(0)).all();
 }
 
+// What bends take of the limits at the speed from which a better one is looked for; found by trying, on
+// programs of arcs, of short lines and of both. A lower share makes bends slower and ramps shorter.
+template <std::floating_point S>
+inline constexpr S share_of_acceleration = S(0.8);
+template <std::floating_point S>
+inline constexpr S share_of_jerk = S(0.5);
+template <std::floating_point S>
+inline constexpr S share_of_jerk_on_short_blocks = S(0.3);
+// A block is short up to this share of the room for a ramp.
+template <std::floating_point S>
+inline constexpr S short_block = S(0.4);
+
 /// Limits along any other.
 template <std::floating_point S, int N>
 [[nodiscard]] BasicLimits<S> limits_on_bends(const BasicPathBounds<S, N>& bounds,
@@ -186,18 +198,21 @@ template <std::floating_point S, int N>
     for (const Row& row : rows) limits.jerk = std::min(limits.jerk, jerk_of(row, v, a));
     return limits;
   };
-  const S least = fastest(S(0.8), S(0.5));
+  const S least = fastest(share_of_acceleration<S>, share_of_jerk<S>);
   BasicLimits<S> best = at(least, acceleration_at(least));
   const bool bends = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.bends(); });
   if (!bends || !std::isfinite(length) || !std::isfinite(best.jerk)) return best;
   const S rise = (fastest(S(1), S(1)) - least) / S(4);
   const int speeds = rise > S(1e-3) * least ? 4 : 0;  // that are higher
-  // Ramps go on over the blocks next to a short one.
-  length = std::max(length, S(2) * room_for_ramp(best));
+  // Ramps go on over the blocks next to a short one, and a lower speed on it leaves them more.
+  const S room = room_for_ramp(best);
+  const bool is_short = length < short_block<S> * room;
+  length = std::max(length, S(2) * room);
   const S alone = time_with_ramps(best, length, S(1));
   S shortest = time_with_ramps(best, length, S(2));
-  for (int i = 0; i <= speeds; ++i) {
-    const S v = least + static_cast<S>(i) * rise;
+  for (int i = is_short ? -1 : 0; i <= speeds; ++i) {
+    const S v = i < 0 ? fastest(share_of_acceleration<S>, share_of_jerk_on_short_blocks<S>)
+                      : least + static_cast<S>(i) * rise;
     const S most = acceleration_at(v);
     for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
       const BasicLimits<S> other = at(v, share * most);
@@ -235,7 +250,7 @@ template <std::floating_point S, int N>
 /// j, so it is enough that they hold for the limits themselves (core/path_point.hpp has the formula).
 ///
 /// A higher speed on a bend leaves less to change speed with. The bends may take 0.8 of the acceleration and
-/// half of the jerk; over a known `length` a higher speed, or a lower acceleration with a higher jerk, is
+/// half of the jerk; over a known `length` another speed, or a lower acceleration with a higher jerk, is
 /// taken where that saves time.
 template <std::floating_point S, int N>
 [[nodiscard]] BasicLimits<S> limits_along(
