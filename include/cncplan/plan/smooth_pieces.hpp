@@ -130,7 +130,7 @@ class RunBlocks {
   void push(const B& block, S speed, const SmoothingRules<S>& rules) {
     limits_.tool.velocity =
         std::max(limits_.tool.velocity, std::min(top_speed(block, machine_), most_speed_));
-    blocks_.push_back({&block.path, speed, tolerances(block, machine_.axes, rules)});
+    blocks_.push_back({&block.path, std::min(speed, most_speed_), tolerances(block, machine_.axes, rules)});
   }
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
 
