@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The module that LinuxCNC loads by [TRAJ]TPMOD = cncplan_tp: its parameters, and the functions of tp.h.
+#include "planned_part.hpp"
 #include "planner.hpp"
 
 namespace {
 
 cncplan::linuxcnc::Planner planner;
+cncplan::linuxcnc::PlanningThread planning;
 int component = 0;
 
 }  // namespace
@@ -22,6 +24,7 @@ CNCPLAN_TP_PARAMETER(jerk)
 CNCPLAN_TP_PARAMETER(rotary_jerk)
 CNCPLAN_TP_PARAMETER(tolerance)
 CNCPLAN_TP_PARAMETER(rotary_tolerance)
+CNCPLAN_TP_PARAMETER(level)
 
 extern "C" {
 
@@ -31,14 +34,18 @@ int rtapi_app_main(void) {
   // The component's name is the file's: loadrt waits for it.
   component = hal_init("cncplan_tp");
   if (component < 0) return component;
-  if (!planner.set_up({jerk, rotary_jerk, tolerance, rotary_tolerance})) {
+  if (!planner.set_up({jerk, rotary_jerk, tolerance, rotary_tolerance, level})) {
     hal_exit(component);
     return -1;
   }
+  planning.start();
   hal_ready(component);
   return 0;
 }
-void rtapi_app_exit(void) { hal_exit(component); }
+void rtapi_app_exit(void) {
+  planning.stop();
+  hal_exit(component);
+}
 
 void tpMotFunctions(void (*dio)(int, char), void (*aio)(int, double), void (*unlock)(int, int),
                     int (*is_unlocked)(int), double (*velocity)(int), double (*acceleration)(int)) {

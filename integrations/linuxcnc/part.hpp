@@ -41,17 +41,19 @@ class Part {
   Part() = default;
   Part(const Part&) = delete;
   Part& operator=(const Part&) = delete;
-  virtual ~Part() = default;
 
   /// False where there is no room: again behind the next tick.
   [[nodiscard]] virtual bool push(const Move& move) = 0;
   /// Nothing follows, as far as is known; a `push` behind it goes on.
   virtual void end() = 0;
   [[nodiscard]] virtual PartState tick(double period, const Requests& requests) = 0;
-  /// Seconds at rest with nothing more to run.
-  [[nodiscard]] virtual double rested() const = 0;
   /// Whether a move cannot be planned; why, as a text, then. Keeps off the heap.
   [[nodiscard]] virtual bool failed(std::array<char, 256>& text) const = 0;
+  /// It is over: nothing more is asked of it.
+  virtual void leave() = 0;
+
+ protected:
+  ~Part() = default;
 };
 
 /// The part that runs. Its memory is there from the start, for all machines.
@@ -61,8 +63,8 @@ class RunningPart {
 
   /// Ends what runs, and touches the memory, so that no servo cycle has to fetch it.
   void set_up();
-  /// Ends the part before and begins another one.
-  void begin(const Settings& settings, const AxisLimits& limits);
+  /// Ends the part before and begins another one, where the machine stands, mm and rad.
+  void begin(const Settings& settings, const AxisLimits& limits, const Coordinates& place);
   void end();
 
   [[nodiscard]] explicit operator bool() const { return part_ != nullptr; }

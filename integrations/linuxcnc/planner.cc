@@ -179,7 +179,7 @@ bool Planner::start(TP_STRUCT& tp) {
     runs_ = Runs::own;
   } else {
     if (first.waits_for_spindle && !spindles_at_speed()) return false;
-    part_.begin(settings_, limits());
+    part_.begin(settings_, limits(), settings_.units.factors().cwiseProduct(coordinates(tp.currentPos)));
     runs_ = Runs::part;
   }
   begin_ = given_ = queue_.current();

@@ -122,6 +122,18 @@ bool read_jerks(const Ini& ini, const Parameters& parameters, Settings& settings
   return true;
 }
 
+bool read_level(const Parameters& parameters, Settings& settings) {
+  const std::string level = given(parameters.level).value_or("fast");
+  if (level != "fast" && level != "good") {
+    complain("cncplan_tp: error: level: '%s' is neither fast nor good\n", level.c_str());
+    return false;
+  }
+  settings.level = level == "good" ? Level::good : Level::fast;
+  if (settings.level == Level::fast || planned_coordinates(settings) <= 6) return true;
+  complain("cncplan_tp: error: level: good is for X Y Z A B C; [TRAJ]COORDINATES has others\n");
+  return false;
+}
+
 }  // namespace
 
 bool read_settings(const Parameters& parameters, Settings& settings) {
@@ -140,7 +152,9 @@ bool read_settings(const Parameters& parameters, Settings& settings) {
     return false;
   }
   settings.units = {*linear, *rotary};
-  if (!read_coordinates(ini, settings) || !read_jerks(ini, parameters, settings)) return false;
+  if (!read_coordinates(ini, settings) || !read_jerks(ini, parameters, settings) ||
+      !read_level(parameters, settings))
+    return false;
 
   constexpr double none = std::numeric_limits<double>::infinity();
   const auto velocity =

@@ -14,6 +14,13 @@ struct Parameters {
   const char* rotary_jerk{};       ///< the same for rotary axes
   const char* tolerance{};         ///< of G64 without P, machine units
   const char* rotary_tolerance{};  ///< machine units
+  const char* level{};             ///< of smoothing: fast or good
+};
+
+/// Of smoothing.
+enum class Level : unsigned char {
+  fast,  ///< planned in the servo thread
+  good   ///< planned in a thread beside it
 };
 
 struct Settings {
@@ -24,6 +31,7 @@ struct Settings {
   double tool_jerk{};                              ///< mm/s^3; the same
   double tolerance = 0.01;                         ///< mm
   double rotary_tolerance = 8.726646259971648e-4;  ///< rad
+  Level level = Level::fast;
 };
 
 /// Reads the ini that INI_FILE_NAME names. What is wrong is printed; false then.

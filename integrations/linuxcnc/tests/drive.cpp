@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Drives a program through the module or through Debian's tpmod.so, and prints the time, the peaks and what a
 // servo cycle takes:
-//   drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration] [POSITIONS]
+//   drive_linuxcnc ours|good|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration] [POSITIONS]
+// good: the module with level=good, each servo period a millisecond of the day, as its thread has to keep up.
 // FILE: a program of G0 and G1 (.nc), or canonical motions (.motions). POSITIONS: a file for t, X, Y, Z of
 // every period, s and mm. The table of docs/linuxcnc.md is its.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +14,7 @@
 #include <ctime>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "run.hpp"
@@ -33,7 +36,7 @@ int main(int count, char** arguments) {
   if (count < 3) {
     std::fprintf(
         stderr,
-        "usage: drive_linuxcnc ours|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration] "
+        "usage: drive_linuxcnc ours|good|debian FILE [lines] [jerk] [tolerance] [velocity] [acceleration] "
         "[POSITIONS]\n");
     return 2;
   }
@@ -47,6 +50,8 @@ int main(int count, char** arguments) {
   options.jerk = std::to_string(jerk);
   options.velocity = number(6, 30.0);
   options.acceleration = number(7, 1000.0);
+  options.with_thread = std::strcmp(arguments[1], "good") == 0;
+  if (options.with_thread) options.level = "good";
   auto moves = file.ends_with(".motions") ? read_motions(file) : read_lines(file, lines);
   if (static_cast<int>(moves.size()) > lines) moves.resize(static_cast<std::size_t>(lines));
 
@@ -55,7 +60,9 @@ int main(int count, char** arguments) {
   std::vector<double> cycles;  // us of this thread, with what task hands on in it
   double before = thread_time();
   bool first = true;
+  auto period = std::chrono::steady_clock::now();
   const Run run = drive(host, moves, [&](long) {
+    if (options.with_thread) std::this_thread::sleep_until(period += std::chrono::milliseconds(1));
     const double now = thread_time();
     if (!first) cycles.push_back(now - before);
     first = false;

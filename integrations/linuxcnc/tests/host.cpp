@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "host.hpp"
 
+#include "../planned_part.hpp"
+
 #include <dlfcn.h>
 #include <unistd.h>
 #include <algorithm>
@@ -18,6 +20,7 @@ int rtapi_app_main(void);
 extern void* rtapi_info_address_jerk;
 extern void* rtapi_info_address_rotary_jerk;
 extern void* rtapi_info_address_tolerance;
+extern void* rtapi_info_address_level;
 
 // What rtapi and hal_lib would be.
 void rtapi_print_msg(msg_level_t level, const char* format, ...) {
@@ -84,6 +87,11 @@ long& periods() {
   return count;
 }
 
+std::string tested_level() {
+  const char* const level = std::getenv("CNCPLAN_TP_LEVEL");
+  return level != nullptr ? level : "";
+}
+
 TpFunctions our_functions() {
   return {&::tpMotFunctions, &::tpMotData,   &::tpCreate,         &::tpClear,       &::tpSetCycleTime,
           &::tpSetVmax,      &::tpSetVlimit, &::tpSetId,          &::tpSetTermCond, &::tpSetPos,
@@ -129,11 +137,14 @@ bool load_module(const HostOptions& options) {
                       << "\nLINEAR_UNITS = " << options.linear_units << "\nANGULAR_UNITS = degree\n"
                       << options.more_ini << '\n';
   setenv("INI_FILE_NAME", name.c_str(), 1);
-  static std::string jerk, rotary_jerk, tolerance;  // as long as the module may read them
+  static std::string jerk, rotary_jerk, tolerance, level;  // as long as the module may read them
   jerk = options.jerk, rotary_jerk = options.rotary_jerk, tolerance = options.tolerance;
+  level = options.level;
   *static_cast<char**>(rtapi_info_address_jerk) = jerk.data();
   *static_cast<char**>(rtapi_info_address_rotary_jerk) = rotary_jerk.data();
   *static_cast<char**>(rtapi_info_address_tolerance) = tolerance.data();
+  *static_cast<char**>(rtapi_info_address_level) = level.data();
+  plans_without_thread = !options.with_thread;
   const bool loaded = rtapi_app_main() == 0;
   std::filesystem::remove(name);
   return loaded;
@@ -236,6 +247,9 @@ void Host::cycle() {
   if ((enables & FH_ENABLED) != 0 && feed_hold) scale = 0.0;
   status.net_feed_scale = scale;
 
+  if (!options.with_thread)
+    while (plan_parts()) {
+    }
   functions.run_cycle(&tp, 1'000'000);
   ++periods();
 

@@ -40,6 +40,9 @@ struct TpFunctions {
 [[nodiscard]] TpFunctions our_functions();
 [[nodiscard]] TpFunctions debians_functions();
 
+/// The level that tests are of, as CNCPLAN_TP_LEVEL has it; empty: fast.
+[[nodiscard]] std::string tested_level();
+
 /// Limits of every axis, machine units (degrees of rotary ones) and s.
 struct HostOptions {
   std::string coordinates = "XYZ";
@@ -47,6 +50,8 @@ struct HostOptions {
   std::string jerk = "10000";  ///< the module's parameter; empty: not given
   std::string rotary_jerk{};
   std::string tolerance{};
+  std::string level = tested_level();
+  bool with_thread = false;  ///< parts of the level good are planned beside the servo periods, not in between
   std::string more_ini{};
   double velocity = 30.0;
   double acceleration = 1000.0;
