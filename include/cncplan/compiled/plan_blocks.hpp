@@ -13,7 +13,7 @@
 /// Its parts: look-ahead, and curves.
 #define CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, BLOCK)                                        \
   PREFIX template Expected<Trajectory<MACHINE, BLOCK>, ProgramError> plan::plan_by_look_ahead( \
-      std::pmr::vector<BLOCK>&&, const MACHINE&, const PlanOptions&);
+      std::pmr::vector<BLOCK>&&, const MACHINE&, const PlanOptions&, const Progress&);
 
 #define CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, BLOCK)          \
   PREFIX template class plan::SmoothPlanner<MACHINE, BLOCK>; \

@@ -65,6 +65,7 @@ enum class ErrorCode : std::uint8_t {
   no_tool_table,
   division_by_zero,
   not_as_read,
+  interrupted,
   count_,  // number of codes
 };
 
@@ -122,6 +123,7 @@ enum class ErrorCode : std::uint8_t {
       "names a tool, and there is no tool table: its length and diameter are 0",
       "divides by zero",
       "is not as the program was read with",
+      "was interrupted",
   };
   const auto row = static_cast<std::size_t>(code);
   return row < table.size() ? table[row] : "is at fault for an unknown reason";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cncplan/core/error.hpp"
+#include "cncplan/core/progress.hpp"
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/cell_maker.hpp"
 #include "cncplan/plan/smoothing.hpp"
@@ -44,7 +45,7 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
 [[nodiscard]] Expected<BasicCells<typename M::Scalar>, BlockFault> make_cells(
     std::span<const B> blocks, const M& machine, const JointRules<typename M::Scalar, Policy>& rules,
     const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing = {},
-    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
   using S = typename M::Scalar;
   BasicCells<S> cells(memory);
   cells.caps.reserve(blocks.size());
@@ -57,6 +58,8 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
   CellMaker<M, B, Policy, Cut<M, B>> maker(machine, rules);
   const auto tool = tool_axes(machine);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
+    constexpr std::size_t seldom = 256;  // blocks: some tens of microseconds, as a rule
+    if (i % seldom == 0) progress.reach(static_cast<double>(i) / static_cast<double>(blocks.size()));
     if (const auto ok = maker.begin(blocks[i], smoothing.path(blocks[i].path, i, tool), smoothing.passing(i));
         !ok)
       return tl::unexpected(BlockFault{ok.error(), i});

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/progress.hpp"
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/plan/cells.hpp"
@@ -92,7 +93,8 @@ template <MachineModel M>
 template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_by_look_ahead(std::pmr::vector<B>&& blocks,
                                                                           const M& machine,
-                                                                          const PlanOptions& options) {
+                                                                          const PlanOptions& options,
+                                                                          const Progress& progress = {}) {
   using S = typename M::Scalar;
   std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
@@ -103,14 +105,18 @@ template <MachineModel M, BlockModel B>
   const std::span<const B> given(blocks);
   std::pmr::vector<Fallback> fallbacks(memory);
   BasicSmoothing<S, M::axis_count> smoothing(memory);
-  const auto cut = [&] { return make_cells(given, machine, rules, smoothing, memory); };
+  constexpr double smoothed = 0.5, cut_up = 0.9;  // of the work that is done then, about
+  const auto cut = [&] {
+    const double from = asked == SmoothLevel::exact ? 0.0 : smoothed;
+    return make_cells(given, machine, rules, smoothing, memory, progress.part(from, cut_up));
+  };
   Expected<BasicCells<S>, BlockFault> cells = tl::unexpected(BlockFault{});
   const auto other = without_smoothing<M, B>();
   if constexpr (MappedModel<M>) {
     constexpr S rounding = S(1e-12);  // mm: as of paths that meet without a corner
     const JointRules<S, junction::BasicStopAtCorners<S>> at_rest{{}, rounding, rounding};
     if (asked != SmoothLevel::exact && !other) {
-      cells = make_cells(given, machine, at_rest, smoothing, memory);
+      cells = make_cells(given, machine, at_rest, smoothing, memory, progress.part(0.0, cut_up));
       if (!cells) return tl::unexpected(error_in(given, cells.error()));
       return trajectory(std::move(blocks), machine, *cells, SevenPhase{});
     }
@@ -123,7 +129,7 @@ template <MachineModel M, BlockModel B>
     const auto within = smoothing_rules<S>(options);
     merge_lines(std::span(blocks), machine, within);
     for (bool again = true; again;) {
-      smoothing = plan::smoothing(given, machine, within, memory);
+      smoothing = plan::smoothing(given, machine, within, memory, progress.part(0.0, smoothed));
       cells = cut();
       if (cells) break;
       const auto exact = make_exact_at_ends(std::span(blocks), machine, smoothing, memory);

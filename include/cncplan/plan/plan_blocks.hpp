@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cncplan/core/compiled.hpp"
+#include "cncplan/plan/interruption.hpp"
 #include "cncplan/plan/look_ahead_plan.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
 #include "cncplan/plan/step_edges.hpp"
@@ -49,7 +50,8 @@ template <MachineModel M, BlockModel B>
       if (const auto ok = stream.finish(); !ok) return tl::unexpected(ok.error());
       return stream.take();
     }
-  return plan_by_look_ahead(std::move(blocks), machine, options);
+  Listening listening(options, reading_share(options));
+  return plan_by_look_ahead(std::move(blocks), machine, options, listening.progress());
 }
 
 }  // namespace plan
@@ -68,7 +70,8 @@ template <MachineModel M, BlockModel B>
 ///
 /// Where a level cannot be had, a lower one takes its place, and `fallbacks` of the trajectory says where and
 /// why: `FallbackReason` lists it. Errors: those of `validate` for the machine and the options; a block that
-/// leaves the travel of an axis or that no limit bounds; too little of `memory`.
+/// leaves the travel of an axis or that no limit bounds; too little of `memory`; `interrupted`, where the
+/// options' `progress` says so.
 template <std::ranges::contiguous_range R, MachineModel M>
   requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(
@@ -77,6 +80,8 @@ template <std::ranges::contiguous_range R, MachineModel M>
   return plan::plan_own_blocks(plan::own_blocks(std::forward<R>(blocks), memory), machine, options);
 } catch (const std::bad_alloc&) {
   return tl::unexpected(plan::no_memory());
+} catch (const plan::Interrupted& at) {
+  return tl::unexpected(plan::interrupted(at, "planning"));
 }
 
 /// The same on the exact path, with a policy of one's own for joints (`JunctionPolicy`) and a law for changes

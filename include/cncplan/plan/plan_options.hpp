@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "cncplan/gcode/dialect.hpp"
@@ -27,6 +28,10 @@ struct PlanOptions {
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
   path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be
   gcode::FindFile subprograms{};            ///< files of subprograms; those in the program's folder if empty
+  /// Called from time to time with the share of the way from the text to the plan that is done, 0 to 1, never
+  /// less than before; false ends the work with the error `interrupted`. What it throws goes on to the
+  /// caller. Blocks alone begin where the reading of a text would end.
+  std::function<bool(double)> progress{};
   bool flat{};  ///< parameters, expressions, O-words and calls are errors, as for `BlockReader`
 };
 

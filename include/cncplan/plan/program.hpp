@@ -19,6 +19,7 @@
 #include "cncplan/gcode/read_program.hpp"
 #include "cncplan/plan/block_builder.hpp"
 #include "cncplan/plan/block_checks.hpp"
+#include "cncplan/plan/interruption.hpp"
 #include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
 
@@ -156,19 +157,36 @@ inline void ProgramRecord::read(std::string_view text, const std::string& file, 
   start_ = options.start;
   if (files_.empty()) files_.push_back(file);
   gcode::TextLines lines(text);
+  plan::Listening listening(options, 0.0, plan::reading_share(options));
+  const Progress progress = listening.progress();
+  std::size_t taken = 0;
+  const auto tell = [&] {
+    constexpr std::size_t seldom = 256;  // items: some tens of microseconds
+    if (++taken % seldom == 0)
+      progress.reach(static_cast<double>(lines.place()) / static_cast<double>(lines.byte_count()));
+  };
   const auto run = [&](auto&& source, auto&& here) {
     gcode::read_program(
-        source, reader, [&](const gcode::Item& item) { take(item, here(), make); },
+        source, reader,
+        [&](const gcode::Item& item) {
+          tell();
+          take(item, here(), make);
+        },
         [&](const gcode::Diagnostic& problem) {
+          tell();
           add({problem}, here());
           return true;
         });
   };
-  if (options.flat) {
-    run(lines, [&] { return std::string_view(file); });
-  } else {
-    gcode::ProgramLines flat(lines, reader, options.subprograms);
-    run(flat, [&] { return flat.file().empty() ? std::string_view(file) : flat.file(); });
+  try {
+    if (options.flat) {
+      run(lines, [&] { return std::string_view(file); });
+    } else {
+      gcode::ProgramLines flat(lines, reader, options.subprograms);
+      run(flat, [&] { return flat.file().empty() ? std::string_view(file) : flat.file(); });
+    }
+  } catch (const plan::Interrupted& at) {
+    add(plan::interrupted(at, "reading"), file);
   }
   lines_ = reader.line();
 }
@@ -227,7 +245,7 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
 
 /// Reads the text of a program, parameters, O-words and calls of subprograms included (gcode/language/). What
 /// is wrong with it is in `problems`, all of it: errors of the text, of arcs, of the machine's travel and
-/// limits, and warnings.
+/// limits, and warnings; and that the reading was interrupted.
 template <MachineModel M>
 [[nodiscard]] Program<M> read_text(std::string_view text, const M& machine, const PlanOptions& options = {}) {
   return Program<M>(text, machine, options);

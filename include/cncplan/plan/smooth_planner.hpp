@@ -14,6 +14,7 @@
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/plan/block_checks.hpp"
 #include "cncplan/plan/curve_limits.hpp"
+#include "cncplan/plan/interruption.hpp"
 #include "cncplan/plan/look_ahead_plan.hpp"
 #include "cncplan/plan/smooth_pieces.hpp"
 
@@ -139,6 +140,7 @@ class SmoothPlanner {
 
   // Plans what later blocks cannot change; if there is no room for more blocks, at least a part of them.
   [[nodiscard]] Expected<void, ProgramError> plan(bool all) {
+    listening_.begin();
     if (keeps_cuts_ && cut_) {
       last_cut_.blocks = blocks_;
       last_cut_.first_source = first_source_;
@@ -164,6 +166,12 @@ class SmoothPlanner {
     }
     if (all) return add_fast(blocks_.size());
     return blocks_.size() - planned_ < most_ ? Expected<void, ProgramError>{} : add_fast(last_rest());
+  }
+
+  // Of the plan of blocks up to `end`, among those that are held.
+  [[nodiscard]] Progress progress_to(std::size_t end) {
+    const auto all = static_cast<double>(blocks_.size());
+    return listening_.progress().part(static_cast<double>(planned_) / all, static_cast<double>(end) / all);
   }
 
   // Blocks that have no plan, up to `end`.
@@ -285,7 +293,7 @@ class SmoothPlanner {
                                                       std::optional<FallbackReason> reason = std::nullopt) {
     if (planned_ == end) return {};
     if (!reason) reason = why_fast(end);
-    auto planned = fast(end);
+    auto planned = fast(end, progress_to(end));
     if (!planned) {
       if (planned.error().block) *planned.error().block += first_source_ + planned_;
       return tl::unexpected(planned.error());
@@ -339,7 +347,7 @@ class SmoothPlanner {
   std::optional<FallbackReason> add_curve(std::size_t end) try {
     const Given given = run_blocks(cut_ ? 0 : planned_, end);
     if (!given.blocks.bounded()) return FallbackReason::tool_limits;
-    const RunPlan planned = given.blocks.run(work_, cut_, memory_).plan();
+    const RunPlan planned = given.blocks.run(work_, cut_, memory_).plan(progress_to(end));
     if (!found(planned)) return FallbackReason::no_motion;
     if (!has_room(planned, given.blocks)) return FallbackReason::travel;
     if (!cut_ && fast_is_faster(planned.duration, end)) return FallbackReason::fast_is_faster;
@@ -373,7 +381,7 @@ class SmoothPlanner {
         const Given rest = run_blocks(given.sources[moving], end);
         if (!works(rest.blocks.run(work_, there, memory_).slow_plan(), rest.blocks)) continue;
         run.end_before(cell, cut.speed);
-        RunPlan planned = run.plan();
+        RunPlan planned = run.plan(progress_to(end));
         const bool fastest = works(planned, given.blocks);
         if (!fastest) planned = run.slow_plan();
         if (!works(planned, given.blocks)) return false;
@@ -424,11 +432,12 @@ class SmoothPlanner {
   }
 
   // Blocks that have no plan, at the level `fast`.
-  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end) const {
+  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end, const Progress& progress = {}) const {
     const auto blocks = given(end);
     PlanOptions options = options_;
     options.level = SmoothLevel::fast;
-    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), machine_, options);
+    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), machine_, options,
+                              progress);
   }
 
   // Whether the level `fast` takes less time.
@@ -518,6 +527,7 @@ class SmoothPlanner {
 
   const M& machine_;
   PlanOptions options_;
+  Listening listening_{options_, reading_share(options_)};
   SmoothingRules<S> rules_;
   smooth::BasicSmoothOptions<S> work_;
   smooth::BasicMotionLimits<S, n> limits_;

@@ -71,6 +71,8 @@ class SmoothStream {
     return {};
   } catch (const std::bad_alloc&) {
     return tl::unexpected(plan::no_memory());
+  } catch (const plan::Interrupted& at) {
+    return tl::unexpected(plan::interrupted(at, "planning"));
   }
   /// Plans all that is left, to rest. Blocks that are pushed later go on from there.
   [[nodiscard]] Expected<void, ProgramError> finish() try {
@@ -81,6 +83,8 @@ class SmoothStream {
     return planner_.finish();
   } catch (const std::bad_alloc&) {
     return tl::unexpected(plan::no_memory());
+  } catch (const plan::Interrupted& at) {
+    return tl::unexpected(plan::interrupted(at, "planning"));
   }
 
   /// Whether the next block makes it plan first.
@@ -90,6 +94,8 @@ class SmoothStream {
     return planner_.prepare(merging_.size() + 1);
   } catch (const std::bad_alloc&) {
     return tl::unexpected(plan::no_memory());
+  } catch (const plan::Interrupted& at) {
+    return tl::unexpected(plan::interrupted(at, "planning"));
   }
 
   /// Whether what was planned last ends at a speed.

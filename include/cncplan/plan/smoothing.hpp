@@ -11,6 +11,7 @@
 
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/long_length.hpp"
+#include "cncplan/core/progress.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/smooth_junction.hpp"
 #include "cncplan/smooth/kernel_sizes.hpp"
@@ -58,10 +59,11 @@ class Smoother {
   using Result = BasicSmoothing<S, n>;
 
   Smoother(std::span<const B> blocks, const M& machine, const SmoothingRules<S>& rules,
-           std::pmr::memory_resource* memory)
+           std::pmr::memory_resource* memory, const Progress& progress)
       : blocks_(blocks),
         machine_(machine),
         rules_(rules),
+        progress_(progress),
         axes_(axis_tolerances(machine, rules)),
         result_(memory),
         moving_(memory),
@@ -116,7 +118,10 @@ class Smoother {
   void finish(LongLength<S> end) {
     if (!sizings_.empty()) {
       set_rooms(end);
-      smooth::fit_sizes(std::span(sizings_), axes_);
+      const auto all = static_cast<double>(blocks_.size());
+      smooth::fit_sizes(
+          std::span(sizings_), axes_,
+          progress_.part(static_cast<double>(moving_.front()) / all, static_cast<double>(last_) / all));
       for (std::size_t i = 0; i < sizings_.size(); ++i) {
         auto& behind = result_.blocks[moving_[junctions_[i]]];
         if (rests_at(i)) behind.passing = Passing::stop;
@@ -187,6 +192,7 @@ class Smoother {
   std::span<const B> blocks_;
   const M& machine_;
   SmoothingRules<S> rules_;
+  const Progress progress_;
   smooth::BasicAxisTolerances<S, n> axes_;
   Result result_;
   // Of the part that is open: blocks that move, of a merged line the first.
@@ -204,8 +210,8 @@ template <MachineModel M, BlockModel B>
   requires EnclosedPath<typename B::Path>
 [[nodiscard]] BasicSmoothing<typename M::Scalar, M::axis_count> smoothing(
     std::span<const B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules,
-    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
-  return detail::Smoother<M, B>(blocks, machine, rules, memory).run();
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
+  return detail::Smoother<M, B>(blocks, machine, rules, memory, progress).run();
 }
 
 }  // namespace cncplan::plan

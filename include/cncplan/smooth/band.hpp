@@ -16,6 +16,7 @@
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/path_point.hpp"
+#include "cncplan/core/progress.hpp"
 #include "cncplan/smooth/band_window.hpp"
 #include "cncplan/smooth/cubic.hpp"
 #include "cncplan/smooth/joint_window.hpp"
@@ -113,7 +114,7 @@ class Band {
 
   /// Moves the curve: `speeds_sq` is b = v^2 in each cell, of a law of speed along the curve as it is. Where
   /// that is the feed the curve stays as it is. Returns the Newton steps.
-  int smoothen(std::span<const S> speeds_sq) {
+  int smoothen(std::span<const S> speeds_sq, const Progress& progress = {}) {
     const std::size_t cells = cell_count();
     std::pmr::vector<char> slow(points_.size(), 0, memory_);
     for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -129,7 +130,7 @@ class Band {
     prepare_memory();
     const BasicBandMemory<S, axis_count> memory{rows_, gradient_, step_, trial_};
     const BasicBandProblem<S, axis_count> problem{cells_, samples_, jerk_scale(), options_.centring};
-    return in_windows(slow, 3, [&](std::size_t first, std::size_t last) {
+    return in_windows(slow, 3, progress, [&](std::size_t first, std::size_t last) {
       return smooth::smoothen(problem, std::span<Vector>(points_), first, last, options_.solver, memory)
           .rounds;
     });
@@ -140,7 +141,8 @@ class Band {
   /// cells that stay. Returns the Newton steps.
   int improve(std::span<const S> speeds_sq, std::span<const S> skews,
               const BasicMotionLimits<S, axis_count>& limits,
-              std::span<const BasicLimitedRow<S, axis_count>> limited, const BasicJointOptions<S>& solver) {
+              std::span<const BasicLimitedRow<S, axis_count>> limited, const BasicJointOptions<S>& solver,
+              const Progress& progress = {}) {
     constexpr S slow = S(0.97);
     constexpr S price = S(0.05);  // of a q''' that takes the whole limit of the jerk
     const std::size_t cells = cell_count();
@@ -169,7 +171,7 @@ class Band {
     std::pmr::vector<detail::JointPlace<S>> places(3 * (options_.window + 3), memory_);
     const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
     const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits, limited};
-    return in_windows(moves, 4, [&](std::size_t first, std::size_t last) {
+    return in_windows(moves, 4, progress, [&](std::size_t first, std::size_t last) {
       return smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, last, solver,
                              BasicJointMemory<S, axis_count>{rows, gradient, step, trial, places})
           .rounds;
@@ -506,7 +508,8 @@ class Band {
 
   // The sum of `move(first, last)` over windows of the points that move, less so many at each end.
   template <class Move>
-  [[nodiscard]] int in_windows(std::span<const char> moves, std::size_t margin, const Move& move) const {
+  [[nodiscard]] int in_windows(std::span<const char> moves, std::size_t margin, const Progress& progress,
+                               const Move& move) const {
     // What is left at the end of a window is moved with the next one.
     const std::size_t overlap = std::min<std::size_t>(100, options_.window / 2);
     int sum = 0;
@@ -515,8 +518,12 @@ class Band {
       if (moves[k] == 0) continue;
       std::size_t first = k;
       while (k < end && moves[k] != 0) ++k;
-      for (; k - first > options_.window; first += options_.window - overlap)
+      const auto begin = [&] { progress.reach(static_cast<double>(first) / static_cast<double>(end)); };
+      for (; k - first > options_.window; first += options_.window - overlap) {
+        begin();
         sum += move(first, first + options_.window);
+      }
+      begin();
       sum += move(first, k);
     }
     return sum;

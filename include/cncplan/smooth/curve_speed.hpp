@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/progress.hpp"
 #include "cncplan/smooth/band.hpp"
 #include "cncplan/smooth/plan_speed.hpp"
 
@@ -142,13 +143,14 @@ class CurveSpeed {
     plateaus_.resize(n + 4);
   }
 
-  BasicSpeedPlan<S> plan(S gap, bool proven, bool fastest = true) {
+  BasicSpeedPlan<S> plan(S gap, bool proven, bool fastest = true, const Progress& progress = {}) {
     options_.window.gap = gap;
     options_.window.proven = proven;
     options_.fastest = fastest;
     std::copy(first_law_.begin(), first_law_.end(), law_.begin());
     const auto plan = plan_speed<S, Seen::count>(
-        cells_, limits_, options_, {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}}, ends_);
+        cells_, limits_, options_, {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}}, ends_,
+        progress);
     const std::span<const Cell> inner(cells_.data() + 1, cells_.size() - 2);
     S at = starts_[1];
     knots_.assign(1, {at, ends_.given > 0 ? std::sqrt(law_[0]) : plan.start.speed});

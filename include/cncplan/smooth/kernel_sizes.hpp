@@ -11,6 +11,7 @@
 
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/long_length.hpp"
+#include "cncplan/core/progress.hpp"
 #include "cncplan/core/vector.hpp"
 #include "cncplan/smooth/kernel.hpp"
 
@@ -152,7 +153,8 @@ template <std::floating_point S, int N>
 /// Finds the sizes for corrections in order of their places, at most two at one: as large as wanted, as there
 /// is room for, and as the tolerance allows where kernels overlap.
 template <std::floating_point S, int N>
-void fit_sizes(std::span<BasicSizing<S, N>> all, const BasicAxisTolerances<S, N>& axes) {
+void fit_sizes(std::span<BasicSizing<S, N>> all, const BasicAxisTolerances<S, N>& axes,
+               const Progress& progress = {}) {
   constexpr std::size_t window = 2 * most_neighbours + 1;
   const auto around = [&](std::size_t j) {
     const std::size_t first = j > window ? j - window : 0;
@@ -162,6 +164,8 @@ void fit_sizes(std::span<BasicSizing<S, N>> all, const BasicAxisTolerances<S, N>
   };
   for (BasicSizing<S, N>& own : all) set_widest(own, axes);
   for (std::size_t j = 0; j < all.size(); ++j) {
+    constexpr std::size_t seldom = 256;  // some milliseconds
+    if (j % seldom == 0) progress.reach(static_cast<double>(j) / static_cast<double>(all.size()));
     const auto [near, at] = around(j);
     all[j].sum = deviation_sum(near, at, axes);
   }

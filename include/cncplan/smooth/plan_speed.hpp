@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "cncplan/core/progress.hpp"
 #include "cncplan/smooth/speed_start.hpp"
 
 namespace cncplan::smooth {
@@ -121,7 +122,8 @@ template <std::floating_point S, int N>
                                            const BasicMotionLimits<S, N>& limits,
                                            const BasicPlanSpeedOptions<S>& options,
                                            const BasicPlanSpeedMemory<S>& memory,
-                                           const BasicSpeedEnds<S>& ends = {}) {
+                                           const BasicSpeedEnds<S>& ends = {},
+                                           const Progress& progress = {}) {
   BasicSpeedPlan<S> plan;
   const std::size_t inner = cells.size() - 2;
   const auto law = memory.law.first(inner + 2);
@@ -196,6 +198,7 @@ template <std::floating_point S, int N>
     while (end < inner && levels[end - 1] > S(0)) ++end;
     bool again = false;
     for (std::size_t first = k; first < end;) {
+      progress.reach(static_cast<double>(first) / static_cast<double>(inner));
       const std::size_t last = std::min(first + (again ? most - most / 4 : most), end);
       const auto result = optimise(problem, law, first, last, options.window, memory.window);
       plan.rounds += result.rounds;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "cncplan/core/fixed_list.hpp"
+#include "cncplan/core/progress.hpp"
 #include "cncplan/smooth/band.hpp"
 #include "cncplan/smooth/curve_speed.hpp"
 
@@ -161,7 +162,8 @@ class SmoothRun {
   void end_before(std::size_t cell, S speed) { end_ = {cell, speed}; }
 
   /// The fastest motion that is found.
-  [[nodiscard]] Plan plan() {
+  [[nodiscard]] Plan plan(const Progress& progress = {}) {
+    work_ = Work(progress, options_);
     if (end_) band_.pin(end_->cell);
     move_curve();
     let_go_beyond_end();
@@ -205,13 +207,13 @@ class SmoothRun {
   S coarse_time() {
     deviation_ = band_.settle();
     speed_.take(band_, false, ends_, approach_);
-    return speed_.plan(options_.coarse_gap, false).duration;
+    return speed_.plan(options_.coarse_gap, false, true, work_.next(Work::coarse_speed)).duration;
   }
 
   void move_curve() {
     for (int pass = 0; pass < options_.passes; ++pass) {
       if (!std::isfinite(coarse_time())) return;
-      band_.smoothen(speed_.speeds_sq(band_.cell_count()));
+      band_.smoothen(speed_.speeds_sq(band_.cell_count()), work_.next(Work::curve));
     }
     S time = S(0);
     if (options_.joint_rounds > 0)
@@ -225,7 +227,7 @@ class SmoothRun {
       limited_.clear();
       speed_.limited_rows(band_, limited_);
       band_.improve(speed_.uncut_speeds_sq(band_.cell_count()), speed_.uncut_skews(band_.cell_count()),
-                    speed_.limits_of_curve(), limited_, options_.joint);
+                    speed_.limits_of_curve(), limited_, options_.joint, work_.next(Work::curve_and_speed));
       time = coarse_time();
       // Both times are coarse: what seems a little worse may be better. Not where the way in which the limits
       // see the curve is a different one at every place.
@@ -252,7 +254,7 @@ class SmoothRun {
     Plan plan(memory_);
     plan.deviation = deviation_;
     speed_.take(band_, true, ends_, approach_);
-    plan.speed = speed_.plan(options_.gap, true, fastest);
+    plan.speed = speed_.plan(options_.gap, true, fastest, work_.next(Work::speed));
     plan.duration = plan.speed.duration;
     if (!std::isfinite(plan.duration)) return plan;
     const S slow = plan.speed.slow_down;
@@ -322,6 +324,28 @@ class SmoothRun {
         ++plan.end_block;
   }
 
+  // How far the plan is: the amounts are about the times that its parts take.
+  class Work {
+   public:
+    static constexpr double coarse_speed = 1, curve = 1, curve_and_speed = 8, speed = 2;
+
+    Work() = default;
+    Work(const Progress& progress, const BasicSmoothOptions<S>& options)
+        : progress_(progress),
+          all_(options.passes * (coarse_speed + curve) + (options.joint_rounds > 0 ? coarse_speed : 0) +
+               options.joint_rounds * (curve_and_speed + coarse_speed) + speed) {}
+
+    [[nodiscard]] Progress next(double amount) {
+      const double from = done_;
+      done_ = std::min(done_ + amount, all_);
+      return progress_.part(from / all_, done_ / all_);
+    }
+
+   private:
+    Progress progress_;
+    double all_ = 1, done_ = 0;
+  };
+
   std::span<const BandBlock<P>> blocks_;
   Limits limits_;
   BasicSmoothOptions<S> options_;
@@ -335,6 +359,7 @@ class SmoothRun {
   CurveSpeed<S, axis_count, Seen> speed_;
   BasicSpeedEnds<S> ends_;
   std::optional<End> end_;  // where it will be cut
+  Work work_;
   BasicApproach<S, axis_count> approach_{memory_};
   std::pmr::vector<Vector> points_{memory_};  // before a round
   std::pmr::vector<BasicLimitedRow<S, axis_count>> limited_{memory_};
