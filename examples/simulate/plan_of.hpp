@@ -22,6 +22,7 @@
 #include "phases.hpp"
 #include "plan.hpp"
 #include "planned_on.hpp"
+#include "progress.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
 
@@ -74,11 +75,18 @@ template <class M>
 template <class M>
 [[nodiscard]] Plan plan_smooth(const Options& options, const support::Machine& file, const M& machine,
                                const Program<M>& program) {
-  auto planned = cncplan::plan_blocks(
-      program.blocks, machine,
-      {.tolerance = options.tolerance,
-       .level = options.level(),
-       .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree});
+  Progress progress(!options.quiet, 1.0, Progress::Begin::late);
+  const auto tell = [&](double share) {
+    progress.reach(share);
+    return true;
+  };
+  auto planned =
+      cncplan::plan_blocks(program.blocks, machine,
+                           {.tolerance = options.tolerance,
+                            .level = options.level(),
+                            .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
+                            .progress = tell});
+  progress.finish();
   if (!planned) refuse(planned.error(), program.file);
   Plan result;
   result.motion_of = program.motion_of;
