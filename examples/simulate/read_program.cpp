@@ -182,7 +182,8 @@ class Builder {
   bool add(const BlockOf<M>& block) {
     const auto within = cncplan::plan::within_travel(block.path, machine_);
     if (!within) {
-      refuse_travel(block, within.error());
+      // A stop beyond the travel is told of with the motion that went there.
+      if (block.path.length() > 0.0 || problems_.found().empty()) refuse_travel(block, within.error());
       return false;
     }
     if (const auto limited = cncplan::plan::limited(block, machine_); !limited) {

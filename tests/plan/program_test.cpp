@@ -29,6 +29,38 @@ std::string error_of(const auto& planned) { return planned ? "no error" : to_tex
 
 }  // namespace
 
+TEST_CASE("a travel error is told once, where the motion goes beyond", "[program]") {
+  Machine<3> machine{.limits = mill.limits};
+  machine.axes[0].high = 100;
+  machine.axes[1].low = -50;
+  const auto told = [&](const std::string& text) { return problems(read_text(text, machine)); };
+  using Told = std::vector<std::string>;
+  const std::string first = "2:4: error: axis X: 120 is above the limit 100";
+  for (const char* rest :
+       {"M30", "M0", "G4 P1", "M3 S100\nM5", "M6", "X120", "Y3", "X110", "X5\nX0", "G2 Y2 R1\nM2"}) {
+    CAPTURE(rest);
+    CHECK(told("G1 F600\nG1 X120\n" + std::string(rest) + "\n") == Told{first});
+  }
+  // Farther out, the other axis, and once more out from inside.
+  CHECK(told("G1 F600\nG1 X120\nX130\nX125\nM30\n") ==
+        Told{first, "3:1: error: axis X: 130 is above the limit 100"});
+  CHECK(told("G1 F600\nG1 X120\nY-60\nM30\n") ==
+        Told{first, "3:1: error: axis Y: -60 is below the limit -50"});
+  CHECK(told("G1 F600\nG1 X120\nX0\nX120\nM30\n") ==
+        Told{first, "4:1: error: axis X: 120 is above the limit 100"});
+  // An arc that is beyond on its way alone.
+  CHECK(told("F600\nG1 X95\nG2 X95 Y-20 R10\nM30\n").size() == 1);
+  // Where it starts, with nothing that tells of it before.
+  PlanOptions options;
+  options.start = {120, 0, 0};
+  for (const char* text : {"M30\n", "", "G4 P1\nM30\n"}) {
+    CAPTURE(text);
+    CHECK(problems(read_text(text, machine, options)).size() == 1);
+  }
+  // Other errors on such a line are told.
+  CHECK(told("G1 F600\nG1 X120\nX5 Y\n").size() == 2);
+}
+
 TEST_CASE("all problems of a program are told, each at its place", "[program]") {
   Machine<4> machine{.limits = mill.limits};
   machine.axes[0].high = 100;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "cncplan/core/box.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/tool.hpp"
@@ -51,9 +52,11 @@ template <MachineModel M>
 }
 
 /// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over, at
-/// least `more`.
+/// least `more`; so are axes that stay in a room that is `known`.
 template <MachineModel M, Path P>
-[[nodiscard]] Expected<void> within_travel(const P& path, const M& machine, typename M::Scalar more = 0) {
+[[nodiscard]] Expected<void> within_travel(
+    const P& path, const M& machine, typename M::Scalar more = 0,
+    const std::optional<BasicBox<typename M::Scalar, M::axis_count>>& known = std::nullopt) {
   using S = typename M::Scalar;
   const auto box = path.box();
   for (int i = 0; i < M::axis_count; ++i) {
@@ -61,6 +64,7 @@ template <MachineModel M, Path P>
     const S reach = std::max(std::abs(box.low[i]), std::abs(box.high[i]));
     if (box.low[i] >= axis.low && box.high[i] <= axis.high && reach <= std::numeric_limits<S>::max())
       continue;
+    if (known && box.low[i] >= known->low[i] && box.high[i] <= known->high[i]) continue;
     const S rounding = std::max(more, S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1)));
     const auto refuse = [&](ErrorCode code, S value, S bound) {
       return tl::unexpected(
@@ -115,13 +119,32 @@ template <std::floating_point S>
   return refusal(std::isnan(wanted) ? ErrorCode::not_finite : ErrorCode::not_positive, "feed", wanted);
 }
 
-/// Nothing, or why a block cannot be driven whatever comes before and behind it.
+/// The travel, and as much more as it takes to stand at a place; nothing where the place is in the travel.
+template <MachineModel M>
+[[nodiscard]] std::optional<BasicBox<typename M::Scalar, M::axis_count>> travel_and(
+    const VectorN<typename M::Scalar, M::axis_count>& place, const M& machine) {
+  using S = typename M::Scalar;
+  auto room = travel(machine);
+  if (room.contains({place, place})) return std::nullopt;
+  const S rounding = S(64) * std::numeric_limits<S>::epsilon();
+  for (int i = 0; i < M::axis_count; ++i) {
+    const S more = rounding * std::max(std::abs(place[i]), S(1));
+    room.low[i] = std::min(room.low[i], place[i] - more);
+    room.high[i] = std::max(room.high[i], place[i] + more);
+  }
+  return room;
+}
+
+/// Nothing, or why a block cannot be driven whatever comes before and behind it. That axes are beyond their
+/// travel is passed over for those that stay in a room that is `known`.
 template <MachineModel M, BlockModel B>
-[[nodiscard]] Expected<void> drivable(const B& block, const M& machine) {
+[[nodiscard]] Expected<void> drivable(
+    const B& block, const M& machine,
+    const std::optional<BasicBox<typename M::Scalar, M::axis_count>>& known = std::nullopt) {
   using S = typename M::Scalar;
   const S length = block.path.length();
   auto ok = valid_numbers(length, block.pause);
-  if (ok) ok = within_travel(block.path, machine);
+  if (ok) ok = within_travel(block.path, machine, S(0), known);
   if (!ok || !(length > S(0))) return ok;
   ok = valid_feed(wanted_speed(block, machine, length_of(block.path, machine)));
   return ok ? limited(block, machine) : ok;

@@ -226,12 +226,22 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
   builder.start_at(start_position(options));
   constexpr std::size_t short_line = 24;  // bytes: few programs need more room than that
   blocks_.reserve(text.size() / short_line + 1);
+  // Where an error has told that an axis is beyond its travel: what goes no farther from there is left out
+  // without another one.
+  std::optional<BasicBox<typename M::Scalar, M::axis_count>> told;
   const auto keep = [&](Block&& block) -> Expected<std::size_t, ProgramError> {
-    if (valid)
-      if (const auto ok = plan::drivable(block, machine); !ok)
-        return tl::unexpected(ProgramError{{ok.error(), block.line, block.column, {}}, {}, blocks_.size()});
-    blocks_.push_back(std::move(block));
-    return blocks_.size();
+    if (!valid) {
+      blocks_.push_back(std::move(block));
+      return blocks_.size();
+    }
+    const auto ok = plan::drivable(block, machine, told);
+    if (ok && !told) {
+      blocks_.push_back(std::move(block));
+      return blocks_.size();
+    }
+    told = plan::travel_and<M>(block.path.position_at(block.path.length()), machine);
+    if (ok) return blocks_.size();
+    return tl::unexpected(ProgramError{{ok.error(), block.line, block.column, {}}, {}, blocks_.size()});
   };
   const auto make = [&](const gcode::Item& item) -> Expected<std::size_t, ProgramError> {
     auto block = builder.take(item);
