@@ -21,6 +21,16 @@ inline constexpr std::string_view coordinate_letters = [] {
     return std::string_view("XYZ");
 }();
 
+/// The same of a map at hand: of one that is chosen while the program runs (`kinematics::OneOf`) the letters
+/// of angles may differ from `coordinate_letters`.
+template <class M>
+[[nodiscard]] constexpr std::string_view letters_of(const M& map) {
+  if constexpr (requires { std::string_view(map.letters()); })
+    return map.letters();
+  else
+    return coordinate_letters<M>;
+}
+
 template <class M>
 inline constexpr int coordinate_count = static_cast<int>(coordinate_letters<M>.size());
 

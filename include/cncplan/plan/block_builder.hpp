@@ -70,7 +70,7 @@ template <MachineModel M>
   gcode::Dialect dialect;
   dialect.axes.clear();
   if constexpr (MappedModel<M>) {
-    for (const char letter : path::coordinate_letters<MapOf<M>>)
+    for (const char letter : path::letters_of(machine.map))
       dialect.axes.push_back({letter, path::coordinate_kind(letter)});
   } else {
     for (const auto& axis : machine.axes) dialect.axes.push_back({axis.letter, axis.kind});
@@ -102,8 +102,7 @@ class BlockBuilder {
     for (std::size_t i = 0; i < word_count_; ++i) kinds_[i] = dialect.axes[i].kind;
     for (std::size_t k = 0; k < 3; ++k) space_[k] = index_of("XYZ"[k]);
     if constexpr (MappedModel<M>)
-      for (std::size_t i = 0; i < coordinates; ++i)
-        words_[i] = index_of(path::coordinate_letters<MapOf<M>>[i]);
+      for (std::size_t i = 0; i < coordinates; ++i) words_[i] = index_of(path::letters_of(machine.map)[i]);
     else
       for (std::size_t i = 0; i < coordinates; ++i) words_[i] = index_of(machine.axes[i].letter);
   }

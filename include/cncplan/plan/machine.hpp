@@ -115,11 +115,11 @@ namespace detail {
 
 /// Default axes; those of a switchable map have the letters of its coordinates.
 template <class M>
-[[nodiscard]] constexpr auto default_axes_of() {
+[[nodiscard]] constexpr auto default_axes_of([[maybe_unused]] const M& map) {
   auto axes = default_axes<typename M::Scalar, static_cast<int>(M::axis_count)>();
   if constexpr (path::switchable<M>)
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      axes[i].letter = path::coordinate_letters<M>[i];
+      axes[i].letter = path::letters_of(map)[i];
       axes[i].kind = path::coordinate_kind(axes[i].letter);
     }
   return axes;
@@ -136,7 +136,7 @@ struct MappedMachine {
   static constexpr int axis_count = static_cast<int>(M::axis_count);
 
   M map{};
-  std::array<BasicAxis<Scalar>, static_cast<std::size_t>(axis_count)> axes = detail::default_axes_of<M>();
+  std::array<BasicAxis<Scalar>, static_cast<std::size_t>(axis_count)> axes = detail::default_axes_of(map);
   BasicLimits<Scalar> limits{};
   Scalar rapid_rate{};
   Scalar feed_limit{};

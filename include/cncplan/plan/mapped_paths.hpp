@@ -32,8 +32,11 @@ template <MappedModel M>
 [[nodiscard]] auto block_map(const M& machine, const std::optional<double>& tool_point) {
   auto map = machine.map;
   if constexpr (path::switchable<MapOf<M>>) {
+    const auto more = static_cast<typename M::Scalar>(tool_point.value_or(0.0));
     if constexpr (requires { map.tool_length; })
-      map.tool_length += static_cast<typename M::Scalar>(tool_point.value_or(0.0));
+      map.tool_length += more;
+    else if constexpr (requires { map.add_tool_length(more); })
+      map.add_tool_length(more);
     return path::BlockMap<MapOf<M>>{map, tool_point.has_value()};
   } else {
     return map;
