@@ -182,6 +182,47 @@ TEST_CASE("arms go on where their formulas jump, and end at the edge of their re
   CHECK(!planned("F600\nG1 X200 Y340\n", scara, {200, -340, 0}));
 }
 
+TEST_CASE("a wrist that counts against its arm goes on where the arm's formula jumps", "[turns]") {
+  MappedMachine<kinematics::ScaraWrist> scara{
+      .limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000}};
+  for (auto& axis : scara.axes)
+    axis.kind = AxisKind::rotary, axis.velocity = 2, axis.acceleration = 20, axis.jerk = 300;
+  scara.axes[2] = {.letter = 'Z', .velocity = 100};
+  const auto trajectory =
+      planned("F6000\nG3 X200 Y0 I-200 C90\nG1 X100 Y-200\nG1 X-200 Y-30 C0\nG1 Y30\nG0 Y-30\nG1 C720\n",
+              scara, {200, 0, 0});
+  INFO(refusal_of(trajectory));
+  REQUIRE(trajectory);
+  const auto tip = [&](const VectorN<double, 4>& q) -> Vector3 {
+    const auto p = scara.map.point(std::array{q[0], q[1], q[2], q[3]});
+    return {p[0], p[1], p[2]};
+  };
+  const Followed seen = follow(*trajectory, tip, 3);
+  CHECK(seen.jump < 1 + 1e-6);
+  CHECK(seen.tip < 1e-8);
+  const auto end = trajectory->at(trajectory->duration()).position;
+  CHECK(std::remainder(end[0] + end[1] + end[3], 2 * pi) == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("a rapid turns a wrist as C says, and not as the arm's formula jumps", "[turns]") {
+  MappedMachine<kinematics::ScaraWrist> scara{
+      .limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000}};
+  for (auto& axis : scara.axes)
+    axis.kind = AxisKind::rotary, axis.velocity = 2, axis.acceleration = 20, axis.jerk = 300;
+  scara.axes[2] = {.letter = 'Z', .velocity = 100};
+  for (const double c : {0.0, 30.0, 720.0, -360.0}) {
+    char text[60];
+    std::snprintf(text, sizeof text, "G0 Y-30 C%.0f\n", c);
+    INFO(text);
+    const auto trajectory = planned(text, scara, {-200, 30, 0, 0});
+    REQUIRE(trajectory);
+    const auto from = trajectory->at(0).position, to = trajectory->at(trajectory->duration()).position;
+    CHECK(to[0] - from[0] == Approx(2 * std::atan2(30, 200)));  // the shorter way
+    // The arm is as long as before: the tool turns by the shoulder's turn, and the wrist takes that back.
+    CHECK(to[3] - from[3] == Approx(c * degree - 2 * std::atan2(30, 200)));
+  }
+}
+
 TEST_CASE("random programs on arms and tables never jump", "[turns]") {
   test::Random random;
   MappedMachine<kinematics::WristArm> arm{.limits = {.velocity = 200, .acceleration = 2000, .jerk = 40000}};

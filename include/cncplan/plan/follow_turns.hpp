@@ -17,16 +17,23 @@
 
 namespace cncplan::plan {
 
-/// Joints, a bit for each, whose angle a map tells but for whole turns: rotary ones that no coordinate takes
-/// along for a turn of its own, as the table does that C of a program names.
+/// The rotary joints, a bit for each.
 template <MappedModel M>
-[[nodiscard]] std::uint32_t turning_joints(
-    const M& machine, const VectorN<typename M::Scalar, path::coordinate_count<MapOf<M>>>& at) {
-  using S = typename M::Scalar;
-  using Map = MapOf<M>;
+[[nodiscard]] std::uint32_t rotary_joints(const M& machine) {
   std::uint32_t result = 0;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     if (machine.axes[i].kind == AxisKind::rotary) result |= std::uint32_t{1} << i;
+  return result;
+}
+
+/// Those whose turns are free, as no coordinate takes them along for a turn of its own; a program names the
+/// turns of others, as those of a table by C.
+template <MappedModel M>
+[[nodiscard]] std::uint32_t free_joints(
+    const M& machine, const VectorN<typename M::Scalar, path::coordinate_count<MapOf<M>>>& at) {
+  using S = typename M::Scalar;
+  using Map = MapOf<M>;
+  std::uint32_t result = rotary_joints(machine);
   if (result == 0) return result;
   path::MapPoint<Map, S> point;
   for (std::size_t k = 0; k < point.size(); ++k) point[k] = at[static_cast<Eigen::Index>(k)];
@@ -43,19 +50,20 @@ template <MappedModel M>
 }
 
 /// Follows the joints of a path from its start to its end in steps over which each goes on as its velocity
-/// says, to 0.4 rad. `before`: where they stand, as the block before has left them; else the fewest turns
-/// from the map's own angles that keep the path within the travel are taken. Errors: discontinuous, with the
-/// axis, for a joint that jumps by less than a turn, or that leaves the straight way between its ends by
-/// half a turn.
+/// says, to 0.4 rad. `before`: where they stand, as the block before has left them; else the `free` ones
+/// begin with the fewest turns from the map's own angles that keep the path within the travel. Errors:
+/// discontinuous, with the axis, for a joint that jumps by less than a turn, or that leaves the straight way
+/// between its ends by half a turn.
 template <MappedModel M, class Mapped>
 [[nodiscard]] Expected<typename Mapped::WholeTurns> follow_turns(
-    const Mapped& path, const M& machine, std::uint32_t joints,
+    const Mapped& path, const M& machine, std::uint32_t free,
     const std::optional<typename Mapped::Vector>& before) {
   using S = typename M::Scalar;
   using Vector = typename Mapped::Vector;
   constexpr S turn = S(2) * std::numbers::pi_v<S>, near = S(0.4);
   constexpr int most_steps = 100'000;
   typename Mapped::WholeTurns turns;
+  const std::uint32_t joints = rotary_joints(machine);
   if (joints == 0) return turns;
   const auto each = [&](auto&& visit) {
     for (int i = 0; i < Vector::RowsAtCompileTime; ++i)
@@ -123,12 +131,13 @@ template <MappedModel M, class Mapped>
     each([&](int i) {
       const auto& axis = machine.axes[static_cast<std::size_t>(i)];
       const S more = kinematics::turns_into(low[i], high[i], axis.low, axis.high);
-      if (!std::isfinite(more) || more == S(0)) return;
+      if (((free >> static_cast<unsigned>(i)) & 1U) == 0 || !std::isfinite(more) || more == S(0)) return;
       at.position[i] += more;
       end[i] += more;
       wound |= std::uint32_t{1} << static_cast<unsigned>(i);
     });
-  turns = {at.position, end, joints};
+  if ((wound | free) == 0) return turns;
+  turns = {at.position, end, wound | free};
   std::uint32_t astray = 0;
   (void)follow([&](S s, const Vector& position) {
     const S share = length > S(0) ? s / length : S(0);

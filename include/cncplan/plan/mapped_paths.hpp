@@ -43,13 +43,6 @@ template <MappedModel M>
   }
 }
 
-/// Joints whose turns are free at a place, by `turning_joints`.
-template <MappedModel M, class Coordinates>
-[[nodiscard]] std::uint32_t free_turns(const M& machine, const Coordinates& place,
-                                       const std::optional<double>& tool_point) {
-  return path::switchable<MapOf<M>> && !tool_point ? 0 : turning_joints(machine, place);
-}
-
 /// An angle, and the fewest whole turns that bring it into the travel of an axis.
 template <std::floating_point S>
 [[nodiscard]] S into_travel(S angle, const BasicAxis<S>& axis) {
@@ -63,11 +56,9 @@ template <MappedModel M, Path P, class Start>
     const M& machine, const P& programmed, const std::optional<double>& tool_point, const Start& start) {
   using Mapped = path::Mapped<path::BlockMap<MapOf<M>>, P>;
   const Mapped path(block_map(machine, tool_point), programmed);
-  const std::uint32_t joints = free_turns(machine, programmed.start(), tool_point);
-  if (joints == 0) return path;
-  return follow_turns(path, machine, joints, start.axes).map([&](const auto& turns) {
-    return Mapped(path.map(), programmed, turns);
-  });
+  if (path::switchable<MapOf<M>> && !tool_point) return path;
+  return follow_turns(path, machine, free_joints(machine, programmed.start()), start.axes)
+      .map([&](const auto& turns) { return Mapped(path.map(), programmed, turns); });
 }
 
 /// No motion, where a motion begins.
@@ -76,27 +67,41 @@ template <MappedModel M, Path P, class Start>
   using Mapped = path::Mapped<path::BlockMap<MapOf<M>>, P>;
   const auto map = block_map(machine, start.tool_point);
   if (!start.axes) return Mapped(map, programmed);
-  return Mapped(map, programmed,
-                {*start.axes, *start.axes, free_turns(machine, start.place, start.tool_point)});
+  return Mapped(map, programmed, {*start.axes, *start.axes, rotary_joints(machine)});
 }
 
 /// A rapid, straight in the joints; those whose turns are free go the shorter way where their travel lets
-/// them.
+/// them. Other rotary ones turn by what the program's angles alone would turn them, and from there the
+/// shorter way: a wrist that counts against an arm does not unwind where the arm's formula jumps.
 template <MappedModel M, Path P, class Start>
 [[nodiscard]] auto mapped_rapid(const M& machine, const P& programmed,
                                 const std::optional<double>& tool_point, const Start& start) {
   using Map = path::BlockMap<MapOf<M>>;
   const path::Mapped<Map, P> ends(block_map(machine, tool_point), programmed);
-  const std::uint32_t joints = free_turns(machine, programmed.start(), tool_point);
   auto from = ends.position_at(0), to = ends.position_at(programmed.length());
   typename path::StraightInJoints<Map>::Turning turning{};
+  const bool direct = path::switchable<MapOf<M>> && !tool_point;
+  const std::uint32_t joints = direct ? 0 : rotary_joints(machine);
+  const std::uint32_t free = direct ? 0 : free_joints(machine, programmed.start());
+  path::MapPoint<Map, typename M::Scalar> point;
+  for (std::size_t k = 0; k < point.size(); ++k) {
+    const bool angle = path::coordinate_kind(path::coordinate_letters<Map>[k]) == AxisKind::rotary;
+    point[k] = (angle ? programmed.end() : programmed.start())[static_cast<Eigen::Index>(k)];
+  }
+  const auto turned = ends.map().joints(point);
   for (std::size_t k = 0; k < turning.size(); ++k) {
     turning[k] = ((joints >> k) & 1U) != 0;
     if (!turning[k]) continue;
     const auto i = static_cast<Eigen::Index>(k);
-    from[i] =
-        start.axes ? kinematics::near_turn(from[i], (*start.axes)[i]) : into_travel(from[i], machine.axes[k]);
-    to[i] = into_travel(kinematics::near_turn(to[i], from[i]), machine.axes[k]);
+    const bool any = ((free >> k) & 1U) != 0;
+    auto named = turned[k] - from[i];
+    if (any || !std::isfinite(named)) named = 0;
+    if (start.axes)
+      from[i] = kinematics::near_turn(from[i], (*start.axes)[i]);
+    else if (any)
+      from[i] = into_travel(from[i], machine.axes[k]);
+    to[i] = kinematics::near_turn(to[i], from[i] + named);
+    if (any) to[i] = into_travel(to[i], machine.axes[k]);
   }
   return path::StraightInJoints<Map>(ends.map(), programmed.start(), programmed.end(), from, to, turning);
 }
