@@ -61,6 +61,30 @@ TEST_CASE("a travel error is told once, where the motion goes beyond", "[program
   CHECK(told("G1 F600\nG1 X120\nX5 Y\n").size() == 2);
 }
 
+TEST_CASE("places of rotary axes are told in degrees", "[program]") {
+  Machine<4> machine{.limits = mill.limits};
+  constexpr double degree = std::numbers::pi / 180;
+  machine.axes[3] = {
+      .letter = 'A', .kind = AxisKind::rotary, .velocity = 1, .low = -5.5 * degree, .high = 110 * degree};
+  const auto told = problems(read_text("G1 A200 F600\nA-7.3\nX9\n", machine));
+  REQUIRE(told.size() == 2);
+  CHECK(told[0] == "1:4: error: axis A: 200 degrees is above the limit 110");
+  CHECK(told[1] == "2:1: error: axis A: -7.3 degrees is below the limit -5.5");
+  // The numbers themselves are rad.
+  const auto program = read_text("G1 A200 F600\n", machine);
+  CHECK(program.problems()[0].error().value == Approx(200 * degree));
+  CHECK(program.problems()[0].error().bound == Approx(110 * degree));
+  // With a place and without.
+  CHECK(to_text(Error{ErrorCode::above_limit, "axis C", 90 * degree, -90 * degree, ErrorUnit::radians}) ==
+        "axis C: 90 degrees is above the limit -90");
+  CHECK(
+      to_text(gcode::Diagnostic{{ErrorCode::above_limit, "axis C", 1, 0.5, ErrorUnit::radians}, 1, 1, {}}) ==
+      "axis C is above the limit 28.64788976");
+  machine.axes[3].kind = AxisKind::linear;
+  CHECK(problems(read_text("G1 A200 F600\n", machine))[0] ==
+        "1:4: error: axis A: 200 is above the limit " + number_text(110 * degree));
+}
+
 TEST_CASE("all problems of a program are told, each at its place", "[program]") {
   Machine<4> machine{.limits = mill.limits};
   machine.axes[0].high = 100;

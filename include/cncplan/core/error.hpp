@@ -129,6 +129,9 @@ enum class ErrorCode : std::uint8_t {
   return row < table.size() ? table[row] : "is at fault for an unknown reason";
 }
 
+/// What the numbers of an error count. Sentences show rad in degrees, as programs write them.
+enum class ErrorUnit : std::uint8_t { as_is, radians };
+
 /// What went wrong, where and by how much. `field` names a parameter, word or axis and lives for ever (a
 /// literal).
 struct Error {
@@ -136,6 +139,7 @@ struct Error {
   std::string_view field;
   double value{};  ///< the offending value
   double bound{};  ///< the bound that it breaks; what is reachable, where that is the question
+  ErrorUnit unit = ErrorUnit::as_is;  ///< of `value` and `bound`: radians where they are a rotary axis'
 
   friend bool operator==(const Error&, const Error&) = default;
 };

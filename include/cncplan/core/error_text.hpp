@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -20,15 +21,24 @@ namespace cncplan {
   return std::string(digits.data(), end);
 }
 
+/// A number to so many digits.
+[[nodiscard]] inline std::string rounded_text(double number, int digits) {
+  std::array<char, 32> text;
+  char* const end =
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, digits).ptr;
+  return std::string(text.data(), end);
+}
+
+/// A number of an error, to ten digits in degrees where it counts rad: these have been rad and degrees
+/// before.
+[[nodiscard]] inline std::string value_text(double number, ErrorUnit unit) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  return unit == ErrorUnit::radians ? rounded_text(number / degree, 10) : number_text(number);
+}
+
 /// What the sentences about radii leave open: how large they are and may be, to six digits; else "".
 [[nodiscard]] inline std::string amount_text(const Error& error) {
-  const auto rounded = [](double number) {
-    std::array<char, 32> digits;
-    char* const end =
-        std::to_chars(digits.data(), digits.data() + digits.size(), number, std::chars_format::general, 6)
-            .ptr;
-    return std::string(digits.data(), end);
-  };
+  const auto rounded = [](double number) { return rounded_text(number, 6); };
   if (error.code == ErrorCode::radius_mismatch)
     return " by " + rounded(error.value) + ", at most " + rounded(error.bound) + " is allowed";
   if (error.code == ErrorCode::chord_exceeds_diameter)
@@ -36,8 +46,8 @@ namespace cncplan {
   return "";
 }
 
-/// "end speed: 30 cannot be reached within the length (12.5)": field, value, what is wrong, and the bound
-/// where there is one. A file that cannot be read has no value.
+/// "end speed: 30 cannot be reached within the length (12.5)", "axis A: 200 degrees is above the limit 110":
+/// field, value, what is wrong, and the bound where there is one. A file that cannot be read has no value.
 [[nodiscard]] inline std::string to_text(const Error& error) {
   const std::string_view sentence = message(error.code);
   const bool has_verb = sentence.starts_with("is ") || sentence.starts_with("must ") ||
@@ -45,12 +55,13 @@ namespace cncplan {
                         sentence.starts_with("cannot ");
   std::string text(error.field);
   if (!text.empty()) text += ": ";
-  if (has_verb && error.code != ErrorCode::unreadable) text += number_text(error.value) + ' ';
+  if (has_verb && error.code != ErrorCode::unreadable)
+    text += value_text(error.value, error.unit) + (error.unit == ErrorUnit::radians ? " degrees " : " ");
   text += sentence;
   switch (error.code) {
     case ErrorCode::above_limit:
     case ErrorCode::below_limit:
-      return text + ' ' + number_text(error.bound);
+      return text + ' ' + value_text(error.bound, error.unit);
     case ErrorCode::end_speed_unreachable:
       return text + " (" + number_text(error.bound) + ')';
     default:

@@ -35,7 +35,7 @@ CNCPLAN_INLINE std::string to_text(const Diagnostic& diagnostic) {
   text += has_verb ? " " : ": ";
   text += sentence;
   if (error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit)
-    text += ' ' + number_text(error.bound);
+    text += ' ' + value_text(error.bound, error.unit);
   text += amount_text(error);
   if (error.code == ErrorCode::missing_number && error.value != 0.0)
     text += ": " + detail::character_text(error.value) + " follows";

@@ -67,8 +67,7 @@ template <MachineModel M, Path P>
     if (known && box.low[i] >= known->low[i] && box.high[i] <= known->high[i]) continue;
     const S rounding = std::max(more, S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1)));
     const auto refuse = [&](ErrorCode code, S value, S bound) {
-      return tl::unexpected(
-          Error{code, axis_name(axis.letter), static_cast<double>(value), static_cast<double>(bound)});
+      return tl::unexpected(axis_error(axis, code, value, bound));
     };
     if (!std::isfinite(box.low[i]) || !std::isfinite(box.high[i]))
       return refuse(ErrorCode::unreachable, box.low[i], axis.low);
@@ -161,9 +160,8 @@ template <MachineModel M>
   for (int i = 0; i < M::axis_count; ++i) {
     const S rounding = std::max(S(1e-6), S(64) * std::numeric_limits<S>::epsilon() * std::abs(start[i]));
     if (std::abs(start[i] - (*end)[i]) > rounding)
-      return tl::unexpected(Error{ErrorCode::discontinuous,
-                                  axis_name(machine.axes[static_cast<std::size_t>(i)].letter),
-                                  static_cast<double>(start[i]), static_cast<double>((*end)[i])});
+      return tl::unexpected(axis_error(machine.axes[static_cast<std::size_t>(i)], ErrorCode::discontinuous,
+                                       start[i], (*end)[i]));
   }
   return {};
 }

@@ -70,9 +70,8 @@ template <MappedModel M, class Mapped>
       if (((joints >> static_cast<unsigned>(i)) & 1U) != 0) visit(i);
   };
   const auto refuse = [&](int i, S value, S bound) {
-    return tl::unexpected(Error{ErrorCode::discontinuous,
-                                axis_name(machine.axes[static_cast<std::size_t>(i)].letter),
-                                static_cast<double>(value), static_cast<double>(bound)});
+    return tl::unexpected(
+        axis_error(machine.axes[static_cast<std::size_t>(i)], ErrorCode::discontinuous, value, bound));
   };
   const S length = path.length();
   auto at = path.point_at(S(0));

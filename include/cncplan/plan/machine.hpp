@@ -94,6 +94,13 @@ template <std::floating_point S, int N>
   return names.substr(static_cast<std::size_t>(letter - 'A') * 6, 6);
 }
 
+/// An error of an axis, which is its field; of a rotary one the numbers are rad.
+template <std::floating_point S>
+[[nodiscard]] constexpr Error axis_error(const BasicAxis<S>& axis, ErrorCode code, S value, S bound) {
+  return {code, axis_name(axis.letter), static_cast<double>(value), static_cast<double>(bound),
+          axis.kind == AxisKind::rotary ? ErrorUnit::radians : ErrorUnit::as_is};
+}
+
 /// A machine whose axes are the program's coordinates.
 template <std::floating_point S, int N>
 struct BasicMachine {
