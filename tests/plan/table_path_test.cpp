@@ -131,3 +131,28 @@ TEST_CASE("a table that turns from 0 to 360 degrees begins and goes on within th
   CHECK(plan::first_table_angle(0.0, -1.0, -turn, 0.0) == Approx(-pi / 2));
   CHECK(plan::first_table_angle(0.0, 1.0, -turn, 0.0) == Approx(pi / 2 - turn));
 }
+
+TEST_CASE("a table whose axis is elsewhere turns as one at the origin under a path moved there",
+          "[table_path]") {
+  test::Random random;
+  for (int i = 0; i < 30; ++i) {
+    const Vector3 center(random.uniform(-200, 200), random.uniform(-200, 200), 0);
+    const Vector3 from(random.uniform(-50, 50), random.uniform(-50, 50), 1);
+    const Vector3 to(random.uniform(-50, 50), random.uniform(-50, 50), 2);
+    const auto parts_of = [&](const Vector3& moved, const Map& map) {
+      double table = 7;
+      std::vector<Part> parts;
+      const path::Segment<3> line = path::Line<3>(from + moved, to + moved);
+      (void)plan::follow_table(line, map, 0.5, table, [&](const Part& part) { parts.push_back(part); });
+      return parts;
+    };
+    const auto here = parts_of(Vector3::Zero(), Map{});
+    const auto there = parts_of(center, Map{.center = {center.x(), center.y()}});
+    REQUIRE(here.size() == there.size());
+    for (std::size_t k = 0; k < here.size(); ++k)
+      for (const double share : {0.0, 0.3, 1.0})
+        CHECK(
+            (here[k].position_at(share * here[k].length()) - there[k].position_at(share * there[k].length()))
+                .norm() < 1e-9);
+  }
+}

@@ -58,25 +58,27 @@ struct BasicPolar {
 
 using Polar = BasicPolar<double>;
 
-/// Joints R, Z, C of programmed points X, Y, Z, with C smooth round an azimuth. Singular on the table's axis.
+/// Joints R, Z, C of programmed points X, Y, Z, with C smooth round an azimuth: R and C are those of the way
+/// from the table's axis at `center`. Singular there.
 template <std::floating_point S>
 struct BasicPolarMap {
   using Scalar = S;
   static constexpr int axis_count = 3;
 
-  BasicAzimuth<S> azimuth;
+  BasicAzimuth<S> azimuth{};
+  std::array<S, 2> center{};  ///< mm, X and Y
 
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
     using std::hypot;
-    const auto& [x, y, z] = point;
-    return {hypot(x, y), z, azimuth.of(x, y)};
+    const T x = point[0] - T(center[0]), y = point[1] - T(center[1]);
+    return {hypot(x, y), point[2], azimuth.of(x, y)};
   }
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 3> point(const std::array<T, 3>& q) const {
     using std::cos, std::sin;
     const auto& [r, z, c] = q;
-    return {r * cos(c), r * sin(c), z};
+    return {r * cos(c) + T(center[0]), r * sin(c) + T(center[1]), z};
   }
 };
 

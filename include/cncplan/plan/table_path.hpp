@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 
@@ -18,11 +19,12 @@ using TablePath = path::Mapped<M, path::Part<P>>;
 
 /// The least distance from the table's axis between two lengths, by golden-section search in eight parts.
 template <Path P>
-[[nodiscard]] typename P::Scalar least_radius(const P& path, typename P::Scalar from, typename P::Scalar to) {
+[[nodiscard]] typename P::Scalar least_radius(const P& path, typename P::Scalar from, typename P::Scalar to,
+                                              const std::array<typename P::Scalar, 2>& center = {}) {
   using S = typename P::Scalar;
   const auto radius = [&](S s) {
     const auto point = path.position_at(s);
-    return std::hypot(point.x(), point.y());
+    return std::hypot(point.x() - center[0], point.y() - center[1]);
   };
   constexpr int parts = 8, rounds = 40;
   constexpr S golden = S(0.6180339887498949);
@@ -58,18 +60,19 @@ template <path::Map M, Path P, std::invocable<const TablePath<M, P>&> Add>
                                           typename P::Scalar& table, Add&& add) {
   using S = typename P::Scalar;
   const S length = programmed.length();
-  const S least = least_radius(programmed, S(0), length);
+  const auto [x, y] = map.center;
+  const S least = least_radius(programmed, S(0), length, map.center);
   if (!(least >= smallest_radius))
     return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(least),
                                 static_cast<double>(smallest_radius)});
   for (S from = S(0); from < length;) {
     const auto start = programmed.position_at(from);
-    const S radius = std::hypot(start.x(), start.y());
+    const S radius = std::hypot(start.x() - x, start.y() - y);
     const S left = length - from, stride = radius / S(2);
     const S to = left <= stride ? length : from + (left < S(2) * stride ? left / S(2) : stride);
     const auto middle = programmed.position_at(from + (to - from) / S(2)), end = programmed.position_at(to);
-    map.azimuth = kinematics::BasicAzimuth<S>(middle.x(), middle.y(), table);
-    table = map.azimuth.of(end.x(), end.y());
+    map.azimuth = kinematics::BasicAzimuth<S>(middle.x() - x, middle.y() - y, table);
+    table = map.azimuth.of(end.x() - x, end.y() - y);
     add(TablePath<M, P>(map, path::Part<P>(programmed, from, to)));
     from = to;
   }
