@@ -24,14 +24,18 @@
 
 namespace cncplan::kinematics {
 
-/// X Y Z to three joints.
+/// X Y Z to three joints. Like `BasicFiveAxes` a type of its own, for its short name.
 template <std::floating_point S>
-using BasicThreeJoints = OneOf<BasicCoreXY<S>, BasicPolarMap<S>, BasicScara<S>, BasicLinearDelta<S>,
-                               BasicRotaryDelta<S>, BasicFiveBar<S>>;
+struct BasicThreeJoints : OneOf<BasicCoreXY<S>, BasicPolarMap<S>, BasicScara<S>, BasicLinearDelta<S>,
+                                BasicRotaryDelta<S>, BasicFiveBar<S>> {
+  using BasicThreeJoints::OneOf::OneOf;
+};
 /// X Y Z and two angles to five axes with tool-point control.
 template <std::floating_point S>
-using BasicFiveAxes = OneOf<BasicTableTableAC<S>, BasicTableTableBC<S>, BasicHeadTable<S>, BasicHeadHeadAC<S>,
-                            BasicHeadHeadBC<S>, BasicNutatingHead<S>>;
+struct BasicFiveAxes : OneOf<BasicTableTableAC<S>, BasicTableTableBC<S>, BasicHeadTable<S>,
+                             BasicHeadHeadAC<S>, BasicHeadHeadBC<S>, BasicNutatingHead<S>> {
+  using BasicFiveAxes::OneOf::OneOf;
+};
 
 using ThreeJoints = BasicThreeJoints<double>;
 using FiveAxes = BasicFiveAxes<double>;
