@@ -168,6 +168,7 @@
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/level_limits.hpp"
 #include "cncplan/plan/limits_along.hpp"
+#include "cncplan/plan/live/feed_shares.hpp"
 #include "cncplan/plan/live/level_driver.hpp"
 #include "cncplan/plan/live/live_driver.hpp"
 #include "cncplan/plan/live/part_planner.hpp"

@@ -272,16 +272,57 @@ TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]")
   CHECK((executor->tick(period).position - Vector3(10, 30, 0)).norm() < 1e-9);
 }
 
-TEST_CASE("executor levels: a share of the feed slows all, and one above 1 acts as 1", "[executor-levels]") {
+TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks that come above it",
+          "[executor-levels]") {
+  std::string text = "F600\n";  // 10 mm/s
+  for (int i = 1; i <= 600; ++i)
+    text += "G1 X" + std::to_string(0.5 * i) + " Y" + std::to_string(0.2 * std::sin(0.1 * i)) + "\n";
+  text += "G0 X310\n";
+  const MillBlocks blocks = blocks_of(text);
+  const auto executor = runner();
+  std::size_t fed = 0;
+  std::vector<Vector3> places;
+  const auto drive = [&](double seconds, auto&& look) {
+    for (int i = 0; i * period < seconds && !executor->finished(); ++i) {
+      feed(*executor, blocks, fed);
+      const auto point = executor->tick(period);
+      places.push_back(point.position);
+      look(point.velocity.norm());
+    }
+  };
+  double most = 0, last = 0;
+  const auto watch = [&](double speed) { most = std::max(most, last = speed); };
+  drive(2, watch);
+  CHECK(most == Approx(10).epsilon(1e-3));
+  executor->feed_override(1.5);
+  drive(12, watch);
+  CHECK(most == Approx(15).epsilon(1e-3));
+  CHECK(last == Approx(15).epsilon(1e-3));
+  executor->feed_override(0.8);
+  drive(0.3, [](double) {});
+  most = 0;
+  drive(12, watch);  // through blocks that are planned at 1.5 times the feed, and others
+  CHECK(most <= 8 * (1 + 1e-6));
+  CHECK(last == Approx(8).epsilon(1e-3));
+  executor->feed_override(7);  // as 2
+  most = 0;
+  drive(600, watch);
+  CHECK(executor->finished());
+  CHECK(most > 20 * (1 - 1e-3));
+  Vector3 jerk = Vector3::Zero();
+  for (std::size_t i = 3; i < places.size(); ++i)
+    jerk = jerk.cwiseMax((places[i] - 3 * places[i - 1] + 3 * places[i - 2] - places[i - 3]).cwiseAbs());
+  CHECK(jerk.maxCoeff() <= 1e4 * period * period * period * (1 + 1e-4));
+}
+
+TEST_CASE("executor levels: half of the feed takes twice the time", "[executor-levels]") {
   const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
   const auto time_at = [&](double share) {
     const auto executor = runner();
     executor->feed_override(share);
     return run_to_end(*executor, blocks);
   };
-  const double full = time_at(1);
-  CHECK(time_at(0.5) == Approx(2 * full).margin(3 * period));
-  CHECK(time_at(2) == full);
+  CHECK(time_at(0.5) == Approx(2 * time_at(1)).margin(3 * period));
 }
 
 TEST_CASE("executor levels: a block that is refused ends the motion where it begins", "[executor-levels]") {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory_resource>
 #include <optional>
 #include <span>
@@ -128,6 +129,13 @@ class TrajectoryChain {
     point.block += part.trajectory->first_block();
     point.along.position += part.start_length;
     return point;
+  }
+  /// The number of the block that is driven at a time, of those of all trajectories.
+  [[nodiscard]] std::int64_t number_at(S time) const {
+    const Part& part = part_at(time);
+    const std::size_t phase = part.trajectory->phase_at(time - part.start);
+    return static_cast<std::int64_t>(part.trajectory->first_block() +
+                                     part.trajectory->block_of(part.trajectory->phases()[phase].piece));
   }
   /// The block that is driven at a time.
   [[nodiscard]] const B& block_at(S time) const {

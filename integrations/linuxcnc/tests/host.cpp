@@ -228,8 +228,14 @@ void Host::step() {
   functions.resume(&tp);
 }
 
+void Host::plan() const {
+  if (options.with_thread) return;
+  while (plan_parts()) {
+  }
+}
+
 // control.c: process_inputs, get_pos_cmds and update_status.
-void Host::cycle() {
+void Host::servo_period() {
   double scale = 1.0;
   const auto enables = status.enables_queued;
   if ((enables & FS_ENABLED) != 0)
@@ -247,9 +253,6 @@ void Host::cycle() {
   if ((enables & FH_ENABLED) != 0 && feed_hold) scale = 0.0;
   status.net_feed_scale = scale;
 
-  if (!options.with_thread)
-    while (plan_parts()) {
-    }
   functions.run_cycle(&tp, 1'000'000);
   ++periods();
 

@@ -84,8 +84,13 @@ class Host {
   void step();
   void abort() { functions.abort(&tp); }
 
-  /// A servo period of 1 ms.
-  void cycle();
+  /// What the planning thread has to do, and a servo period of 1 ms.
+  void cycle() {
+    plan();
+    servo_period();
+  }
+  void plan() const;
+  void servo_period();
   /// Until all is done, at most so many periods; whether it is.
   bool run(int most_cycles = 1'000'000);
 

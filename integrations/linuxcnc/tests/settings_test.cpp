@@ -51,11 +51,18 @@ TEST_CASE("the module refuses what it cannot use, with the name of it") {
   HostOptions tolerance;
   tolerance.tolerance = "0";
   check_refused(tolerance, "tolerance: '0'");
+  HostOptions level;
+  level.level = "best";
+  check_refused(level, "level: 'best' is neither fast nor good");
+  level.level = "good";
+  level.coordinates = "XYZU";
+  check_refused(level, "level: good is for X Y Z A B C");
 }
 
 TEST_CASE("an axis' MAX_JERK goes before the parameter, the tool's MAX_LINEAR_JERK holds for all") {
   // 15 mm/s from rest and back: 2 sqrt(v / J) each where the acceleration limit is not reached
   const auto expected = [](double jerk) {
+    if (tested_level() == "good") jerk *= 0.95;  // the rest is for holds
     const double ramp = 2.0 * std::sqrt(15.0 / jerk);
     return 20.0 / 15.0 + ramp;
   };

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "cncplan/core/fixed_list.hpp"
+#include "cncplan/plan/live/feed_shares.hpp"
 #include "cncplan/plan/live/level_driver.hpp"
 #include "cncplan/plan/live/part_planner.hpp"
 #include "cncplan/plan/reserve.hpp"
@@ -53,7 +54,13 @@ class LiveDriver final : public LevelDriver<M, B> {
     memory->deallocate(this, sizeof(LiveDriver), alignof(LiveDriver));
   }
 
-  bool push(const B& block) override { return planner_.push(block); }
+  bool push(const B& block) override {
+    const S share = shares_.next(planner_.pushed());
+    if (block.rapid || !(share > S(1))) return planner_.push(block);
+    B faster = block;
+    faster.feed *= share;
+    return planner_.push(faster);
+  }
   void end_of_program() override {
     planner_.end_of_program();
     if (!background_) planner_.plan();
@@ -68,8 +75,11 @@ class LiveDriver final : public LevelDriver<M, B> {
     held_ = true;
     if (!clock_.rests()) clock_.brake_with(std::max(share, S(1)));
   }
-  void feed_override(S share) override { feed_share_ = cut(share); }
-  void rapid_override(S share) override { rapid_share_ = cut(share); }
+  void feed_override(S share) override {
+    feed_share_ = cut(share, Shares::most_share);
+    shares_.ask(feed_share_);
+  }
+  void rapid_override(S share) override { rapid_share_ = cut(share, S(1)); }
   void backwards(bool wanted) override { backwards_ = wanted; }
   void single_step(bool wanted) override { single_step_ = wanted; }
   void optional_stop(bool wanted) override { optional_stop_ = wanted; }
@@ -120,6 +130,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   void look(S period) override {
     take_parts();
+    planner_.left(seen_, way_end() - clock_.state().position);
     let_go_where_none_come(period);
     if (background_) return;
     planner_.plan();
@@ -164,6 +175,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
     passed_ = -infinity;
+    shares_.clear();
   }
 
  private:
@@ -171,6 +183,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   using Motion = typename Clock::Motion;
   using Planner = PartPlanner<M, B>;
   using Clocked = typename Planner::Clocked;
+  using Shares = BasicFeedShares<S>;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
   static constexpr std::int64_t parts_behind = 3;
@@ -200,7 +213,7 @@ class LiveDriver final : public LevelDriver<M, B> {
         background_(options.background) {}
   ~LiveDriver() = default;
 
-  [[nodiscard]] static S cut(S share) { return share > S(0) ? std::min(share, S(1)) : S(0); }
+  [[nodiscard]] static S cut(S share, S most) { return share > S(0) ? std::min(share, most) : S(0); }
 
   [[nodiscard]] Seen& seen(std::int64_t number) {
     return known_[static_cast<std::size_t>(number % Planner::most_parts)];
@@ -242,6 +255,8 @@ class LiveDriver final : public LevelDriver<M, B> {
     cut_ = now.tail_start;
     clock_.look_ahead();
   }
+  // s, where what is planned ends, a tail that is not driven left out.
+  [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : end_of_chain(); }
   [[nodiscard]] S end_of_chain() const { return clock_.chain().empty() ? S(0) : clock_.chain().end_time(); }
   void add(Seen& now, const Clocked& motion) {
     if (motion.trajectory.phases().empty()) return;
@@ -267,16 +282,24 @@ class LiveDriver final : public LevelDriver<M, B> {
     quiet_ = pushed == pushed_before_ ? quiet_ + period : S(0);
     pushed_before_ = pushed;
     if (planner_.all_planned() || quiet_ < longest_wait_) return;
-    const S end = tail_ahead_ ? cut_ : end_of_chain();
-    if (end - clock_.state().position < time_to_plan) planner_.let_go();
+    if (way_end() - clock_.state().position < time_to_plan) planner_.let_go();
   }
 
-  [[nodiscard]] S wanted() const {
+  // The rate: what is asked for, by what is planned.
+  [[nodiscard]] S wanted() {
     if (held_ || stopped_) return S(0);
-    const S share = !clock_.chain().empty() && clock_.chain().block_at(clock_.state().position).rapid
-                        ? rapid_share_
-                        : feed_share_;
+    S share = feed_share_;
+    if (!clock_.chain().empty()) {
+      const S now = clock_.state().position;
+      if (clock_.chain().block_at(now).rapid)
+        share = rapid_share_;
+      else
+        share = std::min(share / shares_.share_of(clock_.chain().number_at(now), oldest_block()), S(1));
+    }
     return backwards_ ? -share : share;
+  }
+  [[nodiscard]] std::int64_t oldest_block() const {
+    return static_cast<std::int64_t>(planner_.part(oldest_).motion->trajectory.first_block());
   }
 
   // Rests, or one part of the tick; whether more may happen in it.
@@ -412,6 +435,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool program_stop_ = true;
   int pause_line_ = 0;
   S feed_share_ = S(1), rapid_share_ = S(1);
+  Shares shares_;
   S passed_ = -infinity;  // when the block begins before which it last paused
   // Parts: the oldest that is kept, and behind the last one that was taken into the chain.
   std::int64_t oldest_ = 0, seen_ = 0;

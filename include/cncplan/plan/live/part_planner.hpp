@@ -78,6 +78,7 @@ class PartPlanner {
   };
 
   static constexpr std::int64_t most_parts = 8;
+  static constexpr S time_ahead = S(1);  // s of motion behind which no more is planned yet
 
   PartPlanner(const M& machine, const PlanOptions& options, std::size_t most_blocks,
               std::pmr::memory_resource* memory)
@@ -140,6 +141,11 @@ class PartPlanner {
   [[nodiscard]] const Part& part(std::int64_t number) const {
     return parts_[static_cast<std::size_t>(number % most_parts)];
   }
+  /// So many parts have been taken, and so many seconds of motion are left of them.
+  void left(std::int64_t taken, S seconds) {
+    left_.store(seconds, std::memory_order_relaxed);
+    taken_.store(taken, std::memory_order_release);
+  }
   /// Parts before this one are not asked for again.
   void release(std::int64_t number) { released_.store(number, std::memory_order_release); }
 
@@ -172,7 +178,8 @@ class PartPlanner {
     stream_.emplace(machine_, options_, most_blocks_, memory_);
     stream_->keep_cuts();
     made_ = 0;
-    released_ = 0;
+    released_ = taken_ = 0;
+    left_ = S(0);
     pushed_ = 0;
     last_block_.reset();
     open_ = false;
@@ -192,7 +199,12 @@ class PartPlanner {
     failed_.store(true, std::memory_order_release);
   }
 
-  [[nodiscard]] bool room() const { return made_ - released_.load(std::memory_order_acquire) < most_parts; }
+  // Whether the next part may be made: what is planned late follows what is asked for soon.
+  [[nodiscard]] bool room() const {
+    return made_ - released_.load(std::memory_order_acquire) < most_parts &&
+           made_ == taken_.load(std::memory_order_acquire) &&
+           left_.load(std::memory_order_relaxed) < time_ahead;
+  }
 
   // If the last part's tail is driven, plans go on from its end.
   void settle() {
@@ -274,7 +286,8 @@ class PartPlanner {
   Vector start_ = Vector::Zero();
   gcode::Diagnostic fault_{};
   std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
-  std::atomic<std::int64_t> released_{0}, pushed_{0};
+  std::atomic<std::int64_t> released_{0}, taken_{0}, pushed_{0};
+  std::atomic<S> left_{};
   std::atomic<bool> begun_{false}, ended_{false}, failed_{false}, let_go_{false}, all_planned_{true};
 };
 
