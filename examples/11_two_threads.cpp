@@ -1,7 +1,7 @@
 // A thread that makes blocks and a thread that ticks every millisecond, one executor between them; then how
 // late the ticks woke up and how long they took. With --starve no blocks come for a while: the machine slows
 // to rest within its limits, and goes on when they come again.
-//   12_two_threads [--starve]
+//   11_two_threads [--starve]
 #include <algorithm>
 #include <array>
 #include <bit>

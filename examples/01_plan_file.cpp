@@ -1,4 +1,4 @@
-// Cycle time and set points of a G-code file: 21_plan_file PROGRAM
+// Cycle time and set points of a G-code file: 01_plan_file PROGRAM
 #include <cncplan/cncplan.hpp>
 #include <cstdio>
 
