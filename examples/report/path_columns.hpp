@@ -64,7 +64,7 @@ class PathColumns {
   /// How far off the page finds a place of the path, in mm or degrees, at most.
   [[nodiscard]] double error() const { return error_; }
   /// Whether it is all there, and within 1e-7 mm or degrees.
-  [[nodiscard]] bool complete() const { return complete_ && error_ <= 1e-7; }
+  [[nodiscard]] bool complete() const { return complete_ && error_ <= farthest; }
 
   void put(std::vector<Column>& columns) const {
     columns.push_back({"pieces", pack(differences(counts_))});
@@ -83,7 +83,8 @@ class PathColumns {
 
  private:
   using Whole = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1, 0, 3 + cncplan::gcode::max_axes, 1>;
-  static constexpr int own_start = 8;  // is added to the degree
+  static constexpr int own_start = 8;       // is added to the degree
+  static constexpr double farthest = 1e-7;  // mm or degrees, of a path that is taken
   static constexpr std::size_t places = 5;
   using Truth = std::array<ChannelPoint, places>;  // evenly along a piece, both ends among them
 
@@ -112,9 +113,15 @@ class PathColumns {
     for (const int degree : {1, 3, 5})
       for (const bool own : {false, true})
         if (const auto piece = make(degree, own, static_cast<std::int64_t>(length), truth);
-            piece && (is_near(*piece, truth) || (depth == deepest && degree == 5 && own)))
+            piece && is_near(*piece, truth))
           return add_piece(*piece, truth);
-    if (depth == deepest) return fail();
+    if (depth == deepest) {  // the third derivative of a higher degree would be rounding where this is short
+      for (const int degree : {3, 5})
+        if (const auto piece = make(degree, true, static_cast<std::int64_t>(length), truth);
+            piece && (degree == 5 || off(*piece, truth) <= farthest))
+          return add_piece(*piece, truth);
+      return fail();
+    }
     add_pieces(from, middle, at, depth + 1);
     add_pieces(middle, to, at, depth + 1);
   }
@@ -159,27 +166,37 @@ class PathColumns {
   [[nodiscard]] static double distance(const Channels& a, const Channels& b) {
     return (a - b).cwiseAbs().maxCoeff();
   }
-  // mm or degrees; share of a direction; share of a second derivative; the second derivative of a line
-  static constexpr double near = 1e-8, direction = 1e-7, bend = 1e-5, straight = 1e-9;
+  // mm or degrees; share of a direction; share of a second derivative; the second derivative of a line; of
+  // the largest third derivative
+  static constexpr double near = 1e-8, direction = 1e-7, bend = 1e-5, straight = 1e-9, overshoot = 1.002;
 
   [[nodiscard]] static bool is_near(const Piece& piece, const Truth& truth) {
     const double h = static_cast<double>(piece.length) / PathGrid::length;
+    double most_third = 0.0;  // it may jump inside the piece; no curve may overshoot there
+    for (const ChannelPoint& point : truth) most_third = std::max(most_third, point.third.norm());
     for (std::size_t k = 0; k < places; ++k) {
       const ChannelPoint found = piece.path.at(share(h, k));
       if (!(distance(found.position, truth[k].position) <= near &&
             distance(found.first, truth[k].first) <= direction + straight / h &&
-            (found.second - truth[k].second).norm() <= bend * truth[k].second.norm() + straight))
+            (found.second - truth[k].second).norm() <= bend * truth[k].second.norm() + straight &&
+            found.third.norm() <= overshoot * most_third + straight / h))
         return false;
     }
     return true;
   }
 
+  // How far off the page finds its places, at most.
+  [[nodiscard]] static double off(const Piece& piece, const Truth& truth) {
+    const double h = static_cast<double>(piece.length) / PathGrid::length;
+    double most = 0.0;
+    for (std::size_t k = 0; k < places; ++k)
+      most = std::max(most, distance(piece.path.at(share(h, k)).position, truth[k].position));
+    return most;
+  }
+
   void add_piece(const Piece& piece, const Truth& truth) {
     const double h = static_cast<double>(piece.length) / PathGrid::length;
-    for (std::size_t k = 0; k < places; ++k) {
-      const Channels found = piece.path.at(share(h, k)).position;
-      error_ = std::max(error_, distance(found, truth[k].position));
-    }
+    error_ = std::max(error_, off(piece, truth));
     add_start(piece.degree, piece.own, truth.front());
     lengths_.push_back(piece.length);
     const auto append = [](auto& columns, const Whole& numbers, std::size_t first = 0, std::size_t step = 1) {

@@ -74,6 +74,16 @@ std::string of_limit(double peak, double limit) {
   return std::isfinite(limit) ? fmt::format("{:.4g} of {:.4g}", peak, limit) : fmt::format("{:.4g}", peak);
 }
 
+// Rapids have a limit of their own, which their motions tell: none where the axes alone limit them.
+double velocity_limit(const ProgramText& program, const Options& options, const Measures& m) {
+  const double limit = options.limits.velocity;
+  double rapid = 0.0;
+  for (const Origin& motion : program.motions)
+    if (motion.kind == cncplan::junction::Kind::rapid) rapid = std::max(rapid, motion.feed);
+  if (!(m.tool_peak.velocity > limit * (1.0 + 1e-9)) || !(rapid > limit)) return limit;
+  return rapid;
+}
+
 }  // namespace
 
 std::string json_summary(const ProgramText& program, const Options& options, const support::Machine& machine,
@@ -165,10 +175,10 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
     row("slowed by --vmax", fmt::format("{} feed moves, of up to {} mm/min", overview.capped,
                                         per_minute(overview.highest_capped)));
   if (!program.tools.empty()) row("tools", fmt::format("{}", fmt::join(program.tools, ", ")));
-  row("tool's peaks",
-      fmt::format("{} mm/s, {} mm/s^2, {} mm/s^3", of_limit(m.tool_peak.velocity, options.limits.velocity),
-                  of_limit(m.tool_peak.acceleration, options.limits.acceleration),
-                  of_limit(m.tool_peak.jerk, options.limits.jerk)));
+  row("tool's peaks", fmt::format("{} mm/s, {} mm/s^2, {} mm/s^3",
+                                  of_limit(m.tool_peak.velocity, velocity_limit(program, options, m)),
+                                  of_limit(m.tool_peak.acceleration, options.limits.acceleration),
+                                  of_limit(m.tool_peak.jerk, options.limits.jerk)));
   if (options.tolerance > 0.0) {
     const auto [least, most] = program.tolerances(options.tolerance);
     row("off the path", fmt::format("{:.4g} mm, tolerance {}", m.deviation,

@@ -90,6 +90,15 @@ class Run:
                     check(abs(value - row[name]) <= NEAR * max(1.0, abs(row[name])),
                           f"t={row['t']!r}: {name} is {row[name]!r}, and {value!r} on the page")
 
+    def check_limits(self):
+        """The tool's jerk on the page is at no instant above the largest of the plan."""
+        most = self.summary["tool_peak"]["jerk"]
+        found = self.value("""(() => { const m = cncplan.motions[0], room = m.room(); let most = 0;
+            for (let i = 0; i < m.count; ++i) for (const part of [0.01, 0.3, 0.5, 0.7, 0.99])
+              most = Math.max(most, norm(m.inPhase(i, m.phase.time[i] + part * m.durationOf(i), room).jerk));
+            return most; })()""")
+        check(found <= 1.005 * most, f"the jerk is {found} on the page, and {most} at most")
+
     def check_samples(self):
         for row in self.some_samples():
             self.value(f"cncplan.setTime({row['t']!r})")
@@ -124,7 +133,50 @@ def example(name):
         check_charts(run)
         check_decoding(run)
         run.check_whole()
+        run.check_limits()
         run.check_opened()
+
+
+def first_screen():
+    """At 1400 x 900 px path, charts and program are seen without scrolling, in light and dark; nothing reads as a broken limit."""
+    path, machine = os.path.join(EXAMPLES, "programs", "pocket.ngc"), os.path.join(EXAMPLES, "machines", "mill3.toml")
+    with Run(path, "--machine", machine, "--compare", "0") as run:  # rapids are faster than the limit of what cuts
+        run.browser.look(1400, 900, "light")
+        right, bottom = run.value("[document.documentElement.clientWidth, innerHeight]")
+        boxes = run.value("""[...document.querySelectorAll('#figures, nav, #view, #legend, #program, #charts .chart')].map(e => {
+            const b = e.getBoundingClientRect(); return [e.id || e.className || e.tagName, b.left, b.top, b.right, b.bottom, b.height]; })""")
+        check(len(boxes) == 11, f"the first screen has {len(boxes)} parts")  # six of them charts
+        for name, *box in boxes:
+            check(box[0] >= 0 and box[1] >= 0 and box[2] <= right + 1 and box[3] <= bottom + 1, f"{name} is at {box}, on {right} x {bottom}")
+            if name == "chart":
+                check(box[4] > 90, f"a chart is {box[4]} px high")
+        check(run.value("document.documentElement.scrollWidth") <= right, "the page is wider than the screen")
+        shown = run.value("document.getElementById('figures').textContent")
+        check(f"{run.summary['time_s']:.3f} s" in shown, f"the figures say {shown}")
+        check(run.value("document.querySelectorAll('.over').length") == 0, "a limit reads as broken")
+        check(run.value("""cncplan.charts.charts.every(c => c.series.every((one, k) => one.limit === undefined ||
+            c.graph.file_.every(row => Math.abs(row[k + 1] ?? 0) <= 1.001 * one.limit)))"""), "a chart leaves its limits")
+        run.check_limits()
+        brightness = "(c => c.match(/\\d+/g).slice(0, 3).reduce((a, b) => a + Number(b), 0))(getComputedStyle(document.body).%s)"
+        check(run.value(brightness % "backgroundColor") > 700 and run.value(brightness % "color") < 200, "light is not light")
+        check(run.value(GROUND)[0] > 700, "the view is dark where the page is light")
+        run.browser.look(1400, 900, "dark")
+        check(run.value(brightness % "backgroundColor") < 120 and run.value(brightness % "color") > 600, "dark is not dark")
+        for k in range(run.value("document.getElementById('color').length")):
+            run.value(f"cncplan.setMode({k})")
+            ground, seen, pixels = run.value(GROUND)
+            check(ground < 120, "the view is light where the page is dark")
+            check(200 < seen < 0.2 * pixels, f"with colour {k} the path is {seen} of {pixels} pixels in the dark")
+        run.check_opened()
+
+
+# The corner of the view, r + g + b; how many pixels differ from it clearly, of how many.
+GROUND = """new Promise(done => requestAnimationFrame(() => { cncplan.view.draw(); const gl = cncplan.view.canvas.renderer.getContext();
+    const w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, p = new Uint8Array(4 * w * h);
+    gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
+    const ground = p[0] + p[1] + p[2]; let seen = 0;
+    for (let i = 0; i < p.length; i += 4) seen += Math.abs(p[i] + p[i + 1] + p[i + 2] - ground) > 120;
+    done([ground, seen, w * h]); }))"""
 
 
 def check_clicks(run):
@@ -302,19 +354,20 @@ def paper():
     with Run(path) as run:
         run.value("""addEventListener('beforeprint', () => { window.printed = [document.body.offsetWidth,
             ...[...document.querySelectorAll('.plot canvas, #view canvas')].map(c => c.getBoundingClientRect().right)]; })""")
+        before = run.value("document.querySelector('#charts .plot canvas').getBoundingClientRect().width")
         pages = run.browser.paper()
         check(pages.startswith(b"%PDF") and len(pages) > 15000, f"there is nothing on paper: {len(pages)} bytes")
         width, *rights = run.value("window.printed")
         check(len(rights) > 5 and max(rights) <= width + 30, f"pictures reach to {max(rights)} px on paper {width} px wide")
         wide = run.value("document.querySelector('#charts .plot canvas').getBoundingClientRect().width")
-        check(wide > width, "the page on the screen stays as narrow as paper")
+        check(abs(wide - before) < 2, f"the charts on the screen were {before} px wide, and stay {wide} wide after paper")
         run.check_opened()
 
 
 def long_program():
     """A million lines: kept as instants, which the page says; those between them are near."""
     lines = b"".join(b"G1 X%.3f Y%.3f F1200\n" % (i % 1000 * 0.1, i // 1000 * 0.1) for i in range(1000000))
-    with Run(lines, "--vmax", "50", "--tolerance", "0", "--period", "0.5") as run:
+    with Run(lines, "--vmax", "50", "--smooth", "fast", "--period", "0.5") as run:
         run.check_opened()
         told = run.value("document.getElementById('notes').textContent")
         check("1000000 lines" in told and "kept whole" in told, f"the page says {told}")
@@ -452,7 +505,7 @@ def mold():
 
 CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_figure7"),
          "short lines": lambda: example("short_lines"), "nothing": nothing, "one motion": one_motion,
-         "levels": levels, "ball": ball, "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
+         "levels": levels, "ball": ball, "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "first screen": first_screen, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
 
 for case in sys.argv[4:]:
     name, _, browser = case.partition(" in ")

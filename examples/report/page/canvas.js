@@ -9,7 +9,6 @@ class Canvas {
     if (!context) throw new Error('the browser has no WebGL 2');
     this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.renderer.setPixelRatio(devicePixelRatio);
-    this.renderer.setClearColor(0xffffff);
     this.renderer.autoClear = false;
     this.target = new THREE.WebGLMultisampleRenderTarget(1, 1, {depthBuffer: true, stencilBuffer: false});
     const picture = new THREE.MeshBasicMaterial({map: this.target.texture, depthTest: false, depthWrite: false});
@@ -25,6 +24,7 @@ class Canvas {
     this.target.setSize(size.x, size.y);
   }
   draw(scene, camera) {
+    this.renderer.setClearColor(theme.ground);
     const {renderer} = this, {x, y} = renderer.getSize(new THREE.Vector2()), shifts = [[0, 0.5], [-0.43, -0.25], [0.43, -0.25]];
     for (const [k, shift] of (this.wide ? shifts : [[0, 0]]).entries()) {
       renderer.setRenderTarget(null);  // binds the target anew, which each picture leaves otherwise
@@ -58,7 +58,7 @@ class Marker {
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.width, this.height);
     context.lineWidth = 2;
-    context.strokeStyle = '#000';
+    context.strokeStyle = theme.ink;
     context.beginPath();
     for (let k = 0; k < this.lines.length; k += 6) {
       context.moveTo(...place(this.lines, k));
@@ -77,7 +77,7 @@ class Marker {
   // Where X, Y and Z point.
   drawAxes(context, orbit) {
     const e = orbit.camera.matrixWorldInverse.elements, x = this.width - 50, y = this.height - 78, size = 30;
-    context.strokeStyle = context.fillStyle = '#444';
+    context.strokeStyle = context.fillStyle = theme.faint;
     context.lineWidth = 1.5;
     context.font = '13px sans-serif';
     context.textAlign = 'center';

@@ -1,6 +1,7 @@
 // What happens over time or over the path's length: charts that share that axis and the cursor.
 
 const seriesColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#666666', '#000000', '#8c6d1f'];
+const darkSeriesColors = ['#56b4e9', '#ff8c42', '#2fc79a', '#e6a0c8', '#e69f00', '#3d8bd0', '#a0a4a8', '#ffffff', '#c9a54c'];
 
 // A chart is a title and series, each with a name, a value of a state, and a limit if there is one.
 function chartsOf(motion) {
@@ -11,7 +12,7 @@ function chartsOf(motion) {
   const unit = motion.axes.some(axis => axis.unit === 'deg') ? 'mm or degrees' : 'mm';
   return [
     {title: 'speed along the path, mm/s', series: [
-      {name: 'speed', value: s => s.v, limit: limit(motion.limits[0])},
+      {name: 'speed', value: s => s.v, limit: limit(motion.velocityLimit)},
       ...(motion.wanted ? [{name: 'programmed', value: (s, m) => m.wanted(s)}] : [])]},
     {title: `velocity, ${unit}/s`, series: perAxis(k => s => s.velocity[k], 0)},
     {title: `acceleration, ${unit}/s²`, series: [...perAxis(k => s => s.acceleration[k], 1), along(s => s.a, 1)]},
@@ -91,6 +92,7 @@ class Charts {
     this.axis = chartAxes.time;
     this.state = null;
     this.waits = false;  // to be seen before it is filled
+    new ResizeObserver(() => { this.fit(); if (this.state) this.put(this.state); }).observe(element);
     new IntersectionObserver(([entry]) => {
       this.seen = entry.isIntersecting;
       if (this.seen) this.fillIfWaiting();
@@ -108,7 +110,10 @@ class Charts {
     const end = Math.max(this.axis.end(motion), other ? this.axis.end(other) : 0);
     this.window = this.all = [0, end > 0 ? end : 1];
     this.state ??= motion.at(0);
+    this.filling = true;
     this.charts = chartsOf(motion).map(chart => this.add(chart));
+    this.fit();  // they share the room
+    this.filling = false;
     this.waits = motion.count > 100000 && !this.seen;
     if (!this.waits) this.fill();
   }
@@ -122,14 +127,14 @@ class Charts {
     cursor.className = 'cursor';
     box.append(heading, plot);
     this.element.append(box);
-    const colors = chart.series.map((_, k) => seriesColors[k % seriesColors.length]);
+    const palette = theme.dark ? darkSeriesColors : seriesColors, colors = chart.series.map((_, k) => palette[k % palette.length]);
     const names = chart.series.map(one => one.name), others = this.other ? names.map(name => `${name}, ${this.other.name}`) : [];
     const zeros = [...names, ...others].map(() => 0);
     const graph = new Dygraph(plot, [[0, ...zeros], [1, ...zeros]], {
       labels: ['x', ...names, ...others], colors: [...colors, ...(this.other ? colors : [])], strokeWidth: 1.5, legend: 'never',
       animatedZooms: false, connectSeparatedPoints: true,
       series: Object.fromEntries(others.map(name => [name, {strokePattern: [2, 3], strokeWidth: 1.2}])),
-      axisLabelFontSize: 13, highlightCircleSize: 0, axes: {y: {axisLabelWidth: 70, pixelsPerLabel: 22}},
+      axisLabelFontSize: 12, gridLineColor: theme.grid, axisLineColor: theme.faint, highlightCircleSize: 0, axes: {y: {axisLabelWidth: 70, pixelsPerLabel: 22}},
       underlayCallback: (context, area, g) => this.underlay(context, area, g, chart, colors),
       zoomCallback: (from, to) => this.zoom(from, to),
       drawCallback: g => this.follow(g),
@@ -163,7 +168,7 @@ class Charts {
       }
     });
     context.setLineDash([]);
-    context.strokeStyle = context.fillStyle = '#444';
+    context.strokeStyle = context.fillStyle = theme.faint;
     context.font = '12px sans-serif';
     for (const mark of this.marks) {
       const x = graph.toDomXCoord(this.axis.of(this.motion.at(mark.time)));
@@ -187,7 +192,7 @@ class Charts {
   }
   // A chart that was moved takes the others along.
   follow(graph) {
-    if (this.filling || !this.charts) return;
+    if (this.filling || this.waits || !this.charts) return;
     const [from, to] = graph.xAxisRange();
     if (from === this.window[0] && to === this.window[1]) return;
     clearTimeout(this.timer);
@@ -232,6 +237,7 @@ class Charts {
 
   // Puts the cursor where a state is.
   put(state) {
+    if (!this.charts) return;
     this.state = {...state, velocity: [...state.velocity], acceleration: [...state.acceleration], jerk: [...state.jerk]};
     for (const chart of this.charts) {
       const x = chart.graph.toDomXCoord(this.axis.of(state)), area = chart.graph.getArea();
@@ -241,9 +247,12 @@ class Charts {
     }
   }
   // Fits the pictures to the room that they have.
+  fit() {
+    for (const chart of this.charts ?? []) chart.graph.resize();
+  }
   resize() {
     this.fillIfWaiting();
-    for (const chart of this.charts) chart.graph.resize();
+    this.fit();
   }
   tell(chart, state) {
     chart.heading.replaceChildren(chart.title, ...chart.series.map((one, k) => {

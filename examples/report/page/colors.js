@@ -1,23 +1,41 @@
 // Colours of the path: a scale from dark to light that the colour-blind read as well (viridis), and distinct
-// colours for kinds (Okabe and Ito).
+// colours for kinds (Okabe and Ito). What does not show on the ground, white or nearly black, is left out or replaced.
+
+const theme = {
+  dark: false,
+  get ground() { return this.dark ? 0x17191c : 0xffffff; },
+  get ink() { return this.dark ? '#fff' : '#000'; },
+  get faint() { return this.dark ? '#a0a4a8' : '#444'; },
+  get grid() { return this.dark ? '#33373c' : '#ddd'; },
+};
 
 const scaleStops = [[68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137],
                     [53, 183, 121], [109, 205, 89], [180, 222, 44], [253, 231, 37]];
 const distinct = [[153, 153, 153], [0, 114, 178], [86, 180, 233], [0, 158, 115], [230, 159, 0], [213, 94, 0],
                   [204, 121, 167], [60, 60, 60], [240, 228, 66]];
 
-// r, g, b from 0 to 1; x from 0 to 1. The light end is left out: it does not show on white.
+const darkDistinct = {0: [130, 130, 130], 1: [60, 150, 220], 7: [235, 235, 235]};
+
+// r, g, b from 0 to 1; x from 0 to 1.
 function scaleColor(x) {
-  const at = Math.min(Math.max(x, 0), 1) * (scaleStops.length - 3.4);
+  const share = Math.min(Math.max(x, 0), 1), last = scaleStops.length - 1;
+  const at = theme.dark ? 2.4 + share * (last - 2.4 - 1e-9) : share * (last - 2.4);
   const i = Math.floor(at), part = at - i;
   return scaleStops[i].map((c, k) => (c + part * (scaleStops[i + 1][k] - c)) / 255);
 }
-function distinctColor(index) { return distinct[index % distinct.length].map(c => c / 255); }
+function distinctColor(index) {
+  const k = index % distinct.length;
+  return ((theme.dark && darkDistinct[k]) || distinct[k]).map(c => c / 255);
+}
 function cssColor(rgb) { return `rgb(${rgb.map(c => Math.round(255 * c)).join(',')})`; }
 // For many places colours are taken from tables, r, g and b in bytes.
 const scaleSteps = 1000, inBytes = colors => new Uint8Array(colors.flat().map(c => Math.round(255 * c)));
-const scaleTable = inBytes(Array.from({length: scaleSteps + 1}, (_, i) => scaleColor(i / scaleSteps)));
-const distinctTable = inBytes(distinct.map((_, i) => distinctColor(i)));
+let scaleTable, distinctTable;
+function setTheme(dark) {
+  theme.dark = dark;
+  scaleTable = inBytes(Array.from({length: scaleSteps + 1}, (_, i) => scaleColor(i / scaleSteps)));
+  distinctTable = inBytes(distinct.map((_, i) => distinctColor(i)));
+}
 
 const kindNames = ['rapid', 'line', 'arc'];
 

@@ -39,6 +39,7 @@ class Live {
     this.find = id => document.getElementById(`live-${id}`);
     element.hidden = this.find('section').hidden = false;
     this.motion = new LiveMotion(plan.axes, plan.limits, plan.channels);
+    this.motion.velocityLimit = plan.velocityLimit;
     this.charts = new Charts(this.find('charts'), []);
     this.charts.show(this.motion);
     for (const button of element.querySelectorAll('[data-ask]'))

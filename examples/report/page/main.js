@@ -1,6 +1,8 @@
 // Puts the page together. Every change of the cursor goes through `setTime`.
 
 const cncplan = (() => {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  setTheme(dark.matches);
   const byId = id => document.getElementById(id);
   const report = JSON.parse(byId('data').textContent);
   const lines = report.text.split('\n').slice(0, report.keptLines);
@@ -48,12 +50,23 @@ const cncplan = (() => {
     charts.show(motion, other);
     program.show(sums.byLine);
     showSummary(report, motion);
+    showFigures(report, motion, motions, sums);
+    showPeaks(report, motions[0]);
     showLimited(report, motion, sums);
     showCostliest(lines, sums, motion, goToLine);
     showHistogram(sums);
     setMode(modes.indexOf(mode));
     setTime(Math.min(time, motion.duration));
   }
+  function putTheme(isDark) {
+    if (theme.dark === isDark) return;
+    setTheme(isDark);
+    charts.show(charts.motion, charts.other);
+    showLimited(report, motion, sweep(motion, lines.length, report.limitedByNames.length));
+    setMode(modes.indexOf(mode));
+    setTime(time);
+  }
+  dark.addEventListener('change', () => putTheme(dark.matches));
   // The motion before or behind that of the cursor.
   function stepMotion(by) {
     const line = motion.lineOf(motion.at(time, room));
@@ -90,9 +103,15 @@ const cncplan = (() => {
     select.dispatchEvent(new Event('change'));
   }
 
-  // On paper, pictures are as wide as the page.
+  // On paper, pictures are as wide as the page, on white, and nothing is folded.
+  const folded = [...document.querySelectorAll('details:not(#licences)')];
   function fitPaper(printing) {
-    document.body.classList.toggle('paper', printing);
+    document.documentElement.classList.toggle('paper', printing);
+    for (const part of folded) {
+      if (printing) part.dataset.open = part.open;
+      part.open = printing || part.dataset.open === 'true';
+    }
+    putTheme(dark.matches && !printing);
     charts.resize();
     view?.resize();
     view?.draw();
@@ -130,13 +149,14 @@ const cncplan = (() => {
   });
 
   for (const text of report.warnings) note('warnings', text);
+  byId('warnings').hidden = report.warnings.length === 0;
+  byId('warnings').firstElementChild.textContent = report.warnings.length === 1 ? '1 warning' : `${report.warnings.length} warnings`;
   if (report.keptLines < report.lines)
     note('notes', `The program has ${report.lines} lines; the text is that of the first ${report.keptLines}.`);
   if (motion instanceof SampledMotion)
     note('notes', `The motion is too long to be kept whole: it is kept at instants ${shortNumber(motion.period)} s apart. ` +
          `Between them positions are up to ${shortNumber(motion.gap)} mm (or degrees) off, and values change evenly.`);
   if (motion.count === 0 || !(motion.duration > 0)) note('notes', 'Nothing moves.');
-  showPeaks(report);
   showPlans(motions);
   const live = report.live ? new Live(byId('live'), report, motions[0], (t, tool) => {
     setTime(t);

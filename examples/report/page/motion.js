@@ -136,7 +136,7 @@ class Motion {
     for (let k = 0; k < 3; ++k) out[k] = vectors[3 * i + k] + part * (vectors[3 * i + 3 + k] - vectors[3 * i + k]);
     return out;
   }
-  deviation(state) { return norm(this.deviationAt(state.time, this.gap ??= [0, 0, 0])); }
+  deviation(state) { return norm(this.deviationAt(state.time, this.vector ??= [0, 0, 0])); }
   get deviates() { return this.deviations.vectors.length > 0; }
 
   // Speed that the program asks for; NaN where it asks for none.
@@ -158,9 +158,30 @@ class Motion {
     return undefined;
   }
 
+  // The highest speeds along the path of what cuts and of rapids. These have a limit of their own, `rate`: Infinity where the
+  // axes alone limit them.
+  get speeds() {
+    if (this.foundSpeeds) return this.foundSpeeds;
+    const found = {cutting: 0, rapid: 0, rate: 0}, {phase} = this;
+    for (let i = 0; i < this.count; ++i) {
+      const v = phase.v[i], a = phase.a[i], j = phase.j[i], seconds = this.durationOf(i), rapid = this.block.kind[phase.block[i]] === 0;
+      const top = this.turning(i) === undefined ? v : v - a * a / (2 * j), name = rapid ? 'rapid' : 'cutting';
+      found[name] = Math.max(found[name], v, top, v + seconds * (a + seconds * j / 2));
+      if (rapid) found.rate = Math.max(found.rate, this.rateOf(phase.block[i]));
+    }
+    return this.foundSpeeds = found;
+  }
+  rateOf(block) {
+    const speed = this.block.wanted[block];
+    return isFinite(speed) && speed !== null ? speed : Infinity;
+  }
+  // What the tool's velocity may be at most, rapids included.
+  get velocityLimit() { return this.speeds.rapid > this.limits[0] ? this.speeds.rate : this.limits[0]; }
+
   // The largest share that anything takes of its limit.
   share(state) {
-    let most = Math.max(norm(state.velocity) / this.limits[0] || 0, norm(state.acceleration) / this.limits[1] || 0,
+    const velocity = this.kindOf(state) === 0 ? this.rateOf(state.block) : this.limits[0];
+    let most = Math.max(norm(state.velocity) / velocity || 0, norm(state.acceleration) / this.limits[1] || 0,
                         norm(state.jerk) / this.limits[2] || 0);
     for (const axis of this.axes) {
       const k = axis.channel;

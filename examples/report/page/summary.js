@@ -54,16 +54,50 @@ function showLimited(report, motion, sums) {
   fillTable(document.getElementById('limited'), rows);
 }
 
-function showPeaks(report) {
-  const table = document.getElementById('peaks'), over = 1.00005;
-  const row = (name, unit, peaks, limits) => [`${name}, ${unit}`, ...peaks.map((peak, order) => {
-    const limit = limits[order];
-    const text = limit ? `${shortNumber(peak)} of ${shortNumber(limit)} (${(100 * peak / limit).toFixed(2)} %)` : shortNumber(peak);
-    return element('span', {textContent: text, className: limit && peak > over * limit ? 'over' : ''});
-  })];
-  fillTable(table, [row('tool', 'mm', report.toolPeak, report.limits),
-                    ...report.axes.map(axis => row(axis.name, axis.unit, axis.peak, axis.limits))],
-            ['', 'velocity', 'acceleration', 'jerk']);
+// Beyond a limit by more than rounding.
+const beyond = share => share > 1.00005;
+
+// The largest values of the tool and of each axis: name, unit, and for velocity, acceleration and jerk one or more
+// {value, limit, of}. Rapids have a limit of their own.
+function peakRows(report, motion) {
+  const {cutting, rapid, rate} = motion.speeds, of = (peaks, limits) => peaks.map((value, k) => [{value, limit: limits[k] ?? Infinity, of: ''}]);
+  const tool = of(report.toolPeak, report.limits);
+  if (rapid > (report.limits[0] ?? Infinity))
+    tool[0] = [{value: cutting, limit: report.limits[0], of: ' cutting'}, {value: Math.max(rapid, report.toolPeak[0]), limit: rate, of: ' rapid'}];
+  return [{name: 'tool', unit: 'mm', peaks: tool},
+          ...report.axes.map(axis => ({name: axis.name, unit: axis.unit, peaks: of(axis.peak, axis.limits)}))];
+}
+function showPeaks(report, motion) {
+  const cell = one => {
+    const text = isFinite(one.limit) ? `${shortNumber(one.value)} of ${shortNumber(one.limit)} (${(100 * one.value / one.limit).toFixed(2)} %)` : shortNumber(one.value);
+    return element('div', {textContent: text + one.of, className: beyond(one.value / one.limit) ? 'over' : ''});
+  };
+  fillTable(document.getElementById('peaks'), peakRows(report, motion).map(({name, unit, peaks}) => [`${name}, ${unit}`, ...peaks.map(
+    list => { const all = element('span'); all.append(...list.map(cell)); return all; })]), ['', 'velocity', 'acceleration', 'jerk']);
+}
+
+// What one asks first, large.
+function showFigures(report, motion, motions, sums) {
+  const figures = [], add = (value, name, bad) => figures.push([value, name, bad]);
+  const other = motions.find(one => one !== motion);
+  add(timeText(motion.duration), other ? `${motion.name}; ${other.name}: ${timeText(other.duration)}` : 'time');
+  add(`${shortNumber(Number(motion.length.toPrecision(4)))} mm`, 'path');
+  if (motion.duration > 0) add(`${shortNumber(Number((motion.length / motion.duration).toPrecision(3)))} mm/s`, 'mean speed');
+  if (motion.deviates)
+    add(`${shortNumber(Number(motion.largestDeviation.toPrecision(3)))} mm`, `off the path${motion.tolerance ? `, of ${shortNumber(motion.tolerance)} allowed` : ''}`);
+  let most = {share: 0};
+  for (const [k, what] of [[2, 'jerk'], [1, 'acceleration'], [0, 'velocity']])
+    for (const {name, peaks} of peakRows(report, motion))
+      for (const {value, limit} of peaks[k])
+        if (value / limit > most.share * 1.0001) most = {share: value / limit, text: `${name === 'tool' ? "the tool's" : `${name}'s`} ${what}`};
+  if (most.text && motion === motions[0]) add(`${(100 * most.share).toFixed(1)} %`, `of a limit at most: ${most.text}`, beyond(most.share));
+  const first = sums.byLimit.indexOf(Math.max(...sums.byLimit));
+  if (motion.duration > 0) add(`${(100 * sums.byLimit[first] / motion.duration).toFixed(0)} %`, `of the time limited by: ${report.limitedByNames[first]}`);
+  document.getElementById('figures').replaceChildren(...figures.map(([value, name, bad]) => {
+    const figure = element('div');
+    figure.append(element('b', {textContent: value, className: bad ? 'over' : ''}), element('span', {textContent: name}));
+    return figure;
+  }));
 }
 
 // Plans of one program beside each other, if there are several.
@@ -100,32 +134,35 @@ function showHistogram(sums) {
   const bars = [...sums.bySpeed].map((seconds, k) => {
     const h = (height - bottom - 12) * seconds / most;
     const range = `${shortNumber(sums.top * k / n)} to ${shortNumber(sums.top * (k + 1) / n)} mm/s: ${timeText(seconds)}`;
-    return `<rect x="${left + k * step}" y="${height - bottom - h}" width="${step * 0.9}" height="${h}" fill="#0072b2"><title>${range}</title></rect>`;
+    return `<rect x="${left + k * step}" y="${height - bottom - h}" width="${step * 0.9}" height="${h}"><title>${range}</title></rect>`;
   });
   document.getElementById('histogram').innerHTML =
     `<svg width="${width}" height="${height}" role="img" aria-label="time at each speed" font-size="13">${bars.join('')}
-     <line x1="${left}" x2="${width}" y1="${height - bottom}" y2="${height - bottom}" stroke="#666"/>
+     <line x1="${left}" x2="${width}" y1="${height - bottom}" y2="${height - bottom}" stroke="currentColor"/>
      <text x="${left}" y="${height - 7}">0</text><text x="${width}" y="${height - 7}" text-anchor="end">${shortNumber(sums.top)} mm/s</text>
      <text x="0" y="12">${shortNumber(most)} s</text></svg>`;
 }
 
 function showLegend(mode, top) {
-  const legend = document.getElementById('legend');
+  const legend = document.getElementById('legend'), title = element('div', {textContent: mode.unit ? `${mode.name}, ${mode.unit}` : mode.name});
   if (mode.names) {
-    legend.replaceChildren(`${mode.name}: `, ...mode.names.map((name, k) => {
-      const entry = element('span'), swatch = element('span', {className: 'swatch'});
+    legend.replaceChildren(title, ...mode.names.map((name, k) => {
+      const entry = element('div'), swatch = element('span', {className: 'swatch'});
       swatch.style.background = cssColor(distinctColor(mode.colors?.[k] ?? k));
       entry.append(swatch, name);
       return entry;
     }));
     return;
   }
-  const canvas = element('canvas', {width: 256, height: 1}), context = canvas.getContext('2d');
-  for (let x = 0; x < 256; ++x) {
-    context.fillStyle = cssColor(scaleColor(x / 255));
-    context.fillRect(x, 0, 1, 1);
+  const canvas = element('canvas', {width: 1, height: 256}), context = canvas.getContext('2d');
+  for (let y = 0; y < 256; ++y) {
+    context.fillStyle = cssColor(scaleColor(1 - y / 255));
+    context.fillRect(0, y, 1, 1);
   }
-  legend.replaceChildren(`${mode.name}: 0`, canvas, `${shortNumber(top)} ${mode.unit}`);
+  const scale = element('div', {className: 'scale'}), ends = element('div', {className: 'ends'});
+  ends.append(...[1, 0.75, 0.5, 0.25, 0].map(part => element('span', {textContent: shortNumber(Number((part * top).toPrecision(3)))})));
+  scale.append(canvas, ends);
+  legend.replaceChildren(title, scale);
 }
 
 // Values at the cursor. Each has its full number in data-value.

@@ -6,7 +6,7 @@ class View {
     this.canvas = new Canvas(element);
     this.marker = new Marker(element);
     this.scene = new THREE.Scene();
-    this.scene.fog = new THREE.Fog(0xffffff);
+    this.scene.fog = new THREE.Fog(theme.ground);
     this.orbit = new Orbit(element, () => this.turn());
     this.magnified = 1;
     this.orbit.clicked = event => this.pick(event);
@@ -169,6 +169,7 @@ class View {
   // What is far away is paler, which shows the shape; by half at most.
   fade() {
     const {camera, target, diameter} = this.orbit, middle = camera.position.distanceTo(target);
+    this.scene.fog.color.setHex(theme.ground);
     this.scene.fog.near = middle - diameter / 2;
     this.scene.fog.far = middle + 1.5 * diameter;
   }
