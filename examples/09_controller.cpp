@@ -30,7 +30,6 @@ int main(int argc, char** argv) {
   constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
   BlockReader reader(mill, {.level = *level});
   Executor<Machine<3>, 64> executor(mill, {.level = *level});  // looks ahead over 64 blocks
-  executor.program_stop(false);                                // nobody is there to resume it at M0
   int ticks = 0;
   const auto tick = [&] {
     if (++ticks == 300) executor.feed_hold();
@@ -42,6 +41,7 @@ int main(int argc, char** argv) {
     for (const auto& block : blocks)
       while (!executor.push(block)) tick();  // false: full
   };
+  executor.program_stop(false);  // nobody is there to resume it at M0
   for (std::string line; !reader.finished() && std::getline(lines, line);) {
     const auto blocks = reader.read_line(line);
     if (!blocks) return std::fprintf(stderr, "%s\n", to_text(blocks.error()).c_str()), 2;
