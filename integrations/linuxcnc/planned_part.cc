@@ -52,6 +52,7 @@ class Planned final : public PlannedPart {
   [[nodiscard]] PartState tick(double period, const Requests& requests) override {
     ask_for_executor();
     if (!runs()) {
+      feed_share_.store(requests.feed_share, std::memory_order_release);
       rest_.finished = requests.stop;
       return rest_;
     }
@@ -84,6 +85,11 @@ class Planned final : public PlannedPart {
       stage_.store(Stage::ready, std::memory_order_release);
       return true;
     }
+    const bool begins = handed_.load(std::memory_order_relaxed) == 0;
+    if (const double share = feed_share_.load(std::memory_order_acquire); begins && share >= 0.0)
+      executor_->feed_override(share);
+    else if (begins)
+      return false;
     bool worked = false;
     for (Block<N>* block = blocks_.front(); block != nullptr && executor_->push(*block);
          block = blocks_.front()) {
@@ -127,6 +133,7 @@ class Planned final : public PlannedPart {
     executor_.reset();
     while (blocks_.front() != nullptr) blocks_.pop();
     handed_.store(0, std::memory_order_relaxed);
+    feed_share_.store(-1.0, std::memory_order_relaxed);
     end_.store(-1, std::memory_order_relaxed);
     ended_.store(-1, std::memory_order_relaxed);
     leaves_.store(false, std::memory_order_relaxed);
@@ -137,9 +144,10 @@ class Planned final : public PlannedPart {
   std::optional<LevelExecutor> executor_;
   std::atomic<Stage> stage_{Stage::free};
   std::atomic<bool> leaves_{false};
-  std::atomic<std::int64_t> end_{-1};    // blocks behind which nothing follows
-  std::atomic<std::int64_t> handed_{0};  // to the executor
-  std::atomic<std::int64_t> ended_{-1};  // blocks that it has been told to be all
+  std::atomic<std::int64_t> end_{-1};     // blocks behind which nothing follows
+  std::atomic<std::int64_t> handed_{0};   // to the executor
+  std::atomic<std::int64_t> ended_{-1};   // blocks that it has been told to be all
+  std::atomic<double> feed_share_{-1.0};  // with which the first block is planned; below 0: not known
   // Of the servo thread; the planning thread reads the first two where an executor is asked for.
   Settings settings_{};
   AxisLimits limits_{};
