@@ -55,7 +55,8 @@ void ask(Executor& executor, const Requests& requests, Requests& asked) {
   executor.single_step(requests.single_step);
   if (requests.stop && !asked.stop) executor.stop();
   if (requests.hold && !asked.hold) executor.feed_hold();
-  if (!requests.hold && asked.hold) executor.resume();
+  // A pause behind a step may have come and gone between two ticks.
+  if (!requests.hold && (asked.hold || (asked.single_step && !requests.single_step))) executor.resume();
   asked = requests;
 }
 

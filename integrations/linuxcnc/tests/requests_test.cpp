@@ -137,6 +137,20 @@ TEST_CASE("steps end at the end of each move") {
   CHECK(host.tp.done == 1);
 }
 
+TEST_CASE("a resume in the period in which a step ends goes on") {
+  Host host({});
+  host.exact_stop();
+  for (const CanonMove& move : square()) REQUIRE(send(host, move) == TP_ERR_OK);
+  host.pause();
+  for (int i = 0; i < 20; ++i) host.cycle();
+  host.step();
+  for (int i = 0; i < 5000 && host.status.stepping != 0; ++i) host.cycle();
+  REQUIRE(host.status.stepping == 0);
+  host.resume();
+  CHECK(host.run(20000));
+  CHECK(host.tp.done == 1);
+}
+
 TEST_CASE("backwards goes the same way back, and forwards again to the end") {
   Host host({});
   host.blend(0.01);
