@@ -48,13 +48,13 @@ void settle(Options& options, const support::Machine& machine) {
     refuse("--compare above 0 is for what --tolerance above 0 is for");
   if (options.events && options.smooth.value_or(SmoothLevel::fast) != SmoothLevel::fast)
     refuse("--smooth good and best are for motion without events: its speed is planned as a whole");
-  if (machine.kinematics != Kinematics::cartesian && machine.kinematics != Kinematics::mapped) {
-    if (options.tolerance_given && options.tolerance > 0.0)
-      refuse(
-          "--tolerance above 0 is for machines whose axes are the program's: paths on a table or a mold are "
-          "driven exactly");
-    options.tolerance = 0.0;
-  }
+  if (machine.kinematics == Kinematics::tire_mold && options.tolerance_given && options.tolerance > 0.0)
+    refuse(
+        "--tolerance above 0 is for programs that say where the tool goes: rows name the axes, and are "
+        "driven "
+        "exactly");
+  const bool exact = machine.kinematics == Kinematics::tire_mold || machine.kinematics == Kinematics::polar;
+  if (exact && !options.tolerance_given) options.tolerance = 0.0;
   if (options.serve) settle_for_executor(options);
   if (options.smooth && !(options.tolerance > 0.0)) refuse("--smooth goes with a --tolerance above 0");
   if (options.interpolator == Interpolator::taylor &&
@@ -66,6 +66,10 @@ int run(Options options) {
   support::Machine file;
   if (options.machine) file = support::read_machine(*options.machine);
   settle(options, file);
+  if (file.kinematics == Kinematics::polar && options.tolerance > 0.0) {
+    file.map = support::table_map(file);
+    return run_mapped(options, file);
+  }
   if (file.kinematics == Kinematics::mapped) return run_mapped(options, file);
   if (options.report || options.serve) report::check_libraries();
   if (options.serve) serve::check_libraries();

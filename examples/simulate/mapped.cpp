@@ -5,11 +5,8 @@
 #include <array>
 #include <string_view>
 #include <utility>
+#include <variant>
 
-#include "cncplan/kinematics/core_xy.hpp"
-#include "cncplan/kinematics/scara.hpp"
-#include "cncplan/kinematics/table_table.hpp"
-#include "cncplan/kinematics/tilting_head.hpp"
 #include "cncplan/path/map.hpp"
 #include "support/failure.hpp"
 
@@ -38,19 +35,7 @@ int run_mapped(const Options& options, const support::Machine& file) {
           support::Exit::bad_input,
           fmt::format("{} does not go with machines behind a map: {}", name, file.map.name));
 
-  namespace kinematics = cncplan::kinematics;
-  const support::MapEntry& map = file.map;
-  if (map.name == "table-table-ac")
-    return run_on_map(options, file, kinematics::TableTableAC{.center = map.center, .apart = map.apart});
-  if (map.name == "table-table-bc")
-    return run_on_map(options, file, kinematics::TableTableBC{.center = map.center, .apart = map.apart});
-  if (map.name == "head-table")
-    return run_on_map(options, file,
-                      kinematics::HeadTable{.center = map.center, .pivot_length = map.pivot_length});
-  if (map.name == "scara")
-    return run_on_map(options, file,
-                      kinematics::Scara{.upper = map.upper, .fore = map.fore, .left = map.left});
-  return run_on_map(options, file, kinematics::CoreXY{});
+  return std::visit([&](const auto& map) { return run_on_map(options, file, map); }, file.map.map);
 }
 
 }  // namespace simulate

@@ -14,6 +14,7 @@
 #include "cncplan/gcode/work_coordinates.hpp"
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/plan_program.hpp"
+#include "maps/maps.hpp"
 #include "options.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
@@ -23,22 +24,34 @@
 
 namespace simulate {
 
-/// Does what the options ask for; the exit code of the program. Each map has a file of its own, as it takes
-/// long to compile. Throws `Failure`.
+/// Does what the options ask for; the exit code of the program. Each shape of maps has a file of its own,
+/// as it takes long to compile. Throws `Failure`.
 template <cncplan::path::Map Map>
 int run_on_map(const Options& options, const support::Machine& file, const Map& map);
 
 namespace detail {
 
+/// mm from a table's axis: nothing nearer is driven; 0 for other machines.
+[[nodiscard]] inline double least_radius(const support::Machine& file) {
+  return file.kinematics == support::Kinematics::polar ? file.smallest_radius.value_or(1.0) : 0.0;
+}
+
 /// A problem; of travel in mm or degrees.
 [[nodiscard]] inline std::string problem_text(const cncplan::Problem& problem, const support::Machine& file) {
   const cncplan::Error& error = problem.about.error;
+  const auto placed = [&](const std::string& text) {
+    return fmt::format("{}:{}:{}: error: {}", problem.file, problem.about.line, problem.about.column, text);
+  };
+  const double least = least_radius(file);
+  if (problem.is_error() && error.code == cncplan::ErrorCode::below_limit && error.bound == least &&
+      least > 0.0 && error.field == cncplan::axis_name(file.axes[0].letter))
+    return placed(
+        fmt::format("{:.6g} mm from the table's axis: no nearer than {:.6g} is driven", error.value, least));
   const bool travel =
       error.code == cncplan::ErrorCode::above_limit || error.code == cncplan::ErrorCode::below_limit;
   for (const support::MachineAxis& axis : file.axes)
     if (travel && problem.is_error() && error.field == cncplan::axis_name(axis.letter))
-      return fmt::format("{}:{}:{}: error: {}", problem.file, problem.about.line, problem.about.column,
-                         support::beyond_travel(axis, error.value));
+      return placed(support::beyond_travel(axis, error.value));
   return to_text(problem);
 }
 
@@ -137,13 +150,19 @@ int run_on_map(const Options& options, const support::Machine& file, const Map& 
   machine.rapid_rate = file.rapid_rate.value_or(0.0);
   if (std::isfinite(file.feed_limit)) machine.feed_limit = file.feed_limit;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) machine.axes[i] = file.axis(i);
+  if (const double least = detail::least_radius(file); least > 0.0)
+    machine.axes[0].low = std::max(machine.axes[0].low, least);
   cncplan::PlanOptions planning{
       .tolerance = options.tolerance,
       .level = options.level(),
       .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
       .dialect = file.dialect};
-  if constexpr (!cncplan::path::switchable<Map>) {  // all joints stand at 0
-    const auto start = map.point(cncplan::path::MapJoints<Map, double>{});
+  cncplan::path::MapJoints<Map, double> joints;
+  std::copy(file.map.start.begin(), file.map.start.end(), joints.begin());
+  if constexpr (cncplan::path::switchable<Map>) {  // the map is off, coordinates are the joints
+    std::copy(joints.begin(), joints.end(), planning.start.begin());
+  } else {
+    const auto start = map.point(joints);
     std::copy(start.begin(), start.end(), planning.start.begin());
   }
 

@@ -82,7 +82,10 @@ class Section {
   }
   [[nodiscard]] Section section(std::string_view key, const toml::node& node) const {
     if (!node.is_table()) refuse(node, fmt::format("{} must be a table", key));
-    return {file_, *node.as_table(), std::string(key)};
+    return part(key, *node.as_table());
+  }
+  [[nodiscard]] Section part(std::string_view key, const toml::table& table) const {
+    return {file_, table, std::string(key)};
   }
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] const toml::table& table() const { return table_; }
@@ -254,72 +257,123 @@ void read_pass_through(const Section& section, const toml::node& node, Machine& 
   }
 }
 
-// What a machine behind a map must say, by its name.
-struct MapRules {
-  std::string_view name, coordinates, kinds;  // kinds: L or R for each axis
-  std::vector<std::string_view> lengths;      // those that it may have
-  std::vector<std::string_view> needed;       // and must have, above 0
-  bool named_axes;                            // its axes have the letters of the coordinates
-};
-const std::array<MapRules, 5>& map_rules() {
-  static const std::array<MapRules, 5> rules{{
-      {"table-table-ac", "XYZAC", "LLLRR", {"center", "apart"}, {}, true},
-      {"table-table-bc", "XYZBC", "LLLRR", {"center", "apart"}, {}, true},
-      {"head-table", "XYZBC", "LLLRR", {"center", "pivot_length"}, {}, true},
-      {"scara", "XYZ", "RRL", {"upper", "fore", "left"}, {"upper", "fore"}, false},
-      {"core-xy", "XYZ", "LLL", {}, {}, false},
-  }};
-  return rules;
+// "one", "two" or "three".
+std::string alternatives(const std::vector<std::string_view>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 < names.size() ? ", " : " or ", names[i]);
+  return text;
+}
+
+// The numbers that a ready-made machine is made with, mm and rad, in the order of its parameters.
+std::vector<double> read_lengths(const Section& lengths, const kinematics::ReadyMade& made, double unit) {
+  using Kind = kinematics::ParameterKind;
+  std::vector<std::string_view> names;
+  for (const auto& parameter : made.parameters) names.push_back(parameter.name);
+  lengths.allow(names);
+  std::vector<double> numbers;
+  for (const auto& [name, kind] : made.parameters) {
+    const toml::node* const node = lengths.find(name);
+    if (node == nullptr)
+      numbers.insert(numbers.end(), kinematics::size_of(kind), 0.0);
+    else if (kind == Kind::place)
+      for (const double number : lengths.numbers(*node, name, 3)) numbers.push_back(number * unit);
+    else if (kind == Kind::flag)
+      numbers.push_back(lengths.flag(*node, name) ? 1.0 : 0.0);
+    else
+      numbers.push_back(lengths.number(*node, name) * (kind == Kind::lean ? radians(1.0) : unit));
+  }
+  return numbers;
+}
+
+// The ready-made machine that a file names.
+kinematics::ReadyMadeMap read_ready_made(const Section& top, const toml::node& node,
+                                         const kinematics::ReadyMade& made, double unit) {
+  const toml::table none;
+  const toml::node* const found = top.find("lengths");
+  const bool needs = std::any_of(made.parameters.begin(), made.parameters.end(), [](const auto& parameter) {
+    return kinematics::is_required(parameter.kind);
+  });
+  if (found == nullptr && needs)
+    top.refuse(node, fmt::format("{} needs a table of lengths: [lengths]", made.name));
+  const Section lengths = found == nullptr ? top.part("lengths", none) : top.section("lengths", *found);
+  for (const auto& [name, kind] : made.parameters)
+    if (kinematics::is_required(kind) && lengths.find(name) == nullptr)
+      top.refuse(*found, fmt::format("{} of {} is missing", name, made.name));
+  const auto map = kinematics::make(made, read_lengths(lengths, made, unit));
+  if (map) return *map;
+  const Error& error = map.error();
+  const toml::node& culprit = *lengths.find(error.field);
+  switch (error.code) {
+    case ErrorCode::above_limit:
+      lengths.refuse(culprit, fmt::format("{} must be 90 at most", error.field));
+    case ErrorCode::below_limit:
+      lengths.refuse(culprit, fmt::format("{} must be more than {:.6g}", error.field, error.bound / unit));
+    default:
+      lengths.refuse(culprit, fmt::format("{} {}", error.field, message(error.code)));
+  }
+}
+
+// Where the joints of a machine behind a map stand at the start: at 0, or where the file says.
+void read_start(const Section& top, const toml::node& kinematics, Machine& machine) {
+  std::vector<double>& start = machine.map.start;
+  start.assign(machine.axes.size(), 0.0);
+  const toml::node* const node = top.find("start");
+  if (node != nullptr) {
+    const auto numbers = top.numbers(*node, "start", start.size());
+    for (std::size_t i = 0; i < start.size(); ++i)
+      start[i] = numbers[i] * (machine.axes[i].rotary ? radians(1.0) : machine.unit);
+  }
+  const bool stands = std::visit(
+      [&](const auto& map) {
+        std::array<double, std::remove_cvref_t<decltype(map)>::axis_count> joints{};
+        std::copy(start.begin(), start.end(), joints.begin());
+        const auto there = map.joints(map.point(joints));
+        for (std::size_t i = 0; i < joints.size(); ++i) {
+          const double off = machine.axes[i].rotary ? std::remainder(there[i] - joints[i], radians(360.0))
+                                                    : there[i] - joints[i];
+          if (!(std::abs(off) <= 1e-6)) return false;
+        }
+        return true;
+      },
+      machine.map.map);
+  if (stands) return;
+  if (node != nullptr) top.refuse(*node, fmt::format("{} cannot stand at this start", machine.map.name));
+  top.refuse(kinematics, fmt::format("{} cannot stand where all joints are 0: start must say where they are",
+                                     machine.map.name));
 }
 
 // A machine whose file names its kinematics.
 void read_map(const Section& top, const toml::node& node, Machine& machine) {
   const std::string name = top.text(node, "kinematics");
-  const auto& all = map_rules();
-  const auto rules = std::find_if(all.begin(), all.end(), [&](const MapRules& r) { return r.name == name; });
-  if (rules == all.end())
-    top.refuse(node,
-               "kinematics must be \"table-table-ac\", \"table-table-bc\", \"head-table\", \"scara\" or "
-               "\"core-xy\"");
+  const kinematics::ReadyMade* const made = kinematics::find_ready_made(name);
+  if (made == nullptr) {
+    std::vector<std::string_view> names;
+    for (const kinematics::ReadyMade& each : kinematics::ready_made) names.push_back(each.name);
+    top.refuse(node, "kinematics must be " + alternatives(names));
+  }
   std::string letters, kinds;
   for (const MachineAxis& axis : machine.axes) {
     if (letters.find(axis.letter) != std::string::npos) top.refuse(node, "an axis is there twice");
     letters += axis.letter;
     kinds += axis.rotary ? 'R' : 'L';
   }
-  if (rules->named_axes && letters != rules->coordinates)
-    top.refuse(node, fmt::format("the axes of {} must be {}, in this order", name, rules->coordinates));
-  if (kinds != rules->kinds) {
+  if (made->named_axes && letters != made->coordinates)
+    top.refuse(node, fmt::format("the axes of {} must be {}, in this order", name, made->coordinates));
+  if (kinds != made->axes) {
     std::string wanted;
-    for (const char kind : rules->kinds)
+    for (const char kind : made->axes)
       wanted += fmt::format("{}{}", wanted.empty() ? "" : ", ", kind == 'R' ? "rotary" : "linear");
     top.refuse(node, fmt::format("the axes of {} must be {}", name, wanted));
   }
   machine.kinematics = Kinematics::mapped;
   machine.map.name = name;
+  machine.map.map = read_ready_made(top, node, *made, machine.unit);
   machine.dialect.axes.clear();
-  for (const char letter : rules->coordinates)
+  for (const char letter : made->coordinates)
     machine.dialect.axes.push_back(
         {letter, letter < 'X' ? gcode::AxisKind::rotary : gcode::AxisKind::linear});
-  const toml::node* const found = top.find("lengths");
-  if (found == nullptr) {
-    if (!rules->needed.empty()) top.refuse(node, fmt::format("{} needs a table of lengths: [lengths]", name));
-    return;
-  }
-  const Section lengths = top.section("lengths", *found);
-  lengths.allow(rules->lengths);
-  for (const std::string_view key : rules->needed)
-    if (lengths.find(key) == nullptr) top.refuse(*found, fmt::format("{} of {} is missing", key, name));
-  MapEntry& map = machine.map;
-  for (const auto& [key, place] : {std::pair{"center", &map.center}, std::pair{"apart", &map.apart}})
-    if (const toml::node* numbers = lengths.find(key)) {
-      const auto values = lengths.numbers(*numbers, key, 3);
-      for (std::size_t k = 0; k < 3; ++k) (*place)[k] = values[k] * machine.unit;
-    }
-  lengths.not_negative("pivot_length", map.pivot_length, machine.unit);
-  lengths.positive("upper", map.upper, machine.unit);
-  lengths.positive("fore", map.fore, machine.unit);
-  if (const toml::node* left = lengths.find("left")) map.left = lengths.flag(*left, "left");
+  read_start(top, node, machine);
 }
 
 // Which machine its axes make, and what its programs name.
@@ -332,6 +386,8 @@ void settle_kinematics(const Section& top, Machine& machine) {
   }
   if (const toml::node* lengths = top.find("lengths"))
     top.refuse(*lengths, "lengths are those of the machine that kinematics names");
+  if (const toml::node* start = top.find("start"))
+    top.refuse(*start, "start is where the joints of the machine are that kinematics names");
   const auto refuse = [&](const char* why) {
     throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {}", top.file(), why));
   };
@@ -369,7 +425,7 @@ void settle_kinematics(const Section& top, Machine& machine) {
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
   top.allow({"name", "dialect", "g18", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home",
-             "pass_through", "smallest_radius", "table_center", "kinematics", "lengths"});
+             "pass_through", "smallest_radius", "table_center", "kinematics", "lengths", "start"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
   if (const toml::node* dialect = top.find("dialect")) {
@@ -441,6 +497,12 @@ cncplan::Axis Machine::axis(std::size_t i) const {
 std::string beyond_travel(const MachineAxis& axis, double place, bool at_start) {
   return fmt::format("axis {} {} {:.6g}, beyond its travel of {:.6g} to {:.6g}", axis.letter,
                      at_start ? "starts at" : "would move to", place / axis.unit(), axis.low, axis.high);
+}
+
+MapEntry table_map(const Machine& machine) {
+  const kinematics::PolarMap map{.center = machine.table_center};
+  const auto start = map.joints(std::array<double, 3>{});
+  return {"polar", kinematics::ThreeJoints(map), {start.begin(), start.end()}};
 }
 
 Machine read_machine(const std::string& file) {

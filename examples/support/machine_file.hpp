@@ -12,6 +12,7 @@
 #include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/gcode/dialect.hpp"
+#include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/plan/machine.hpp"
 #include "cncplan/step/drive.hpp"
 
@@ -50,13 +51,11 @@ enum class Kinematics {
   mapped,     ///< what `map` says
 };
 
-/// A ready-made machine of the library's (docs/kinematics.md) and its lengths, mm. Those that a machine has
-/// not are 0.
+/// A ready-made machine of the library's (docs/kinematics.md).
 struct MapEntry {
   std::string name;  ///< as in the file: "table-table-ac"
-  std::array<double, 3> center{}, apart{};
-  double pivot_length{}, upper{}, fore{};
-  bool left{};
+  cncplan::kinematics::ReadyMadeMap map;
+  std::vector<double> start;  ///< of each joint, mm or rad
 };
 
 struct Machine {
@@ -91,6 +90,9 @@ struct Machine {
     return result;
   }
 };
+
+/// The map of a machine with a rotary table (`Kinematics::polar`), at X0 Y0 Z0.
+[[nodiscard]] MapEntry table_map(const Machine& machine);
 
 /// Reads a machine file. Throws `Failure` for one that cannot be read or has an unknown or wrong entry.
 [[nodiscard]] Machine read_machine(const std::string& file);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -79,19 +80,117 @@ TEST_CASE("an arm of a file draws a line, from its joints at 0") {
   CHECK(rows["y"].back() == Approx(-180));
 }
 
-TEST_CASE("each machine that a file can name runs") {
-  const Folder folder;
-  const auto runs = [&](const std::string& machine, const std::string& program) {
-    folder.write("m.toml", machine);
-    const auto run = folder.run_text(program, "--machine m.toml --quiet");
-    INFO(run.err);
-    CHECK(run.exit == 0);
+TEST_CASE("each machine that a file can name runs, within its tolerance and its limits") {
+  struct Case {
+    std::string name, axes, lengths, start, program;  // axes: of each its letter, and R for a rotary one
+    std::vector<double> end;                          // X Y Z of the tip
   };
-  runs(mill("table-table-bc", "B", "center = [0, 5, -60]\napart = [3, 0, 0]\n"),
-       "G43.4\nG1 X9 B20 C5 F900\n");
-  runs(mill("head-table", "B", "pivot_length = 150\n"), "G43.4\nG1 X9 B20 C5 F900\n");
-  runs("kinematics = \"core-xy\"\n" + axis("A", "linear") + axis("B", "linear") + axis("Z", "linear"),
-       "G1 X9 Y3 F900\n");
+  const std::string five = "G43.4\nG1 X9 B20 C5 F900\nY12 C25\nX2 Z3 B5\n";
+  const std::string tilted = "G43.4\nG1 X9 A20 C5 F900\nY12 C25\nX2 Z3 A5\n";
+  const std::string flat = "G0 X60 Y170 Z-5\nG1 X90 F1500\nY210\nX40 Z3\n";
+  const std::vector<Case> cases{
+      {"table-table-ac", "X Y Z AR CR", "center = [0, 0, -60]\napart = [0, 3, 0]", "", tilted, {2, 12, 3}},
+      {"table-table-bc", "X Y Z BR CR", "center = [0, 5, -60]\napart = [3, 0, 0]", "", five, {2, 12, 3}},
+      {"head-table", "X Y Z BR CR", "pivot_length = 150", "", five, {2, 12, 3}},
+      {"head-head-ac", "X Y Z AR CR", "pivot_length = 150", "", tilted, {2, 12, 3}},
+      {"head-head-bc", "X Y Z BR CR", "pivot_length = 150", "", five, {2, 12, 3}},
+      {"nutating-head", "X Y Z BR CR", "lean = 45\npivot_length = 150", "", five, {2, 12, 3}},
+      {"polar", "R Z CR", "", "[100, 0, 20]", flat, {40, 210, 3}},
+      {"scara", "JR KR Z", "upper = 200\nfore = 150", "[0, 90, 0]", flat, {40, 210, 3}},
+      {"scara-wrist",
+       "JR KR Z CR",
+       "upper = 200\nfore = 150\nleft = true",
+       "[0, -90, 0, 90]",
+       "G0 X60 Y170 Z-5 C0\nG1 X90 C40 F1500\nY210\nX40 Z3 C0\n",
+       {40, 210, 3}},
+      {"linear-delta",
+       "A B C",
+       "radius = 140\nrod = 270",
+       "",
+       "G0 X20 Y30 Z-200\nG1 X-40 F1500\nY-10\nX5 Z-190\n",
+       {5, -10, -190}},
+      {"rotary-delta",
+       "AR BR CR",
+       "base = 120\nplatform = 40\narm = 150\nrod = 320",
+       "[10, 10, 10]",
+       "G0 X20 Y30 Z-300\nG1 X-40 F1500\nY-10\nX5 Z-290\n",
+       {5, -10, -290}},
+      {"five-bar",
+       "JR KR Z",
+       "apart = 120\nupper = 150\nfore = 200",
+       "[150, 30, 0]",
+       "G0 X20 Y230 Z-5\nG1 X-40 F1500\nY200\nX10 Z3\n",
+       {10, 200, 3}},
+      {"core-xy", "A B Z", "", "", "G1 X9 Y3 F900\nX20\nY30 Z3\n", {20, 30, 3}},
+      {"wrist-arm",
+       "AR BR CR UR VR WR",
+       "height = 400\noutward = 25\nupper = 560\nrise = 35\nfore = 515\nflange = 80",
+       "[0, 0, 0, 0, 60, 0]",
+       "G0 X600 Y100 Z400 A0 B90 C0\nG1 Y-100 B80 F3000\nZ450 C20\nX650 B90 C0\n",
+       {650, -100, 450}}};
+  for (const Case& c : cases) {
+    const Folder folder;
+    std::string file = "kinematics = \"" + c.name + "\"\n";
+    if (!c.start.empty()) file += "start = " + c.start + "\n";
+    std::string letters;
+    std::istringstream words(c.axes);
+    for (std::string word; words >> word;) {
+      letters += word[0];
+      file += axis(word.substr(0, 1), word.size() > 1 ? "rotary" : "linear");
+    }
+    if (!c.lengths.empty()) file += "[lengths]\n" + c.lengths + "\n";
+    folder.write("m.toml", file);
+    for (const std::string how : {"--tolerance 0", "--tolerance 0.05 --smooth good", "--tolerance 0.05"}) {
+      const auto run =
+          folder.run_text(c.program, "--machine m.toml --period 0.002 --samples s --json " + how);
+      INFO(c.name << " " << how << " " << run.err);
+      REQUIRE(run.exit == 0);
+      const auto json = run.json();
+      CHECK(json["kinematics"] == c.name);
+      for (const auto& part : json["fallbacks"]) {  // the way to the start, straight in the joints
+        CHECK(part["lines"][0] == 1);
+        CHECK(part["lines"][1] == 1);
+      }
+      const Table rows(folder / "s");
+      CHECK(rows["x"].back() == Approx(c.end[0]));
+      CHECK(rows["y"].back() == Approx(c.end[1]));
+      CHECK(rows["z"].back() == Approx(c.end[2]));
+      for (const char letter : letters) {  // differences of what was sampled
+        const auto& q = rows[std::string(1, letter)];
+        double fastest = 0;
+        for (std::size_t i = 2; i < q.size(); ++i)
+          fastest = std::max(fastest, std::abs(q[i - 1] - q[i - 2]) / 0.002);
+        CHECK(fastest < 100 * (1 + 1e-6));
+        CHECK(json["axis_peak"]["velocity"][std::string(1, letter)].get<double>() >= fastest * (1 - 1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("a program on a rotary table is smoothed within a tolerance") {
+  const Folder folder;
+  const std::string options =
+      "--machine '" CNCPLAN_EXAMPLES "/machines/kk22.toml' --period 0.002 --samples s --json --tolerance ";
+  const std::string text = "F1200\nG1 X20\nY20\nX0\nG2 X30 Y-10 R60\n";
+  const auto exact = folder.run_text(text, options + "0"), smooth = folder.run_text(text, options + "0.05");
+  INFO(exact.err << smooth.err);
+  REQUIRE(exact.exit == 0);
+  REQUIRE(smooth.exit == 0);
+  const Table rows(folder / "s");
+  double off = 0;
+  for (std::size_t i = 0; i < rows.rows(); ++i) {  // the table's axis is at X-150
+    const double c = rows["C"][i] * degree, r = rows["Y"][i];
+    off = std::max(off, std::hypot(r * std::cos(c) - rows["x"][i] - 150, r * std::sin(c) - rows["y"][i]));
+  }
+  CHECK(off < 1e-9);
+  CHECK(smooth.json()["kinematics"] == "polar");
+  CHECK(smooth.json()["axis_peak"]["jerk"]["Y"].get<double>() <= 10000 * (1 + 1e-9));
+  CHECK(rows["x"].back() == Approx(30));
+  const auto near = folder.run_text("G1 X-149 F600\n", options + "0.05");
+  CHECK(near.exit == 2);
+  CHECK(near.err == "program.ngc:1:4: error: 1 mm from the table's axis: no nearer than 5 is driven\n");
+  const auto steps = folder.run_text(text, options + "0.05 --steps v");
+  CHECK(steps.exit == 2);
 }
 
 TEST_CASE("what machine files with kinematics refuse") {
@@ -104,7 +203,20 @@ TEST_CASE("what machine files with kinematics refuse") {
       {"kinematics = \"core-xy\"\n[lengths]\nupper = 3\n", "G0 X1\n", "",
        "m.toml:3:1: error: unknown key 'upper'"},
       {arm("upper = 200\n"), "G0 X1\n", "", "m.toml:"},
-      {arm("upper = 200\nfore = 0\n"), "G0 X1\n", "", "m.toml:"},
+      {arm("upper = 200\nfore = 0\n"), "G0 X1\n", "", "m.toml:25:8: error: fore must be greater than zero"},
+      {"start = [0, 0, 0]\n", "G0 X1\n", "",
+       "m.toml:1:9: error: start is where the joints of the machine are"},
+      {"start = [0, 0]\n" + arm("upper = 200\nfore = 100\n"), "G0 X1\n", "",
+       "m.toml:1:9: error: start must be a list of 3 numbers"},
+      {"start = [0, -30, 0]\n" + arm("upper = 200\nfore = 100\n"), "G0 X1\n", "",
+       "m.toml:1:9: error: scara cannot stand at this start"},
+      {"kinematics = \"five-bar\"\n" + axis("J", "rotary") + axis("K", "rotary") + axis("Z", "linear") +
+           "[lengths]\napart = 120\nupper = 150\nfore = 200\n",
+       "G0 X1\n", "", "m.toml:1:14: error: five-bar cannot stand where all joints are 0: start must say"},
+      {mill("nutating-head", "B", "lean = 91\n"), "G0 X1\n", "", "m.toml:"},
+      {"kinematics = \"linear-delta\"\n" + axis("A", "linear") + axis("B", "linear") + axis("C", "linear") +
+           "[lengths]\nradius = 140\nrod = 140\n",
+       "G0 X1\n", "", "m.toml:25:7: error: rod must be more than 140"},
       {"[lengths]\nupper = 3\n", "G0 X1\n", "", "m.toml:1:1: error: lengths are those of the machine"},
       {mill("table-table-ac", "B", ""), "G0 X1\n", "",
        "m.toml:1:14: error: the axes of table-table-ac must be XYZAC"},

@@ -1,0 +1,7 @@
+#include "run_on_map.hpp"
+
+namespace simulate {
+
+template int run_on_map(const Options&, const support::Machine&, const cncplan::kinematics::FiveAxes&);
+
+}  // namespace simulate

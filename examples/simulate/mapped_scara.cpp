@@ -1,8 +1,0 @@
-#include "cncplan/kinematics/scara.hpp"
-#include "run_on_map.hpp"
-
-namespace simulate {
-
-template int run_on_map(const Options&, const support::Machine&, const cncplan::kinematics::Scara&);
-
-}  // namespace simulate

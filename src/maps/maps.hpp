@@ -1,0 +1,25 @@
+// Planning for the ready-made machines (kinematics/ready_made.hpp), as the library `cncplan_maps` has it:
+// declared here, and defined once for each shape. Without `CNCPLAN_COMPILED` the headers alone serve.
+#pragma once
+
+#include "cncplan/compiled/plan_blocks.hpp"
+#include "cncplan/compiled/plan_program.hpp"
+#include "cncplan/kinematics/ready_made.hpp"
+
+/// Reading, planning and asking the programs of a machine.
+#define CNCPLAN_MAPPED(PREFIX, MACHINE)                           \
+  CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
+  CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
+  CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
+  CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)
+
+#ifdef CNCPLAN_COMPILED
+namespace cncplan {
+
+CNCPLAN_MAPPED(extern, MappedMachine<kinematics::ThreeJoints>)
+CNCPLAN_MAPPED(extern, MappedMachine<kinematics::ScaraWrist>)
+CNCPLAN_MAPPED(extern, MappedMachine<kinematics::FiveAxes>)
+CNCPLAN_MAPPED(extern, MappedMachine<kinematics::WristArm>)
+
+}  // namespace cncplan
+#endif

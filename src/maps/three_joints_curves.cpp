@@ -1,0 +1,8 @@
+#include "maps/maps.hpp"
+
+namespace cncplan {
+
+CNCPLAN_PLAN_SMOOTH(, MappedMachine<kinematics::ThreeJoints>,
+                    ProgramBlock<MappedMachine<kinematics::ThreeJoints>>)
+
+}  // namespace cncplan

@@ -1,0 +1,7 @@
+#include "maps/maps.hpp"
+
+namespace cncplan {
+
+CNCPLAN_PLAN_SMOOTH(, MappedMachine<kinematics::WristArm>, ProgramBlock<MappedMachine<kinematics::WristArm>>)
+
+}  // namespace cncplan
