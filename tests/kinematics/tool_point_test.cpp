@@ -10,10 +10,10 @@
 
 #include <Eigen/Geometry>
 
-#include "cncplan/kinematics/table_table.hpp"
-#include "cncplan/kinematics/tilting_head.hpp"
+#include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/plan_program.hpp"
+#include "maps/maps.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -22,10 +22,10 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 using Vector5 = VectorN<double, 5>;
-using Mill = MappedMachine<kinematics::TableTableAC>;
+using Mill = MappedMachine<kinematics::FiveAxes>;
 
 Mill mill() {
-  return {.map = {.center = {0, 0, -60}},
+  return {.map = kinematics::TableTableAC{.center = {0, 0, -60}},
           .axes = {{{.letter = 'X', .velocity = 200, .acceleration = 2000, .jerk = 40000},
                     {.letter = 'Y', .velocity = 200, .acceleration = 2000, .jerk = 40000},
                     {.letter = 'Z', .velocity = 150, .acceleration = 1500, .jerk = 30000},
@@ -282,8 +282,7 @@ TEST_CASE("tool-point control line by line makes the blocks of the whole program
 TEST_CASE("other five-axis machines keep the tip as well", "[tool point]") {
   const std::string text = "F3000\nG43.4\nG1 X40 B20 C30\nG1 Y20 Z-5 B-50 C400\nG0 X0 Y0 Z30 B0 C0\n";
   const auto check = [&](const auto& map, const auto& forward) {
-    using M = std::remove_cvref_t<decltype(map)>;
-    MappedMachine<M> machine{.map = map, .limits = {.velocity = 80, .acceleration = 1000, .jerk = 20000}};
+    Mill machine{.map = map, .limits = {.velocity = 80, .acceleration = 1000, .jerk = 20000}};
     for (auto& axis : machine.axes) axis.velocity = 100, axis.acceleration = 1000, axis.jerk = 20000;
     const auto trajectory = plan_text(text, machine, {.tolerance = 0});
     REQUIRE(trajectory);

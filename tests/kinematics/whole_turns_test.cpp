@@ -7,13 +7,11 @@
 #include <numbers>
 #include <string>
 
-#include "cncplan/kinematics/core_xy.hpp"
-#include "cncplan/kinematics/scara.hpp"
-#include "cncplan/kinematics/table_table.hpp"
-#include "cncplan/kinematics/wrist_arm.hpp"
+#include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/executor.hpp"
 #include "cncplan/plan/plan_program.hpp"
+#include "maps/maps.hpp"
 #include "support/catch.hpp"
 #include "support/executor_machines.hpp"
 #include "support/random.hpp"
@@ -161,7 +159,8 @@ TEST_CASE("a line through the centre is refused, and one beside it slows down", 
 }
 
 TEST_CASE("arms go on where their formulas jump, and end at the edge of their reach", "[turns]") {
-  MappedMachine<kinematics::Scara> scara{.limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000}};
+  MappedMachine<kinematics::ThreeJoints> scara{
+      .map = kinematics::Scara{}, .limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000}};
   for (auto& axis : scara.axes)
     axis.kind = AxisKind::rotary, axis.velocity = 2, axis.acceleration = 20, axis.jerk = 300;
   scara.axes[2] = {.letter = 'Z', .velocity = 100};
@@ -260,8 +259,7 @@ TEST_CASE("random programs on arms and tables never jump", "[turns]") {
 }
 
 TEST_CASE("turns that a program names are its own", "[turns]") {
-  MappedMachine<kinematics::TableTableAC> mill{
-      .limits = {.velocity = 80, .acceleration = 1000, .jerk = 20000}};
+  MappedMachine<kinematics::FiveAxes> mill{.limits = {.velocity = 80, .acceleration = 1000, .jerk = 20000}};
   for (auto& axis : mill.axes) axis.velocity = 50, axis.acceleration = 500, axis.jerk = 10000;
   for (const std::string on : {"", "G43.4\n"}) {
     const auto trajectory = planned("F6000\n" + on + "G0 C720\nG1 X10 C0\nG0 C-1000\n", mill, {});
