@@ -1,6 +1,6 @@
 """A page in Debian's firefox-esr, without a window, by the Marionette protocol; asked as a `Browser` is.
 
-Without a graphics card WebGL takes Debian's libgl1-mesa-dri, libegl1 and xvfb."""
+Selenium would need geckodriver, which Debian 12 does not have. Without a graphics card WebGL takes Debian's libgl1-mesa-dri, libegl1 and xvfb."""
 
 import base64
 import json
