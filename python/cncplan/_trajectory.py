@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -244,9 +244,21 @@ def options_of(machine: Machine, tolerance: Any, rotary_tolerance: Any, junction
                              [] if start is None else row(start, "start", len(machine)))
 
 
+def _listener(progress: Any) -> Any:
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: expected a function of one number, got {kind(progress)}")
+    return progress
+
+
+def _finished(progress: Any, trajectory: Trajectory) -> Trajectory:
+    if progress is not None:
+        progress(1.0)
+    return trajectory
+
+
 def plan_file(path: str | os.PathLike[str], machine: Machine, tolerance: float = 0.01, level: str = "best", *,
               rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
-              start: Sequence[float] | None = None) -> Trajectory:
+              start: Sequence[float] | None = None, progress: Callable[[float], Any] | None = None) -> Trajectory:
     """Plans a G-code file.
 
     Parameters
@@ -266,6 +278,9 @@ def plan_file(path: str | os.PathLike[str], machine: Machine, tolerance: float =
         mm, >= 0: corners that are left exact are passed as fast as ones rounded within it would be.
     start : n numbers, optional
         Where the motion starts; mm, and rad of rotary axes. Default: 0.
+    progress : callable, optional
+        Called with the share of the work that is done, 0 to 1, some times a second, and with 1 at the end. Where
+        it returns False planning ends with the error "interrupted".
 
     Raises
     ------
@@ -274,16 +289,18 @@ def plan_file(path: str | os.PathLike[str], machine: Machine, tolerance: float =
     """
     options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
     name = path_of(path)
-    return Trajectory(_core.plan_file(core_of(machine), name, options), machine, level, float(tolerance), name, None)
+    core = _core.plan_file(core_of(machine), name, options, _listener(progress))
+    return _finished(progress, Trajectory(core, machine, level, float(tolerance), name, None))
 
 
 def plan_text(text: str, machine: Machine, tolerance: float = 0.01, level: str = "best", *,
               rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
-              start: Sequence[float] | None = None) -> Trajectory:
+              start: Sequence[float] | None = None, progress: Callable[[float], Any] | None = None) -> Trajectory:
     """Plans the text of a G-code program. Parameters and errors are those of `plan_file`."""
     options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
     program = _program(text)
-    return Trajectory(_core.plan_text(core_of(machine), program, options), machine, level, float(tolerance), "", program)
+    core = _core.plan_text(core_of(machine), program, options, _listener(progress))
+    return _finished(progress, Trajectory(core, machine, level, float(tolerance), "", program))
 
 
 def _program(text: Any) -> bytes:
@@ -292,9 +309,10 @@ def _program(text: Any) -> bytes:
 
 
 def plan_blocks(blocks: Sequence[Block], machine: Machine, tolerance: float = 0.01, level: str = "best", *,
-                rotary_tolerance: float = 0.05, junction_deviation: float = 0.01) -> Trajectory:
+                rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
+                progress: Callable[[float], Any] | None = None) -> Trajectory:
     """Plans blocks made by hand (`line`, `arc`, `curve`), from rest to rest. Each begins where the one before
     ends. Parameters as of `plan_file`; errors have the number of the block."""
     options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, None, level)
-    core = _core.plan_blocks(core_of(machine), tuples_of(blocks, len(machine)), options)
-    return Trajectory(core, machine, level, float(tolerance))
+    core = _core.plan_blocks(core_of(machine), tuples_of(blocks, len(machine)), options, _listener(progress))
+    return _finished(progress, Trajectory(core, machine, level, float(tolerance)))

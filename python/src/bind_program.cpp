@@ -20,12 +20,15 @@ ReadProgram read(const AnyMachine& machine, const std::string& text, const PlanO
 }
 
 ReadProgram read_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options) {
-  const auto [text, here] = open_program(file, options);
-  return read(machine, text, here, file);
+  return interruptible(options, py::none(), [&](const PlanOptions& listening) {
+    const auto [text, here] = open_program(file, listening);
+    return read(machine, text, here, file);
+  });
 }
 
 ReadProgram read_text(const AnyMachine& machine, const std::string& text, const PlanOptions& options) {
-  return read(machine, text, options, {});
+  return interruptible(options, py::none(),
+                       [&](const PlanOptions& listening) { return read(machine, text, listening, {}); });
 }
 
 std::string write(const std::vector<gcode::Item>& items, const gcode::Dialect& dialect) {
@@ -63,7 +66,6 @@ void add_items(const AnyBlock& block, std::vector<gcode::Item>& items) {
 }  // namespace
 
 void bind_program(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<ReadProgram>(module, "Program")
       .def_readonly("lines", &ReadProgram::lines)
       .def_readonly("warnings", &ReadProgram::warnings)
@@ -82,8 +84,8 @@ void bind_program(py::module_& module) {
              return words;
            })
       .def("write", [](const ReadProgram& program) { return write(program.items, program.dialect); });
-  module.def("read_file", &read_file, Released());
-  module.def("read_text", &read_text, Released());
+  module.def("read_file", &read_file);
+  module.def("read_text", &read_text);
   module.def("write_blocks", [](const AnyMachine& machine, const py::list& blocks) {
     std::vector<gcode::Item> items;
     for (const auto& block : blocks) add_items(block_from(block.cast<py::tuple>()), items);

@@ -28,14 +28,18 @@ TrajectoryPointer plan(const AnyMachine& machine, const std::string& text, const
   return with_size(machine.axes.size(), [&](auto n) { return plan_text<n>(machine, text, options, file); });
 }
 
-TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options) {
-  const auto [text, here] = open_program(file, options);
-  return plan(machine, text, here, file);
+TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options,
+                            const py::object& progress) {
+  return interruptible(options, progress, [&](const PlanOptions& listening) {
+    const auto [text, here] = open_program(file, listening);
+    return plan(machine, text, here, file);
+  });
 }
 
-TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text,
-                              const PlanOptions& options) {
-  return plan(machine, text, options, {});
+TrajectoryPointer plan_string(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
+                              const py::object& progress) {
+  return interruptible(options, progress,
+                       [&](const PlanOptions& listening) { return plan(machine, text, listening, {}); });
 }
 
 // New arrays of so many rows, and where they are.
@@ -70,7 +74,6 @@ struct Arrays {
 }  // namespace
 
 void bind_trajectory(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<AnyTrajectory>(module, "Trajectory")
       .def("duration", &AnyTrajectory::duration)
       .def("length", &AnyTrajectory::length)
@@ -147,14 +150,16 @@ void bind_trajectory(py::module_& module) {
     return py::tuple(texts);
   }();
   py::class_<PlanOptions>(module, "PlanOptions").def(py::init(&options_of));
-  module.def("plan_file", &plan_file, Released());
-  module.def("plan_text", &plan_string, Released());
-  module.def("plan_blocks", [](const AnyMachine& machine, const py::list& given, const PlanOptions& options) {
+  module.def("plan_file", &plan_file);
+  module.def("plan_text", &plan_string);
+  module.def("plan_blocks", [](const AnyMachine& machine, const py::list& given, const PlanOptions& options,
+                               const py::object& progress) {
     std::vector<AnyBlock> blocks;
     for (const auto& block : given) blocks.push_back(block_from(block.cast<py::tuple>()));
-    const py::gil_scoped_release released;
-    return with_size(machine.axes.size(),
-                     [&](auto n) { return plan_hand_made<n>(machine, blocks, options); });
+    return interruptible(options, progress, [&](const PlanOptions& listening) {
+      return with_size(machine.axes.size(),
+                       [&](auto n) { return plan_hand_made<n>(machine, blocks, listening); });
+    });
   });
 }
 

@@ -15,6 +15,7 @@
 #include "blocks.hpp"
 #include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
+#include "interruption.hpp"
 #include "machine.hpp"
 
 namespace cncplan::python {
@@ -53,6 +54,22 @@ using Numbers = py::array_t<double, py::array::c_style>;
 
 /// The text of a program's file, and options that find files of its folder. Throws `Fault`.
 [[nodiscard]] std::pair<std::string, PlanOptions> open_program(const std::string& file, PlanOptions options);
+
+struct ProgressFunction {
+  py::object call;
+};
+
+/// Calls `work` without the lock of the interpreter, with options that let it be interrupted. `progress`: a
+/// function, or None.
+template <class Work>
+auto interruptible(const PlanOptions& options, const py::object& progress, const Work& work) {
+  const ProgressFunction function{progress};
+  Interruption interruption(progress.is_none() ? nullptr : &function);
+  PlanOptions listening = options;
+  listening.progress = interruption.listener();
+  const py::gil_scoped_release released;
+  return work(listening);
+}
 
 /// From the tuple that cncplan._blocks makes.
 [[nodiscard]] AnyBlock block_from(const py::tuple& block);

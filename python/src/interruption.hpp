@@ -1,49 +1,43 @@
-// Long calls can be interrupted: they ask from time to time whether a signal has come (Ctrl-C).
+// Long calls can be interrupted: they ask from time to time whether a signal has come (Ctrl-C), and tell how
+// far they are.
 #pragma once
 
 #include <chrono>
-#include <cstddef>
-#include <memory_resource>
+#include <functional>
 
 namespace cncplan::python {
 
+/// A function of Python that is called with the share of the work that is done; defined in bindings.hpp.
+struct ProgressFunction;
+
+/// Of one call, which may run without the lock of the interpreter.
 class Interruption {
  public:
-  /// Throws the exception that a signal's handler raises. Most calls look at the clock only.
-  void poll() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(50)) return;
+  /// `progress`: who waits for the work, if anybody does; it is to stay.
+  explicit Interruption(const ProgressFunction* progress = nullptr) : progress_(progress) {}
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  /// Whether to go on: the function may say False. Throws what it raises, or the handler of a signal. Most
+  /// calls look at the clock only.
+  bool goes_on(double share = 0.0) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::milliseconds(50)) return true;
     last_ = now;
-    ask();
+    return ask(share);
+  }
+  /// For the options of the library; a view.
+  [[nodiscard]] std::function<bool(double)> listener() {
+    return [this](double share) { return goes_on(share); };
   }
 
  private:
-  static void ask();
+  using Clock = std::chrono::steady_clock;
 
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
+  bool ask(double share) const;
 
-/// Memory whose use is what asks: planning asks for some at every step of its work. Nothing in the library
-/// catches what it throws, but for std::bad_alloc.
-class InterruptibleMemory final : public std::pmr::memory_resource {
- public:
-  /// Asks no more.
-  void stop_asking() { asks_ = false; }
-
- private:
-  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
-    if (asks_) interruption_.poll();
-    return std::pmr::new_delete_resource()->allocate(bytes, alignment);
-  }
-  void do_deallocate(void* place, std::size_t bytes, std::size_t alignment) override {
-    std::pmr::new_delete_resource()->deallocate(place, bytes, alignment);
-  }
-  [[nodiscard]] bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override {
-    return this == &other;
-  }
-
-  Interruption interruption_;
-  bool asks_ = true;
+  const ProgressFunction* progress_;
+  Clock::time_point last_ = Clock::now();
 };
 
 }  // namespace cncplan::python

@@ -50,9 +50,10 @@ py::tuple error_arguments(const ProgramError& error, const std::string& text) {
       or_none(error.block.has_value(), error.block.value_or(0)));
 }
 
-void Interruption::ask() {
+bool Interruption::ask(double share) const {
   const py::gil_scoped_acquire held;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  return progress_ == nullptr || !progress_->call(share).is(py::bool_(false));
 }
 
 Places places_of(const std::vector<double>& coordinates) {

@@ -2,15 +2,12 @@
 // of its own.
 #pragma once
 
-#include <memory>
-#include <memory_resource>
 #include <string>
 #include <vector>
 
 #include "cncplan/plan/block_builder.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/trajectory.hpp"
-#include "interruption.hpp"
 #include "report/report.hpp"
 #include "trajectory.hpp"
 
@@ -21,11 +18,9 @@ using ReadBlock = ProgramBlock<Machine<N>>;
 template <int N>
 using Planned = Trajectory<Machine<N>, ReadBlock<N>>;
 
-/// The trajectory for Python, with the memory that it lies in.
+/// The trajectory for Python.
 template <int N>
-[[nodiscard]] TrajectoryPointer any_trajectory(const AnyMachine& machine,
-                                               std::unique_ptr<InterruptibleMemory> memory,
-                                               Planned<N>&& trajectory);
+[[nodiscard]] TrajectoryPointer any_trajectory(const AnyMachine& machine, Planned<N>&& trajectory);
 
 /// What a report shows.
 template <int N>

@@ -156,6 +156,52 @@ def test_ctrl_c_ends_a_long_call(mill, level):
     assert cncplan.plan_text("G1 X1", mill, level=level).length == 1  # nothing is left behind
 
 
+def test_ctrl_c_ends_reading(mill):
+    # Longer than any test: a loop that moves is run as often as it says.
+    loop = "F600\nG1 X1\n#1=0\no1 while [#1 LT 1000000000]\nX1\nX0\n#1=[#1+1]\no1 endwhile\n"
+    before = signal.signal(signal.SIGALRM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    try:
+        for call in (lambda: cncplan.read_program(text=loop, machine=mill), lambda: cncplan.plan_text(loop, mill)):
+            signal.setitimer(signal.ITIMER_REAL, 0.3)
+            start = time.perf_counter()
+            with pytest.raises(KeyboardInterrupt):
+                call()
+            assert time.perf_counter() < start + 5
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_progress(mill, level):
+    text = LONG if level in ("exact", "fast") else LONG[:200000]
+    shares = []
+    trajectory = cncplan.plan_text(text, mill, level=level, progress=shares.append)
+    assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] == 1
+    if level in ("good", "best"):
+        assert len(shares) > 3 and 0 < shares[1] < 1
+    assert trajectory.duration == cncplan.plan_text(text, mill, level=level).duration
+
+
+def test_progress_ends_planning(mill):
+    with pytest.raises(cncplan.Error) as caught:
+        cncplan.plan_text(LONG, mill, progress=lambda share: False)
+    assert caught.value.code == "interrupted" and 0 <= caught.value.value < 1
+    assert "interrupted" in str(caught.value)
+    for value in (None, True, 0, "no"):  # only False says so
+        assert cncplan.plan_text("G1 X1", mill, progress=lambda share: value).length == 1
+
+    def fail(share):
+        raise RuntimeError("of my own")
+
+    for call in (lambda: cncplan.plan_text(LONG, mill, level="good", progress=fail),
+                 lambda: cncplan.plan_blocks([cncplan.line([0, 0, 0], [1, 0, 0])], mill, progress=fail)):
+        with pytest.raises(RuntimeError, match="of my own"):
+            call()
+    with pytest.raises(TypeError, match="progress: expected a function of one number, got int"):
+        cncplan.plan_text("G1 X1", mill, progress=3)
+
+
 def test_report(mill, tmp_path):
     program = "G21 G90 F1800 (a comment: <b>&)\nG1 X20\nM3 S1000\nG3 X10 Y10 R10\n"
     (tmp_path / "part.ngc").write_text(program)

@@ -32,7 +32,7 @@ Expected<path::Arc> arc_of(const AnyBlock& block) {
 }
 
 // An arc as it is in space, and as it is with axes that go along.
-const path::Arc& in_space(const path::Arc& arc) { return arc; }
+[[maybe_unused]] const path::Arc& in_space(const path::Arc& arc) { return arc; }
 template <class ArcAlong>
 const path::Arc& in_space(const ArcAlong& arc) {
   return arc.arc();
@@ -139,14 +139,13 @@ TrajectoryPointer plan_text<AXES>(const AnyMachine& given, std::string_view text
   const auto machine = machine_of<AXES>(given);
   Program<Machine<AXES>> program(text, machine, with_dialect(options, given), file);
   if (const Problem* error = program.first_error()) raise(*error);
-  auto memory = std::make_unique<InterruptibleMemory>();
-  auto planned = plan_blocks(std::move(program).take_blocks(), machine, options, memory.get());
+  auto planned = plan_blocks(std::move(program).take_blocks(), machine, options);
   if (!planned) {
     planned.error().file = program.file_of(planned.error().block.value_or(0));
     raise(planned.error());
   }
   plan::tell(*planned, program, level_of(options) != SmoothLevel::exact);
-  return any_trajectory<AXES>(given, std::move(memory), std::move(*planned));
+  return any_trajectory<AXES>(given, std::move(*planned));
 }
 
 template <>
@@ -156,10 +155,9 @@ TrajectoryPointer plan_hand_made<AXES>(const AnyMachine& given, const std::vecto
   std::vector<ReadBlock<AXES>> own;
   own.reserve(blocks.size());
   for (const AnyBlock& block : blocks) own.push_back(block_of<AXES>(block));
-  auto memory = std::make_unique<InterruptibleMemory>();
-  auto planned = plan_blocks(std::move(own), machine, options, memory.get());
+  auto planned = plan_blocks(std::move(own), machine, options);
   if (!planned) raise(planned.error());
-  return any_trajectory<AXES>(given, std::move(memory), std::move(*planned));
+  return any_trajectory<AXES>(given, std::move(*planned));
 }
 
 }  // namespace cncplan::python

@@ -7,6 +7,7 @@
 #include "cncplan/plan/peaks.hpp"
 #include "cncplan/plan/step_edges.hpp"
 #include "fault.hpp"
+#include "interruption.hpp"
 #include "planned.hpp"
 #include "planner.hpp"
 #include "support/failure.hpp"
@@ -38,11 +39,8 @@ void write(const Planned<AXES>::SetPoint& point, std::size_t row, const Columns&
 
 class TrajectoryOfSize final : public AnyTrajectory {
  public:
-  TrajectoryOfSize(const AnyMachine& machine, std::unique_ptr<InterruptibleMemory> memory,
-                   Planned<AXES>&& planned)
-      : machine_(machine), memory_(std::move(memory)), planned_(std::move(planned)) {
-    memory_->stop_asking();
-  }
+  TrajectoryOfSize(const AnyMachine& machine, Planned<AXES>&& planned)
+      : machine_(machine), planned_(std::move(planned)) {}
 
   [[nodiscard]] double duration() const override { return planned_.duration(); }
   [[nodiscard]] double length() const override { return planned_.length(); }
@@ -56,7 +54,7 @@ class TrajectoryOfSize final : public AnyTrajectory {
     std::size_t row = 0;
     for (const auto& point : planned_.samples(period)) {
       write(point, row++, out);
-      if (row % 4096 == 0) interruption.poll();
+      if (row % 4096 == 0) static_cast<void>(interruption.goes_on());
     }
   }
 
@@ -64,7 +62,7 @@ class TrajectoryOfSize final : public AnyTrajectory {
     Interruption interruption;
     for (std::size_t row = 0; row < times.size(); ++row) {
       write(planned_.at(times[row]), row, out);
-      if (row % 4096 == 0) interruption.poll();
+      if (row % 4096 == 0) static_cast<void>(interruption.goes_on());
     }
   }
 
@@ -100,7 +98,7 @@ class TrajectoryOfSize final : public AnyTrajectory {
         raise(Error{ErrorCode::above_limit, "number of step edges", static_cast<double>(most + 1),
                     static_cast<double>(most)});
       rows.push_back({edge.time, static_cast<std::int64_t>(edge.motor), edge.axis, edge.direction});
-      if (rows.size() % 4096 == 0) interruption.poll();
+      if (rows.size() % 4096 == 0) static_cast<void>(interruption.goes_on());
     }
     return rows;
   }
@@ -125,16 +123,14 @@ class TrajectoryOfSize final : public AnyTrajectory {
 
  private:
   AnyMachine machine_;
-  std::unique_ptr<InterruptibleMemory> memory_;  // of all that follows
   Planned<AXES> planned_;
 };
 
 }  // namespace
 
 template <>
-TrajectoryPointer any_trajectory<AXES>(const AnyMachine& machine, std::unique_ptr<InterruptibleMemory> memory,
-                                       Planned<AXES>&& planned) {
-  return std::make_unique<TrajectoryOfSize>(machine, std::move(memory), std::move(planned));
+TrajectoryPointer any_trajectory<AXES>(const AnyMachine& machine, Planned<AXES>&& planned) {
+  return std::make_unique<TrajectoryOfSize>(machine, std::move(planned));
 }
 
 }  // namespace cncplan::python
