@@ -7,7 +7,7 @@ from typing import Any
 
 from . import _core
 from ._blocks import Block, tuple_of
-from ._errors import Error, finite, flag, integer, kind, positive, row
+from ._errors import Error, finite, flag, integer, kind, not_negative, positive, row
 from ._machine import Machine, core_of
 from ._trajectory import SetPoint, options_of
 
@@ -16,17 +16,24 @@ class Executor:
     """Runs a program on a machine: lines or blocks go in, and each tick gives a set point.
 
     A request acts at the next tick, whatever the motion is at. The tool and every axis keep their limits.
-    The curve within the tolerance is that of the level fast; look-ahead reaches over 256 pieces of path.
+    Look-ahead reaches over 256 pieces of path.
 
     Parameters
     ----------
     machine : Machine
     tolerance, rotary_tolerance, junction_deviation, start
         As of `plan_file`.
+    level : str
+        "exact", "fast", "good" or "best", as of `plan_file`. At "good" and "best" parts of the program are planned
+        within `push`, `tick` and `end_of_program`, which take some tens of milliseconds then; an override above 1
+        acts as 1, a lower one slows the whole motion; `reverse` goes back to the first rest that is kept; `restart`
+        begins where the line begins.
     longest_wait : float
         s at rest for which blocks are held back for the ones that follow them.
     quick_stop_share : float
         1 to 1000: how many times its limits of acceleration and jerk the machine may use in a quick stop.
+    reserve : float
+        >= 0, < 1: the share of the limits that plans at "good" and "best" leave for holds.
 
     Examples
     --------
@@ -39,13 +46,15 @@ class Executor:
     ...     point = executor.tick(0.001)
     """
 
-    def __init__(self, machine: Machine, tolerance: float = 0.01, *, rotary_tolerance: float = 0.05,
-                 junction_deviation: float = 0.01, start: Sequence[float] | None = None,
-                 longest_wait: float = 0.05, quick_stop_share: float = 1.0) -> None:
-        options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start)
-        self._core = _core.Executor(core_of(machine), options, finite(longest_wait, "longest_wait"),
-                                    finite(quick_stop_share, "quick_stop_share"))
+    def __init__(self, machine: Machine, tolerance: float = 0.01, level: str = "fast", *,
+                 rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
+                 start: Sequence[float] | None = None, longest_wait: float = 0.05, quick_stop_share: float = 1.0,
+                 reserve: float = 0.05) -> None:
+        options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
+        self._core = _core.Executor(core_of(machine), options, not_negative(longest_wait, "longest_wait"),
+                                    finite(quick_stop_share, "quick_stop_share"), finite(reserve, "reserve"))
         self.machine = machine
+        self.level = level  #: what was asked for
 
     def push(self, item: str | Block) -> bool:
         """Takes the next line of the program, or a block. False: there is no room, and nothing was taken; push it

@@ -4,7 +4,6 @@
 #include "bindings.hpp"
 #include "executor.hpp"
 #include "fault.hpp"
-#include "sizes.hpp"
 
 namespace cncplan::python {
 
@@ -12,11 +11,16 @@ void bind_executor(py::module_& module) {
   using E = AnyExecutor;
   py::class_<AnyExecutor>(module, "Executor")
       .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
-                       double quick_stop_share) {
-        const ExecutorSettings settings{
-            options,      options.tolerance, options.rotary_tolerance, options.junction_deviation,
-            longest_wait, quick_stop_share};
-        return with_size(machine.axes.size(), [&](auto n) { return make_executor<n>(machine, settings); });
+                       double quick_stop_share, double reserve) {
+        const ExecutorSettings settings{options,
+                                        {.tolerance = options.tolerance,
+                                         .level = options.level,
+                                         .rotary_tolerance = options.rotary_tolerance,
+                                         .junction_deviation = options.junction_deviation,
+                                         .longest_wait = longest_wait,
+                                         .quick_stop_share = quick_stop_share,
+                                         .reserve = reserve}};
+        return make_executor(machine, settings);
       }))
       .def("push_line", [](E& e, const std::string& line) { return e.push_line(line); })
       .def("push_block", [](E& e, const py::tuple& block) { return e.push_block(block_from(block)); })

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blocks.hpp"
+#include "cncplan/plan/executor_options.hpp"
 #include "cncplan/plan/executor_state.hpp"
 #include "cncplan/plan/plan_options.hpp"
 #include "cncplan/plan/program_error.hpp"
@@ -19,11 +20,7 @@ namespace cncplan::python {
 
 struct ExecutorSettings {
   PlanOptions read;  ///< start and dialect
-  double tolerance = 0.01;
-  double rotary_tolerance = 8.726646259971648e-4;
-  double junction_deviation = 0.01;
-  double longest_wait = 0.05;
-  double quick_stop_share = 1;
+  LevelExecutorOptions run;
 };
 
 struct AnySetPoint {
@@ -77,7 +74,6 @@ class AnyExecutor {
 };
 
 /// Throws `Fault` for a machine that cannot be run.
-template <int N>
 [[nodiscard]] std::unique_ptr<AnyExecutor> make_executor(const AnyMachine& machine,
                                                          const ExecutorSettings& settings);
 

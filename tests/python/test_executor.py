@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import LIMITS
+from conftest import LEVELS, LIMITS
 
 import cncplan
 from cncplan import Axis, Machine
@@ -45,6 +45,56 @@ def test_undisturbed_it_is_the_plan(mill):
     words = [(letter, number) for point in points for letter, number, *_ in point.words]
     assert words == [("S", 1000), ("M", 3), ("M", 30)]
     assert points[0].position.shape == (3,) and points[-1].position == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_every_level(mill, level):
+    points = run(cncplan.Executor(mill, level=level))
+    planned = cncplan.plan_text("\n".join(PROGRAM), mill, level=level)
+    # What good and best keep for holds takes some time.
+    assert planned.duration - 0.002 <= points[-1].t <= planned.duration * (1.05 if level in ("good", "best") else 1) + 0.002
+    words = [(letter, number) for point in points for letter, number, *_ in point.words]
+    assert words == [("S", 1000), ("M", 3), ("M", 30)]
+    assert points[-1].position == pytest.approx([0, 0, 0], abs=1e-9)
+    if level == "exact":
+        return  # corners are passed with jumps of the velocity
+    for vector, limit in (("velocity", 30), ("acceleration", 1000), ("jerk", 10000)):
+        assert np.linalg.norm([getattr(point, vector) for point in points], axis=1).max() <= limit * (1 + 1e-6)
+    velocity = np.array([point.velocity for point in points])
+    position = np.array([point.position for point in points])
+    assert np.abs((position[2:] - position[:-2]) / 0.002 - velocity[1:-1]).max() < 10000 * 0.001**2
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_requests_at_every_level(mill, level):
+    executor = cncplan.Executor(mill, level=level, reserve=0.1)
+    for text in PROGRAM:
+        assert executor.push(text)
+    executor.end_of_program()
+    for _ in range(300):
+        executor.tick(0.001)
+    executor.feed_hold()
+    for _ in range(400):
+        point = executor.tick(0.001)
+    assert executor.state == "held" and not point.velocity.any()
+    executor.resume()
+    executor.feed_override(0.5)
+    for _ in range(300):
+        point = executor.tick(0.001)
+    assert executor.state == "moving" and 0 < np.linalg.norm(point.velocity) <= 15 * (1 + 1e-6)
+    executor.reverse()
+    for _ in range(4000):
+        point = executor.tick(0.001)
+    assert point.position == pytest.approx([0, 0, 0], abs=1e-9)
+    executor.reverse(False)
+    for _ in range(300):
+        executor.tick(0.001)
+    executor.stop()
+    while not executor.finished:
+        point = executor.tick(0.001)
+    assert executor.restart(3, point.position)
+    points = run(executor)
+    assert points[-1].position == pytest.approx([0, 0, 0], abs=1e-9) and executor.error is None
 
 
 def test_hold_override_and_limits(mill):
@@ -217,8 +267,9 @@ def test_errors(mill):
         executor.reverse(1)
     with pytest.raises(cncplan.Error):
         executor.jog([1, 2])
-    with pytest.raises(cncplan.Error):
-        cncplan.Executor(mill, tolerance=-1)
+    for wrong in ({"tolerance": -1}, {"level": "better"}, {"reserve": 1}, {"reserve": -0.1}, {"longest_wait": -1}):
+        with pytest.raises(cncplan.Error):
+            cncplan.Executor(mill, **wrong)
 
 
 def test_a_block_that_cannot_be_planned_is_told(mill):

@@ -104,9 +104,10 @@ REQUESTS = ["feed_hold", "resume", "stop", "quick_stop", "return_to_path", "reve
 
 
 @quick
-@given(st.lists(st.tuples(st.sampled_from(REQUESTS), junk), max_size=30), st.lists(coordinate, min_size=3, max_size=3))
-def test_any_requests(requests, place):
-    executor = cncplan.Executor(BENCH)
+@given(st.lists(st.tuples(st.sampled_from(REQUESTS), junk), max_size=30), st.lists(coordinate, min_size=3, max_size=3),
+       st.sampled_from(LEVELS))
+def test_any_requests(requests, place, level):
+    executor = cncplan.Executor(BENCH, level=level)
     for line in ("F1200", "G1 X20", "Y20", "G2 X0 Y0 R30", "M1", "G1 X5"):
         executor.push(line)
     executor.end_of_program()

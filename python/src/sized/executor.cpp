@@ -3,8 +3,10 @@
 
 #include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/executor.hpp"
+#include "cncplan/plan/executor_levels.hpp"
 #include "fault.hpp"
 #include "planned.hpp"
+#include "planner.hpp"
 
 namespace cncplan::python {
 
@@ -27,11 +29,8 @@ class ExecutorOfSize final : public AnyExecutor {
       : axes_(machine.axes.size()),
         read_(with_dialect(settings.read, machine)),
         reader_(std::in_place, machine_of<AXES>(machine), read_),
-        executor_(machine_of<AXES>(machine), {.tolerance = settings.tolerance,
-                                              .rotary_tolerance = settings.rotary_tolerance,
-                                              .junction_deviation = settings.junction_deviation,
-                                              .longest_wait = settings.longest_wait,
-                                              .quick_stop_share = settings.quick_stop_share}) {
+        executor_(machine_of<AXES>(machine), settings.run) {
+    value_of(validate(settings.run));
     value_of(validate(executor_.machine()));
   }
 
@@ -140,9 +139,7 @@ class ExecutorOfSize final : public AnyExecutor {
 
 }  // namespace
 
-template <>
-std::unique_ptr<AnyExecutor> make_executor<AXES>(const AnyMachine& machine,
-                                                 const ExecutorSettings& settings) {
+std::unique_ptr<AnyExecutor> make_executor(const AnyMachine& machine, const ExecutorSettings& settings) {
   return std::make_unique<ExecutorOfSize>(machine, settings);
 }
 

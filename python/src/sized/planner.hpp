@@ -2,7 +2,7 @@
 // cncplan::compiled.
 #pragma once
 
-#include "cncplan/compiled.hpp"
+#include "cncplan/compiled/plan_blocks.hpp"
 
 namespace cncplan {
 
