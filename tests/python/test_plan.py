@@ -15,9 +15,9 @@ SQUARE = "G21 G90 F1800\nG1 X20\nY20\nG3 X10 Y30 R10\nG1 X0 Y0\n"
 OPTIONS = {"exact": ["--tolerance", "0"], **{level: ["--smooth", level] for level in ("fast", "good", "best")}}
 
 
-def simulated(program, path, tmp_path, *options):
+def simulated(program, path, tmp_path, *options, period="0.01"):
     samples = tmp_path / "samples.csv"
-    done = subprocess.run([program, path, "--json", "--quiet", "--samples", samples, "--period", "0.01", *options],
+    done = subprocess.run([program, path, "--json", "--quiet", "--samples", samples, "--period", period, *options],
                           check=True, capture_output=True, text=True)
     return json.loads(done.stdout), np.loadtxt(samples, delimiter=",", skiprows=1, ndmin=2)
 
@@ -35,6 +35,22 @@ def test_equals_simulate(simulate, tmp_path, mill, name, level):
         assert np.array_equal(values + 0.0, table[:, column])
     if name == "short_lines.ngc":  # without work offsets: the table has work coordinates
         assert np.array_equal(samples.position + 0.0, table[:, 1:4])
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("name", ["ball.nc", *(f"ngc/{name}.ngc" for name in (
+    "3dtest", "51MeanderAve", "Cereal", "arcspiral", "cds", "lathe_pawn", "test_12mmflat", "tort"))])
+def test_equals_simulate_on_programs_of_others(simulate, shared, tmp_path, mill, name, level):
+    path = shared / "data" / name
+    period = 0.05 if name == "ball.nc" else 0.01
+    summary, table = simulated(simulate, path, tmp_path, *OPTIONS[level], period=str(period))
+    trajectory = cncplan.plan_file(path, mill, tolerance=0.01, level=level)
+    samples = trajectory.sample(period)
+    assert trajectory.duration == summary["time_s"] and trajectory.length == summary["length_mm"]
+    assert np.array_equal(samples.t, table[:, 0])
+    for column, values in enumerate((samples.s, samples.v, samples.a, samples.j), 4):
+        assert np.array_equal(values + 0.0, table[:, column])
+    assert np.array_equal(samples.position + 0.0, table[:, 1:4])
 
 
 def test_equals_simulate_on_a_machine_file(simulate, tmp_path):
