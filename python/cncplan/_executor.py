@@ -26,8 +26,8 @@ class Executor:
     level : str
         "exact", "fast", "good" or "best", as of `plan_file`. At "good" and "best" parts of the program are planned
         within `push`, `tick` and `end_of_program`, which take some tens of milliseconds then; an override above 1
-        acts as 1, a lower one slows the whole motion; `reverse` goes back to the first rest that is kept; `restart`
-        begins where the line begins.
+        is that of blocks that are pushed while it holds, a lower one slows the whole motion; `reverse` goes back to
+        the first rest that is kept; `restart` begins where the line begins.
     longest_wait : float
         s at rest for which blocks are held back for the ones that follow them.
     quick_stop_share : float
