@@ -8,15 +8,17 @@ function chartsOf(motion) {
   const limit = x => (isFinite(x ?? Infinity) ? x : undefined);
   const perAxis = (valueOf, order) => motion.axes.map(axis => ({
     name: axis.name, value: valueOf(axis.channel), limit: limit(axis.limits[order])}));
-  const along = (value, order) => ({name: 'along the path', value, limit: limit(motion.limits[order])});
+  // Limits hold for the tool's vector; along the path corrections of corners move to and fro. A live run does not tell the vector.
+  const tool = (vector, along, order) => (motion instanceof LiveMotion ? {name: 'along the path', value: along} :
+    {name: 'tool', value: s => norm(vector(s)), limit: limit(motion.limits[order])});
   const unit = motion.axes.some(axis => axis.unit === 'deg') ? 'mm or degrees' : 'mm';
   return [
     {title: 'speed along the path, mm/s', series: [
       {name: 'speed', value: s => s.v, limit: limit(motion.velocityLimit)},
       ...(motion.wanted ? [{name: 'programmed', value: (s, m) => m.wanted(s)}] : [])]},
     {title: `velocity, ${unit}/s`, series: perAxis(k => s => s.velocity[k], 0)},
-    {title: `acceleration, ${unit}/s²`, series: [...perAxis(k => s => s.acceleration[k], 1), along(s => s.a, 1)]},
-    {title: `jerk, ${unit}/s³`, series: [...perAxis(k => s => s.jerk[k], 2), along(s => s.j, 2)]},
+    {title: `acceleration, ${unit}/s²`, series: [...perAxis(k => s => s.acceleration[k], 1), tool(s => s.acceleration, s => s.a, 1)]},
+    {title: `jerk, ${unit}/s³`, series: [...perAxis(k => s => s.jerk[k], 2), tool(s => s.jerk, s => s.j, 2)]},
     {title: 'step rate, 1/s', series: motion.axes.map(axis => ({
       name: axis.name, value: s => Math.abs(s.velocity[axis.channel]) * axis.stepsPerUnit}))},
     ...(motion.deviates ? [{title: 'deviation from the programmed path, mm', series: [
