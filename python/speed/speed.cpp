@@ -1,4 +1,5 @@
-// What python/speed/speed.py compares with: plans a program, samples it a million times, prints both times in s.
+// What python/speed/speed.py compares with: plans a program, samples it a million times, prints both times in
+// s.
 #include <chrono>
 #include <cstdio>
 #include <vector>
