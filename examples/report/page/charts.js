@@ -76,8 +76,10 @@ function chartRows(motion, series, from, to, axis = chartAxes.time) {
     const start = Math.max(motion.phase.time[i], begin), end = Math.min(motion.phase.time[i] + motion.durationOf(i), finish);
     const turning = motion.turning(i), seconds = axis === chartAxes.time ? columns.width : (finish - begin) / columns.count;
     const parts = Math.max(whole ? 4 : 1, Math.min(Math.ceil((end - start) / seconds), 4 * columns.count));
+    const inside = Math.min(1e-4 * (end - start), 1e-5);
     for (let k = 0; k <= parts; ++k) {
-      const t = k === parts ? end : start + (end - start) * k / parts;
+      // a little inside: at its ends a phase may meet the piece of path beside its own
+      const t = Math.min(Math.max(start + (end - start) * k / parts, start + inside), end - inside);
       if (turning < t && turning >= t - (end - start) / parts && k > 0) put(i, turning);
       put(i, t);
     }
