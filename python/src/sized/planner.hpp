@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cncplan/compiled/plan_blocks.hpp"
+#include "cncplan/plan/block_builder.hpp"
 
 namespace cncplan {
 
