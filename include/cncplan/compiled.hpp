@@ -1,5 +1,5 @@
-// What the library `cncplan::compiled` has ready, for `double`: declared where the templates are, and defined
-// in src/ (set-up).
+// What the library `cncplan::compiled` has ready, for `double` (set-up).
+// It is declared where the templates are, and defined in src/.
 #pragma once
 
 #include "cncplan/compiled/block_reader.hpp"
