@@ -1,5 +1,5 @@
-// What drives executors at the levels `good` and `best` that the library `cncplan::compiled` has ready:
-// included where that is used (set-up).
+// Drivers of the levels `good` and `best` that the library `cncplan::compiled` has ready (set-up).
+// They are included where they are used.
 #pragma once
 
 #include "cncplan/plan/executor_levels.hpp"
