@@ -25,8 +25,8 @@ class Planned final : public PlannedPart {
   // The servo thread.
 
   void begin(const Settings& settings, const AxisLimits& limits, const Coordinates& place) override {
-    settings_ = settings;
-    limits_ = limits;
+    next_settings_ = settings;
+    next_limits_ = limits;
     rest_ = {};
     rest_.position = place;
     rest_.at_rest = true;
@@ -122,6 +122,8 @@ class Planned final : public PlannedPart {
   void ask_for_executor() {
     if (!begins_ || stage_.load(std::memory_order_acquire) != Stage::free) return;
     begins_ = false;
+    settings_ = next_settings_;
+    limits_ = next_limits_;
     stage_.store(Stage::asked, std::memory_order_release);
   }
   // Whether the executor is there, and has a block: where it is, then.
@@ -148,9 +150,10 @@ class Planned final : public PlannedPart {
   std::atomic<std::int64_t> handed_{0};   // to the executor
   std::atomic<std::int64_t> ended_{-1};   // blocks that it has been told to be all
   std::atomic<double> feed_share_{-1.0};  // with which the first block is planned; below 0: not known
-  // Of the servo thread; the planning thread reads the first two where an executor is asked for.
-  Settings settings_{};
-  AxisLimits limits_{};
+  // Of the servo thread. The planning thread reads the first two where an executor is asked for; the next two
+  // are of a part for which that is not done yet.
+  Settings settings_{}, next_settings_{};
+  AxisLimits limits_{}, next_limits_{};
   PartState rest_{};
   std::int64_t pushed_ = 0;
   Requests asked_{};

@@ -294,8 +294,13 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   const auto watch = [&](double speed) { most = std::max(most, last = speed); };
   drive(2, watch);
   CHECK(most == Approx(10).epsilon(1e-3));
+  test::Random random;
+  for (int i = 0; i < 1500; ++i) {  // more changes than are kept at once
+    executor->feed_override(random.uniform(1.05, 1.3));
+    drive(2 * period, watch);
+  }
   executor->feed_override(1.5);
-  drive(12, watch);
+  drive(10, watch);
   CHECK(most == Approx(15).epsilon(1e-3));
   CHECK(last == Approx(15).epsilon(1e-3));
   executor->feed_override(0.8);

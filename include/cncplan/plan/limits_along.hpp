@@ -207,12 +207,13 @@ template <std::floating_point S, int N>
   // Ramps go on over the blocks next to a short one, and a lower speed on it leaves them more.
   const S room = room_for_ramp(best);
   const bool is_short = length < short_block<S> * room;
+  const S low = is_short ? fastest(share_of_acceleration<S>, share_of_jerk_on_short_blocks<S>) : least;
+  const int first = low < (S(1) - S(1e-3)) * least ? -1 : 0;
   length = std::max(length, S(2) * room);
   const S alone = time_with_ramps(best, length, S(1));
   S shortest = time_with_ramps(best, length, S(2));
-  for (int i = is_short ? -1 : 0; i <= speeds; ++i) {
-    const S v = i < 0 ? fastest(share_of_acceleration<S>, share_of_jerk_on_short_blocks<S>)
-                      : least + static_cast<S>(i) * rise;
+  for (int i = first; i <= speeds; ++i) {
+    const S v = i < 0 ? low : least + static_cast<S>(i) * rise;
     const S most = acceleration_at(v);
     for (const S share : {S(1), S(0.85), S(0.7), S(0.55)}) {
       const BasicLimits<S> other = at(v, share * most);

@@ -20,12 +20,14 @@ class BasicFeedShares {
 
   /// The thread that drives: what is asked for.
   void ask(S share) { asked_.store(share > S(1) ? share : S(1), std::memory_order_relaxed); }
-  /// The thread that pushes: the share for the block of a number. There is room for some changes at once;
-  /// where there is none, the share stays.
-  [[nodiscard]] S next(std::int64_t block) {
-    const S share = asked_.load(std::memory_order_relaxed);
+  /// The thread that pushes: the share for the next block. There is room for some changes at once; where
+  /// there is none, the share stays.
+  [[nodiscard]] S next() const {
+    return changes_.size() < room ? asked_.load(std::memory_order_relaxed) : pushed_;
+  }
+  /// It was pushed with that share, and has this number.
+  void pushed(std::int64_t block, S share) {
     if (share != pushed_ && changes_.push(Change{block, share})) pushed_ = share;
-    return pushed_;
   }
 
   /// The thread that drives: the share of a block. Blocks before `oldest` are not asked for again.

@@ -55,11 +55,13 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
 
   bool push(const B& block) override {
-    const S share = shares_.next(planner_.pushed());
-    if (block.rapid || !(share > S(1))) return planner_.push(block);
-    B faster = block;
-    faster.feed *= share;
-    return planner_.push(faster);
+    const S share = shares_.next();
+    const std::int64_t number = planner_.pushed();
+    B scaled = block;
+    if (!block.rapid) scaled.feed *= share;
+    if (!planner_.push(scaled)) return false;
+    shares_.pushed(number, share);
+    return true;
   }
   void end_of_program() override {
     planner_.end_of_program();
