@@ -1,15 +1,8 @@
 # What only the project's own builds use: warnings, a build type where none was asked for, compile commands for editors and
-# clang-tidy, ccache where it is installed, and what is left out where its packages are missing.
+# clang-tidy, and what is left out where its packages are missing.
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
-endif()
-
-find_program(CCACHE ccache)
-if(CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER AND NOT DEFINED ENV{CMAKE_CXX_COMPILER_LAUNCHER})
-  # what precompiled headers ask of ccache
-  set(CMAKE_CXX_COMPILER_LAUNCHER
-    ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
 endif()
 
 # Warnings are errors by CMAKE_COMPILE_WARNING_AS_ERROR: the presets and tools/ set it.
