@@ -10,11 +10,11 @@
 #include <tuple>
 #include <type_traits>
 
-#include <Eigen/QR>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/core/least_squares.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/map.hpp"
 
@@ -141,12 +141,12 @@ class StraightInJoints {
       }
     } else {
       point.position = place(joints.position, length() > Scalar(0) ? s / length() : Scalar(0));
-      const auto jacobian = derivative(point.position).completeOrthogonalDecomposition();
+      const auto jacobian = derivative(point.position);
       // Order by order: what the map makes of the lower ones is taken from what the joints do.
-      point.first = jacobian.solve(joints.first);
+      point.first = least_squares<Scalar>(jacobian, joints.first);
       point.second = point.third = Coordinates::Zero();
-      point.second = jacobian.solve(joints.second - along(point, [](const auto& q) { return q.second; }));
-      point.third = jacobian.solve(joints.third - along(point, [](const auto& q) { return q.third; }));
+      point.second = least_squares<Scalar>(jacobian, Vector(joints.second - along(point, [](const auto& q) { return q.second; })));
+      point.third = least_squares<Scalar>(jacobian, Vector(joints.third - along(point, [](const auto& q) { return q.third; })));
     }
     return point;
   }
@@ -187,7 +187,7 @@ class StraightInJoints {
       const Vector target = joints_.start() + (joints - joints_.start()) * part;
       if (stride == strides && share >= Scalar(1)) return end_;
       for (int round = 0; round < rounds; ++round) {
-        const Coordinates step = derivative(x).completeOrthogonalDecomposition().solve(gap(target, x));
+        const Coordinates step = least_squares<Scalar>(derivative(x), gap(target, x));
         x += step;
         if (!(step.norm() > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * x.norm())) break;
       }

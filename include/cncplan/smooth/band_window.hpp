@@ -3,7 +3,7 @@
 
 #include "cncplan/core/compiler.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -82,7 +82,7 @@ template <std::floating_point S, int N>
       Matrix& block = rows[i][back];
       for (std::size_t k = back + 1; k <= 3 && k <= i; ++k)
         block.noalias() -= rows[i][k] * rows[j][k - back].transpose();
-      // Eigen's own solver is made for large matrices.
+      // Eigen's own solvers are made for large matrices.
       const Matrix& before = rows[j][0];
       for (int c = 0; c < N; ++c) {
         for (int k = 0; k < c; ++k) block.col(c) -= before(c, k) * block.col(k);
@@ -103,11 +103,18 @@ template <std::floating_point S, int N>
     own = factor;
     x[i] = -gradient[i];
     for (std::size_t k = 1; k <= 3 && k <= i; ++k) x[i].noalias() -= rows[i][k] * x[i - k];
-    own.template triangularView<Eigen::Lower>().solveInPlace(x[i]);
+    for (int c = 0; c < N; ++c) {
+      x[i][c] /= own(c, c);
+      for (int r = c + 1; r < N; ++r) x[i][r] -= own(r, c) * x[i][c];
+    }
   }
   for (std::size_t i = n; i-- > 0;) {
     for (std::size_t k = 1; k <= 3 && i + k < n; ++k) x[i].noalias() -= rows[i + k][k].transpose() * x[i + k];
-    rows[i][0].template triangularView<Eigen::Lower>().transpose().solveInPlace(x[i]);
+    const Matrix& own = rows[i][0];
+    for (int c = N; c-- > 0;) {
+      x[i][c] /= own(c, c);
+      for (int r = 0; r < c; ++r) x[i][r] -= own(c, r) * x[i][c];
+    }
   }
   return true;
 }
