@@ -18,15 +18,15 @@ void smooth_ball(benchmark::State& state, const smooth::BasicSmoothOptions<doubl
   const Limits& tool = bench::mill.limits;
   const auto program = read_text(bench::ball(), bench::mill);
   if (program.failed()) return state.SkipWithError("the program does not read");
-  std::vector<smooth::BandBlock<Segment>> blocks;
+  std::vector<smooth::BasicBandBlock<double, 3>> blocks;
   for (const auto& block : program.blocks())
     if (block.path.length() > 0)
-      blocks.push_back({&block.path, block.rapid ? tool.velocity : std::min(block.feed, tool.velocity),
+      blocks.push_back({block.path, block.rapid ? tool.velocity : std::min(block.feed, tool.velocity),
                         Vector3::Constant(0.01)});
   smooth::MotionLimits<3> limits;
   limits.tool = tool;
   double seconds = 0;
-  for (auto _ : state) seconds = smooth::smooth_run<Segment>(blocks, limits, options).duration;
+  for (auto _ : state) seconds = smooth::smooth_run<double, 3>(blocks, limits, options).duration;
   state.counters["seconds"] = seconds;
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }

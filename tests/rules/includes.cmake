@@ -1,5 +1,6 @@
 # The rules of the folders, checked on the text of every header.   cmake -DINCLUDE=include -P includes.cmake
-#   - A folder includes the standard library, Eigen, tl::expected, core/ and itself; plan/, published/, compiled/ and the umbrella include all.
+#   - A folder includes the standard library, Eigen, tl::expected, core/, itself and its own instances (compiled/FOLDER.hpp); plan/,
+#     published/, compiled/ and the umbrella include all.
 #   - The umbrella, cncplan.hpp, lags behind nothing: it includes every header there is, but definitions (NAME-inl.hpp),
 #     which NAME.hpp includes where the library is not compiled.
 #   - A header has #pragma once, and a first line that says what it holds. If that line says "(set-up)", the header is for
@@ -51,8 +52,9 @@ foreach(header IN LISTS headers)
       set(other "${CMAKE_MATCH_1}")
       if(NOT target IN_LIST headers)
         complain("includes \"${target}\", which is no header of the library")
-      elseif(NOT folder STREQUAL "" AND NOT folder MATCHES "^(plan|published|compiled)$" AND NOT other MATCHES "^(core|${folder})$")
-        complain("${folder}/ includes \"${target}\": a folder includes core/ and itself only")
+      elseif(NOT folder STREQUAL "" AND NOT folder MATCHES "^(plan|published|compiled)$" AND NOT other MATCHES "^(core|${folder})$"
+          AND NOT target STREQUAL "cncplan/compiled/${folder}.hpp")
+        complain("${folder}/ includes \"${target}\": a folder includes core/, itself and its own instances only")
       endif()
       if(NOT folder STREQUAL "")
         continue()

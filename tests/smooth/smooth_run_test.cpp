@@ -29,10 +29,10 @@ struct Program {
     paths.emplace_back(path::BasicLine<double, 3>(from, to));
     feeds.push_back(feed);
   }
-  [[nodiscard]] std::vector<BandBlock<Segment>> blocks() const {
-    std::vector<BandBlock<Segment>> result;
+  [[nodiscard]] std::vector<BasicBandBlock<double, 3>> blocks() const {
+    std::vector<BasicBandBlock<double, 3>> result;
     for (std::size_t i = 0; i < paths.size(); ++i)
-      result.push_back({&paths[i], feeds[i], Vector3::Constant(tolerance)});
+      result.push_back({paths[i], feeds[i], Vector3::Constant(tolerance)});
     return result;
   }
 };
@@ -154,7 +154,7 @@ TEST_CASE("one corner: limits, tolerance, and the time of the study") {
   for (const auto& [degrees, loss] : {Row{90, 0.077}, Row{30, 0.061}, Row{10, 0.001}, Row{150, 0.0615}}) {
     INFO("a corner of " << degrees << " degrees");
     const Program program = corner(degrees);
-    const auto run = smooth_run<Segment>(program.blocks(), program.limits);
+    const auto run = smooth_run<double, 3>(program.blocks(), program.limits);
     check(run, program);
     const double ends = 2 * std::sqrt(30 / 1e4);
     CHECK(run.duration - 100.0 / 30 - ends < loss + 0.0005);
@@ -172,7 +172,7 @@ TEST_CASE("sharp corners take little more than any motion must") {
        {Row{90, 0.01, 0.0700}, Row{150, 0.01, 0.0509}, Row{90, 0.05, 0.0386}}) {
     CAPTURE(degrees, tolerance);
     const Program program = corner(degrees, {30, 1000, 1e4}, tolerance);
-    const auto run = smooth_run<Segment>(program.blocks(), program.limits);
+    const auto run = smooth_run<double, 3>(program.blocks(), program.limits);
     const double loss = run.duration - 100.0 / 30 - 2 * std::sqrt(30 / 1e4);
     CHECK(loss > 0.99 * least);
     CHECK(loss < 1.12 * least);
@@ -184,12 +184,12 @@ TEST_CASE("the time does not depend on the windows") {
   program.line(program.paths.back().position_at(50), Vector3(20, 50, 3), 30);
   program.line(Vector3(20, 50, 3), Vector3(20, 49, 3), 30);
   program.line(Vector3(20, 49, 3), Vector3(50, 49, 3), 30);
-  const double reference = smooth_run<Segment>(program.blocks(), program.limits).duration;
+  const double reference = smooth_run<double, 3>(program.blocks(), program.limits).duration;
   for (const std::size_t window : {200U, 210U, 250U, 300U, 600U, 1000U}) {
     INFO("window " << window);
     BasicSmoothOptions<double> options;
     options.speed_window = window;
-    const auto run = smooth_run<Segment>(program.blocks(), program.limits, options);
+    const auto run = smooth_run<double, 3>(program.blocks(), program.limits, options);
     CHECK(run.duration == Approx(reference).epsilon(1e-3));
     check(run, program);
   }
@@ -210,7 +210,7 @@ TEST_CASE("windows of curve and speed do not stick on many sharp corners") {
     INFO("window " << window);
     BasicSmoothOptions<double> options;
     options.band_window = window;
-    const auto run = smooth_run<Segment>(program.blocks(), program.limits, options);
+    const auto run = smooth_run<double, 3>(program.blocks(), program.limits, options);
     CHECK(run.duration == Approx(5.84).epsilon(6e-3));
     check(run, program);
   }
@@ -236,7 +236,7 @@ TEST_CASE("random programs keep limits and tolerance") {
     }
     INFO("seed " << test::seed() << " program " << i << " tolerance " << program.tolerance << "\n"
                  << points.str());
-    check(smooth_run<Segment>(program.blocks(), program.limits), program);
+    check(smooth_run<double, 3>(program.blocks(), program.limits), program);
   }
 }
 
@@ -259,7 +259,7 @@ TEST_CASE("rapids beside slow feeds are planned as any others") {
     to(0, y + 0.5, 30);
     to(0, y + 1, 30);
   }
-  const Run run = smooth_run<Segment>(program.blocks(), program.limits);
+  const Run run = smooth_run<double, 3>(program.blocks(), program.limits);
   // Stopping at each corner costs sqrt(V / J) at both ends of each line.
   double stopping = 0, at_feed = 0;
   for (std::size_t i = 0; i < program.paths.size(); ++i) {
@@ -288,7 +288,7 @@ TEST_CASE("a slow line between rapids costs its ramps and no more") {
   program.line(Vector3(0, 0, 0), Vector3(20, 0, 0), 30);
   program.line(Vector3(20, 0, 0), Vector3(21, 0, 0), slow);
   program.line(Vector3(21, 0, 0), Vector3(41, 0, 0), 30);
-  const Run run = smooth_run<Segment>(program.blocks(), program.limits);
+  const Run run = smooth_run<double, 3>(program.blocks(), program.limits);
   // A ramp from v to 30 takes 2 sqrt((30 - v) / J), at the mean of both speeds.
   const auto loss = [](double v) { return 2 * std::sqrt((30 - v) / 1e4) * (1 - (30 + v) / 60); };
   const double least = 1 / slow + 40.0 / 30 + 2 * loss(0) + 2 * loss(slow);
@@ -303,7 +303,7 @@ TEST_CASE("ramps take the whole jerk") {
   program.limits.tool = {30, 1000, 1e4};
   program.line(Vector3(0, 0, 0), Vector3(50, 0, 0), 30);
   const double least = 50.0 / 30 + 2 * std::sqrt(30 / 1e4);  // the acceleration limit is not reached
-  const Run run = smooth_run<Segment>(program.blocks(), program.limits);
+  const Run run = smooth_run<double, 3>(program.blocks(), program.limits);
   CHECK(run.duration > least);
   CHECK(run.duration < least + 0.0012);
 }
@@ -320,7 +320,7 @@ TEST_CASE("no block is entered or left above its feed") {
       x = next;
     }
     INFO("seed " << test::seed() << " slow feed " << slow);
-    check(smooth_run<Segment>(program.blocks(), program.limits), program);
+    check(smooth_run<double, 3>(program.blocks(), program.limits), program);
   }
 }
 

@@ -114,9 +114,8 @@ template <MachineModel M, BlockModel B>
 class RunBlocks {
  public:
   using S = typename M::Scalar;
-  using Path = typename B::Path;
   using Piece = CurveOf<M>;
-  using Run = smooth::SmoothRun<Path>;
+  using Run = smooth::SmoothRun<S, M::axis_count>;
   using Cubic = smooth::BasicCubic<S, M::axis_count>;
 
   /// The machine is to stay, and so are the blocks.
@@ -130,12 +129,12 @@ class RunBlocks {
   void push(const B& block, S speed, const SmoothingRules<S>& rules) {
     limits_.tool.velocity =
         std::max(limits_.tool.velocity, std::min(top_speed(block, machine_), most_speed_));
-    blocks_.push_back({&block.path, std::min(speed, most_speed_), tolerances(block, machine_.axes, rules)});
+    blocks_.push_back({block.path, std::min(speed, most_speed_), tolerances(block, machine_.axes, rules)});
   }
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
 
   [[nodiscard]] Run run(const smooth::BasicSmoothOptions<S>& options,
-                        const std::optional<smooth::RunCut<Path>>& start,
+                        const std::optional<typename Run::Cut>& start,
                         std::pmr::memory_resource* memory) const {
     return Run(blocks_, limits_, options, start, memory);
   }
@@ -147,7 +146,7 @@ class RunBlocks {
   const M& machine_;
   smooth::BasicMotionLimits<S, M::axis_count> limits_;
   S most_speed_{};
-  std::pmr::vector<smooth::BandBlock<Path>> blocks_;
+  std::pmr::vector<typename Run::Block> blocks_;
 };
 
 /// The same under a map: the curve is searched for in the program's coordinates.
@@ -160,7 +159,7 @@ class RunBlocks<M, B> {
   using Path = ProgrammedPath<Map, typename B::Path>;
   using Piece = CurveOf<M>;
   using Cells = MappedCells<Map>;
-  using Run = smooth::SmoothRun<Path, Cells>;
+  using Run = smooth::SmoothRun<S, coordinates, Cells>;
   using Cubic = smooth::BasicCubic<S, coordinates>;
 
   RunBlocks(const M& machine, const smooth::BasicMotionLimits<S, M::axis_count>& limits, std::size_t most,
@@ -181,13 +180,13 @@ class RunBlocks<M, B> {
         std::max(limits_.tool.velocity, std::min(top_speed(block, machine_), most_speed_));
     paths_.emplace_back(block.path);
     maps_.push_back(paths_.back().map());
-    blocks_.push_back({&paths_.back(), speed, tolerances(block, coordinate_axes<S, Map>(), rules)});
+    blocks_.push_back({paths_.back(), speed, tolerances(block, coordinate_axes<S, Map>(), rules)});
     measure(block, speed);
   }
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
 
   [[nodiscard]] Run run(const smooth::BasicSmoothOptions<S>& options,
-                        const std::optional<smooth::RunCut<Path>>& start,
+                        const std::optional<typename Run::Cut>& start,
                         std::pmr::memory_resource* memory) const {
     return Run(blocks_, limits_, options, start, memory, Cells(maps_, limits_, along()));
   }
@@ -256,7 +255,7 @@ class RunBlocks<M, B> {
   Mean acceleration_, jerk_;
   std::pmr::vector<Path> paths_;
   std::pmr::vector<const Map*> maps_;
-  std::pmr::vector<smooth::BandBlock<Path>> blocks_;
+  std::pmr::vector<typename Run::Block> blocks_;
 };
 
 }  // namespace cncplan::plan

@@ -126,7 +126,6 @@ class SmoothPlanner {
 
  private:
   using Run = typename RunBlocks<M, B>::Run;
-  using Path = typename RunBlocks<M, B>::Path;
   using RunPlan = typename Run::Plan;
 
   // Corners reach no farther beyond a cut, as a rule.
@@ -376,7 +375,7 @@ class SmoothPlanner {
         // From there the machine can come to rest along what is known.
         std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
         while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
-        smooth::RunCut<Path> there = cut;
+        typename Run::Cut there = cut;
         there.place.block -= moving;
         const Given rest = run_blocks(given.sources[moving], end);
         if (!works(rest.blocks.run(work_, there, memory_).slow_plan(), rest.blocks)) continue;
@@ -389,7 +388,7 @@ class SmoothPlanner {
         const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
         if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return false;  // nothing is let go
         // The very way to rest that is driven if nothing else can be: it begins with the approach.
-        smooth::RunCut<Path> next = cut;
+        typename Run::Cut next = cut;
         next.place.block -= kept;
         next.approach = &planned.approach;
         const Given way = run_blocks(gone, end);
@@ -540,7 +539,7 @@ class SmoothPlanner {
   std::size_t planned_ = 0;       // of them that have plans; blocks next to a cut are kept
   // The run goes on in a block whose first part has a plan; from there motion to rest along all blocks before
   // `known_` is proven.
-  std::optional<smooth::RunCut<Path>> cut_;
+  std::optional<typename Run::Cut> cut_;
   smooth::BasicApproach<S, Run::axis_count> approach_{memory_};
   std::size_t known_ = 0;
   bool begun_ = false;  // a piece of the block in which it goes on is planned

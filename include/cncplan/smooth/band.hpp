@@ -1,7 +1,6 @@
 // The smoothest curve within a tolerance of a run of blocks (set-up).
 #pragma once
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,9 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/core/concepts.hpp"
+#include "cncplan/core/least_squares.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/path_point.hpp"
+#include "cncplan/core/path_view.hpp"
 #include "cncplan/core/progress.hpp"
 #include "cncplan/smooth/band_window.hpp"
 #include "cncplan/smooth/cubic.hpp"
@@ -25,32 +25,31 @@ namespace cncplan::smooth {
 
 /// A block as smoothing sees it: where it goes, how fast it may, and how far each axis may leave it. The
 /// tolerances of the tool's axes are one number, which bounds the tool's distance.
-template <Path P>
-struct BandBlock {
-  const P* path{};
-  typename P::Scalar feed{};
-  typename P::Vector tolerance{};
+template <std::floating_point S, int N>
+struct BasicBandBlock {
+  BasicPathView<S, N> path{};
+  S feed{};
+  VectorN<S, N> tolerance{};
 };
 
 /// Where a curve goes on that was cut: its point and derivatives at a length into the first block. Blocks
 /// before that may come along: the corners between them reach beyond it.
-template <Path P>
-struct BandCut {
+template <std::floating_point S, int N>
+struct BasicBandCut {
   std::size_t block{};
-  typename P::Scalar at{};  ///< mm of the block
-  PathPoint<typename P::Vector> point{};
+  S at{};  ///< mm of the block
+  PathPoint<VectorN<S, N>> point{};
 };
 
 /// A cubic B-spline q(s) over the programmed length with |q(s) - p(s)| below the tolerance. It is made of a
 /// start that is inside, and moves from there to where a speed-weighted sum of |q'''|^2 is least. Its first
 /// and last point, with tangent and curvature, are those of the path, or those at which it was cut.
-template <Path P>
-class Band {
+template <std::floating_point S, int N>
+class BasicBand {
  public:
-  using Scalar = typename P::Scalar;
-  using Vector = typename P::Vector;
-  static constexpr int axis_count = Vector::RowsAtCompileTime;
-  using S = Scalar;
+  using Vector = VectorN<S, N>;
+  using Block = BasicBandBlock<S, N>;
+  using Cut = BasicBandCut<S, N>;
 
   struct Options {
     BasicLimits<S> along{};  ///< the limits of motion along the path
@@ -65,30 +64,9 @@ class Band {
 
   /// Blocks that follow each other without a stop, each of a length > 0. Lengths count from where the curve
   /// begins. All lies in `memory`.
-  Band(std::span<const BandBlock<P>> blocks, const Options& options,
-       const std::optional<BandCut<P>>& cut = std::nullopt,
-       std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : blocks_(blocks), options_(options), cut_(cut), memory_(memory) {
-    S at = S(0);
-    if (cut_) {
-      at = -cut_->at;
-      for (std::size_t block = 0; block < cut_->block; ++block) at -= blocks_[block].path->length();
-    }
-    for (const auto& block : blocks_) {
-      starts_.push_back(at);
-      at += block.path->length();
-    }
-    starts_.push_back(at);
-    length_ = at;
-    size_corners();
-    for (int round = 0; round < 30; ++round) {
-      make_knots();
-      make_points();
-      make_samples();
-      if (narrow()) break;
-    }
-    start_ = points_;
-  }
+  BasicBand(std::span<const Block> blocks, const Options& options,
+            const std::optional<Cut>& cut = std::nullopt,
+            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   [[nodiscard]] std::size_t cell_count() const { return lengths_.size(); }
   [[nodiscard]] S cell_start(std::size_t cell) const { return knots_[cell]; }
@@ -107,83 +85,28 @@ class Band {
     return least;
   }
 
-  [[nodiscard]] BasicCubic<S, axis_count> cubic(std::size_t cell) const {
+  [[nodiscard]] BasicCubic<S, N> cubic(std::size_t cell) const {
     return {cubic_start(cells_[cell].weights, std::span<const Vector>(points_).subspan(cell, 4)),
             lengths_[cell]};
   }
 
   /// Moves the curve: `speeds_sq` is b = v^2 in each cell, of a law of speed along the curve as it is. Where
   /// that is the feed the curve stays as it is. Returns the Newton steps.
-  int smoothen(std::span<const S> speeds_sq, const Progress& progress = {}) {
-    const std::size_t cells = cell_count();
-    std::pmr::vector<char> slow(points_.size(), 0, memory_);
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      const S feed = this->feed(cell);
-      const S v = std::sqrt(speeds_sq[cell]);
-      cells_[cell].price = v * v * v * feed * feed * feed * lengths_[cell];
-      if (v < S(0.998) * feed)
-        for (std::size_t k = cell >= reach_ ? cell - reach_ : 0; k < std::min(cell + 4 + reach_, slow.size());
-             ++k)
-          slow[k] = 1;
-    }
-    keep_pinned(slow);
-    prepare_memory();
-    const BasicBandMemory<S, axis_count> memory{rows_, gradient_, step_, trial_};
-    const BasicBandProblem<S, axis_count> problem{cells_, samples_, jerk_scale(), options_.centring};
-    return in_windows(slow, 3, progress, [&](std::size_t first, std::size_t last) {
-      return smooth::smoothen(problem, std::span<Vector>(points_), first, last, options_.solver, memory)
-          .rounds;
-    });
-  }
+  int smoothen(std::span<const S> speeds_sq, const Progress& progress = {});
 
   /// Moves curve and speed together where it is slow. `speeds_sq`: for each cell the middle coefficient of b,
   /// as `BasicCellSpeed` has it, of a law of these skews that keeps all limits, those of `limited` too; 0 in
   /// cells that stay. Returns the Newton steps.
-  int improve(std::span<const S> speeds_sq, std::span<const S> skews,
-              const BasicMotionLimits<S, axis_count>& limits,
-              std::span<const BasicLimitedRow<S, axis_count>> limited, const BasicJointOptions<S>& solver,
-              const Progress& progress = {}) {
-    constexpr S slow = S(0.97);
-    constexpr S price = S(0.05);  // of a q''' that takes the whole limit of the jerk
-    const std::size_t cells = cell_count();
-    std::pmr::vector<S> feeds(cells, memory_), speeds(points_.size(), S(0), memory_);
-    std::pmr::vector<char> moves(points_.size(), 0, memory_);
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      feeds[cell] = feed(cell);
-      speeds[cell + 1] = speeds_sq[cell];
-      cells_[cell].price = price * speeds_sq[cell] * speeds_sq[cell] * speeds_sq[cell];
-      if (speeds_sq[cell] < slow * feeds[cell] * feeds[cell])
-        for (std::size_t k = cell >= reach_ ? cell - reach_ : 0;
-             k < std::min(cell + 4 + reach_, moves.size()); ++k)
-          moves[k] = 1;
-    }
-    // Not next to cells without a speed.
-    for (std::size_t cell = 0; cell < cells; ++cell)
-      if (!(speeds_sq[cell] > S(0)))
-        for (std::size_t k = cell >= 2 ? cell - 2 : 0; k < std::min(cell + 6, moves.size()); ++k)
-          moves[k] = 0;
-    keep_pinned(moves);
-    using Unknowns = VectorN<S, axis_count + 1>;
-    using Rows = std::array<Eigen::Matrix<S, axis_count + 1, axis_count + 1>, 4>;
-    std::pmr::vector<Rows> rows(options_.window, memory_);
-    std::pmr::vector<Unknowns> gradient(options_.window, memory_), step(options_.window, memory_),
-        trial(options_.window + 6, memory_);
-    std::pmr::vector<detail::JointPlace<S>> places(3 * (options_.window + 3), memory_);
-    const BasicBandProblem<S, axis_count> curve{cells_, samples_, jerk_scale(), options_.centring};
-    const BasicJointProblem<S, axis_count> problem{&curve, feeds, skews, &limits, limited};
-    return in_windows(moves, 4, progress, [&](std::size_t first, std::size_t last) {
-      return smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, last, solver,
-                             BasicJointMemory<S, axis_count>{rows, gradient, step, trial, places})
-          .rounds;
-    });
-  }
+  int improve(std::span<const S> speeds_sq, std::span<const S> skews, const BasicMotionLimits<S, N>& limits,
+              std::span<const BasicLimitedRow<S, N>> limited, const BasicJointOptions<S>& solver,
+              const Progress& progress = {});
 
   /// A bound of how far the curve is off the programmed path, as a share of the tolerance, within one cell.
   /// On each part of it that lies in one block the difference is a cubic, but for the third derivative of the
   /// block's path, whose bound is added.
   [[nodiscard]] S deviation(std::size_t cell) const {
     S worst = S(0);
-    const BasicCubic<S, axis_count> curve = cubic(cell);
+    const BasicCubic<S, N> curve = cubic(cell);
     const S end = knots_[cell + 1];
     S at = knots_[cell];
     for (std::size_t block = block_at(at); at < end; ++block) {
@@ -198,26 +121,10 @@ class Band {
   /// Brings the curve inside the tolerance by proof, where it leaves it between samples, by going back
   /// towards the start. Returns the largest share of the tolerance that is left, below 1 unless the start
   /// itself is not inside.
-  S settle() {
-    S worst = S(0);
-    for (int round = 0; round < 40; ++round) {
-      worst = S(0);
-      for (std::size_t cell = 0; cell < cell_count(); ++cell) {
-        const S share = deviation(cell);
-        worst = std::max(worst, share);
-        if (share <= S(1)) continue;
-        // Little by little: a curve that goes back far at one place bends there.
-        const S kept = std::max(S(1) - S(2) * (share - S(1)) - S(1e-3), S(0.8));
-        for (std::size_t k = std::max<std::size_t>(cell, 3); k < std::min(cell + 4, points_.size() - 3); ++k)
-          points_[k] = start_[k] + kept * (points_[k] - start_[k]);
-      }
-      if (!(worst > S(1))) break;
-    }
-    return worst;
-  }
+  S settle();
 
   /// Where the curve may be cut before a cell.
-  [[nodiscard]] BandCut<P> cut_before(std::size_t cell) const {
+  [[nodiscard]] Cut cut_before(std::size_t cell) const {
     const std::size_t block = block_at(knots_[cell]);
     return {block, knots_[cell] - starts_[block], cubic(cell).start()};
   }
@@ -253,7 +160,7 @@ class Band {
 
   [[nodiscard]] Vector programmed(S s) const {
     const std::size_t block = block_at(s);
-    return blocks_[block].path->position_at(s - starts_[block]);
+    return blocks_[block].path.position_at(s - starts_[block]);
   }
 
   [[nodiscard]] Vector jerk_scale() const { return Vector::Constant(S(1) / options_.along.jerk); }
@@ -265,9 +172,8 @@ class Band {
     return (a * a * a * a * a - S(4) * b * b * b * b * b) / S(120);
   }
 
-  [[nodiscard]] S part_deviation(const BasicCubic<S, axis_count>& curve, S from, S to, std::size_t block,
-                                 S at) const {
-    const P& path = *blocks_[block].path;
+  [[nodiscard]] S part_deviation(const BasicCubic<S, N>& curve, S from, S to, std::size_t block, S at) const {
+    const BasicPathView<S, N>& path = blocks_[block].path;
     const S half = (to - from) / S(2), x = at - starts_[block];
     const S length = path.length();
     const auto p = path.point_at(std::clamp(x + half, S(0), length));
@@ -289,10 +195,10 @@ class Band {
   void size_corners() {
     const auto& limits = options_.along;
     for (std::size_t i = 1; i < blocks_.size(); ++i) {
-      const BandBlock<P>&before = blocks_[i - 1], &after = blocks_[i];
+      const Block &before = blocks_[i - 1], &after = blocks_[i];
       Corner corner;
       corner.at = starts_[i];
-      corner.jump = after.path->point_at(S(0)).first - before.path->point_at(before.path->length()).first;
+      corner.jump = after.path.point_at(S(0)).first - before.path.point_at(before.path.length()).first;
       const Vector tolerance = before.tolerance.cwiseMin(after.tolerance);
       const S jump = corner.jump.norm(), share = corner.jump.cwiseQuotient(tolerance).norm();
       if (!(jump > S(1e-9))) continue;
@@ -324,7 +230,7 @@ class Band {
   void fit_bends(std::size_t block, S from, S to, int halvings, const Add& add) const {
     constexpr S most_off = S(0.8);  // of the tolerance; a start is narrowed above 0.85
     const auto size = [&](S a, S b) {
-      const Vector bend = blocks_[block].path->bounds(a, b).second.cwiseQuotient(blocks_[block].tolerance);
+      const Vector bend = blocks_[block].path.bounds(a, b).second.cwiseQuotient(blocks_[block].tolerance);
       return std::sqrt(S(6) * most_off / bend.norm());
     };
     const S own = size(from, to), middle = from + (to - from) / S(2);
@@ -358,7 +264,7 @@ class Band {
       if (size < widest) fine.push_back({at, std::max(size, widest / S(1000)), reach});
     };
     auto corner = corners_.begin();
-    fit_bends(0, S(0), blocks_[0].path->length(), halvings, add);
+    fit_bends(0, S(0), blocks_[0].path.length(), halvings, add);
     for (std::size_t i = 1; i < blocks_.size(); ++i) {
       const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
       if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
@@ -367,7 +273,7 @@ class Band {
         add(corner->at, corner->width / parts, S(0.6) * corner->width);
         ++corner;
       }
-      fit_bends(i, S(0), blocks_[i].path->length(), halvings, add);
+      fit_bends(i, S(0), blocks_[i].path.length(), halvings, add);
     }
     fine.push_back({length(), widest / S(30), S(0)});
     for (std::size_t i = 1; i < fine.size(); ++i)
@@ -437,23 +343,22 @@ class Band {
           points_[i] +=
               (corners_[c].width * kernel((s - corners_[c].at) / corners_[c].width)) * corners_[c].jump;
     }
-    fix_end(cells_.front().weights, 0, cut_ ? cut_->point : blocks_.front().path->point_at(S(0)), 0);
+    fix_end(cells_.front().weights, 0, cut_ ? cut_->point : blocks_.front().path.point_at(S(0)), 0);
     fix_end(moved(cells_[cells - 1].weights, lengths_.back()), 1,
-            blocks_.back().path->point_at(blocks_.back().path->length()), cells);
+            blocks_.back().path.point_at(blocks_.back().path.length()), cells);
   }
 
   // Three control points from what the curve is at one of its ends; `column`: the first with a weight there.
   void fix_end(const CubicWeights<S>& w, std::size_t column, const PathPoint<Vector>& at, std::size_t first) {
     Eigen::Matrix<S, 3, 3> system;
-    Eigen::Matrix<S, 3, axis_count> right;
     for (int d = 0; d < 3; ++d)
       for (int q = 0; q < 3; ++q)
         system(d, q) = w[static_cast<std::size_t>(d)][column + static_cast<std::size_t>(q)];
-    right.row(0) = at.position.transpose();
-    right.row(1) = at.first.transpose();
-    right.row(2) = at.second.transpose();
-    const Eigen::Matrix<S, 3, axis_count> solved = system.partialPivLu().solve(right);
-    for (int q = 0; q < 3; ++q) points_[first + static_cast<std::size_t>(q)] = solved.row(q).transpose();
+    for (int axis = 0; axis < N; ++axis) {
+      const VectorN<S, 3> solved =
+          least_squares<S>(system, VectorN<S, 3>(at.position[axis], at.first[axis], at.second[axis]));
+      for (int q = 0; q < 3; ++q) points_[first + static_cast<std::size_t>(q)][axis] = solved[q];
+    }
   }
 
   void make_samples() {
@@ -470,7 +375,7 @@ class Band {
       for (const S share : {S(0), S(1) / S(3), S(2) / S(3)}) add(share * h, h / S(3));
       while (block + 1 < blocks_.size() && starts_[block + 1] < from + h) add(starts_[++block] - from, S(0));
       const std::size_t middle = block_at(from + h / S(2));
-      cells_[cell].third = blocks_[middle].path->point_at(from + h / S(2) - starts_[middle]).third;
+      cells_[cell].third = blocks_[middle].path.point_at(from + h / S(2) - starts_[middle]).third;
     }
     cells_.back().first_sample = samples_.size();
   }
@@ -536,19 +441,124 @@ class Band {
     trial_.resize(options_.window + 6);
   }
 
-  std::span<const BandBlock<P>> blocks_;
+  std::span<const Block> blocks_;
   Options options_;
-  std::optional<BandCut<P>> cut_;
+  std::optional<Cut> cut_;
   S length_{};
   std::optional<std::size_t> pinned_;
   std::pmr::memory_resource* memory_;
   std::pmr::vector<S> starts_{memory_}, knots_{memory_}, lengths_{memory_};
   std::pmr::vector<Corner> corners_{memory_};
   std::pmr::vector<Vector> points_{memory_}, start_{memory_};
-  std::pmr::vector<BasicBandCell<S, axis_count>> cells_{memory_};
-  std::pmr::vector<BasicBandSample<S, axis_count>> samples_{memory_};
-  std::pmr::vector<std::array<Eigen::Matrix<S, axis_count, axis_count>, 4>> rows_{memory_};
+  std::pmr::vector<BasicBandCell<S, N>> cells_{memory_};
+  std::pmr::vector<BasicBandSample<S, N>> samples_{memory_};
+  std::pmr::vector<std::array<Eigen::Matrix<S, N, N>, 4>> rows_{memory_};
   std::pmr::vector<Vector> gradient_{memory_}, step_{memory_}, trial_{memory_};
 };
+
+template <std::floating_point S, int N>
+BasicBand<S, N>::BasicBand(std::span<const Block> blocks, const Options& options,
+                           const std::optional<Cut>& cut, std::pmr::memory_resource* memory)
+    : blocks_(blocks), options_(options), cut_(cut), memory_(memory) {
+  S at = S(0);
+  if (cut_) {
+    at = -cut_->at;
+    for (std::size_t block = 0; block < cut_->block; ++block) at -= blocks_[block].path.length();
+  }
+  for (const auto& block : blocks_) {
+    starts_.push_back(at);
+    at += block.path.length();
+  }
+  starts_.push_back(at);
+  length_ = at;
+  size_corners();
+  for (int round = 0; round < 30; ++round) {
+    make_knots();
+    make_points();
+    make_samples();
+    if (narrow()) break;
+  }
+  start_ = points_;
+}
+
+template <std::floating_point S, int N>
+int BasicBand<S, N>::smoothen(std::span<const S> speeds_sq, const Progress& progress) {
+  const std::size_t cells = cell_count();
+  std::pmr::vector<char> slow(points_.size(), 0, memory_);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const S feed = this->feed(cell);
+    const S v = std::sqrt(speeds_sq[cell]);
+    cells_[cell].price = v * v * v * feed * feed * feed * lengths_[cell];
+    if (v < S(0.998) * feed)
+      for (std::size_t k = cell >= reach_ ? cell - reach_ : 0; k < std::min(cell + 4 + reach_, slow.size());
+           ++k)
+        slow[k] = 1;
+  }
+  keep_pinned(slow);
+  prepare_memory();
+  const BasicBandMemory<S, N> memory{rows_, gradient_, step_, trial_};
+  const BasicBandProblem<S, N> problem{cells_, samples_, jerk_scale(), options_.centring};
+  return in_windows(slow, 3, progress, [&](std::size_t first, std::size_t last) {
+    return smooth::smoothen(problem, std::span<Vector>(points_), first, last, options_.solver, memory).rounds;
+  });
+}
+
+template <std::floating_point S, int N>
+int BasicBand<S, N>::improve(std::span<const S> speeds_sq, std::span<const S> skews,
+                             const BasicMotionLimits<S, N>& limits,
+                             std::span<const BasicLimitedRow<S, N>> limited,
+                             const BasicJointOptions<S>& solver, const Progress& progress) {
+  constexpr S slow = S(0.97);
+  constexpr S price = S(0.05);  // of a q''' that takes the whole limit of the jerk
+  const std::size_t cells = cell_count();
+  std::pmr::vector<S> feeds(cells, memory_), speeds(points_.size(), S(0), memory_);
+  std::pmr::vector<char> moves(points_.size(), 0, memory_);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    feeds[cell] = feed(cell);
+    speeds[cell + 1] = speeds_sq[cell];
+    cells_[cell].price = price * speeds_sq[cell] * speeds_sq[cell] * speeds_sq[cell];
+    if (speeds_sq[cell] < slow * feeds[cell] * feeds[cell])
+      for (std::size_t k = cell >= reach_ ? cell - reach_ : 0; k < std::min(cell + 4 + reach_, moves.size());
+           ++k)
+        moves[k] = 1;
+  }
+  // Not next to cells without a speed.
+  for (std::size_t cell = 0; cell < cells; ++cell)
+    if (!(speeds_sq[cell] > S(0)))
+      for (std::size_t k = cell >= 2 ? cell - 2 : 0; k < std::min(cell + 6, moves.size()); ++k) moves[k] = 0;
+  keep_pinned(moves);
+  using Unknowns = VectorN<S, N + 1>;
+  using Rows = std::array<Eigen::Matrix<S, N + 1, N + 1>, 4>;
+  std::pmr::vector<Rows> rows(options_.window, memory_);
+  std::pmr::vector<Unknowns> gradient(options_.window, memory_), step(options_.window, memory_),
+      trial(options_.window + 6, memory_);
+  std::pmr::vector<detail::JointPlace<S>> places(3 * (options_.window + 3), memory_);
+  const BasicBandProblem<S, N> curve{cells_, samples_, jerk_scale(), options_.centring};
+  const BasicJointProblem<S, N> problem{&curve, feeds, skews, &limits, limited};
+  return in_windows(moves, 4, progress, [&](std::size_t first, std::size_t last) {
+    return smooth::improve(problem, std::span<Vector>(points_), std::span<S>(speeds), first, last, solver,
+                           BasicJointMemory<S, N>{rows, gradient, step, trial, places})
+        .rounds;
+  });
+}
+
+template <std::floating_point S, int N>
+S BasicBand<S, N>::settle() {
+  S worst = S(0);
+  for (int round = 0; round < 40; ++round) {
+    worst = S(0);
+    for (std::size_t cell = 0; cell < cell_count(); ++cell) {
+      const S share = deviation(cell);
+      worst = std::max(worst, share);
+      if (share <= S(1)) continue;
+      // Little by little: a curve that goes back far at one place bends there.
+      const S kept = std::max(S(1) - S(2) * (share - S(1)) - S(1e-3), S(0.8));
+      for (std::size_t k = std::max<std::size_t>(cell, 3); k < std::min(cell + 4, points_.size() - 3); ++k)
+        points_[k] = start_[k] + kept * (points_[k] - start_[k]);
+    }
+    if (!(worst > S(1))) break;
+  }
+  return worst;
+}
 
 }  // namespace cncplan::smooth

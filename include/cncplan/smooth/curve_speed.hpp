@@ -62,7 +62,8 @@ struct BasicOwnAxes {
   }
 };
 
-/// Finds speeds along a `Band` of N axes, again and again while it changes. What that needs lies in `memory`.
+/// Finds speeds along a `BasicBand` of N axes, again and again while it changes. What that needs lies in
+/// `memory`.
 template <std::floating_point S, int N, class Seen = BasicOwnAxes<S, N>>
 class CurveSpeed {
  public:
@@ -82,8 +83,7 @@ class CurveSpeed {
   /// Cells of a curve, the feed of each, cut where motion leaves rest and comes to it. The law of speed has
   /// the skews of the last one. A curve that begins at a cut may have an approach. Cells of a law that is to
   /// be `proven` may be shorter.
-  template <Path P>
-  void take(const Band<P>& band, bool proven, const BasicSpeedEnds<S>& ends = {},
+  void take(const BasicBand<S, N>& band, bool proven, const BasicSpeedEnds<S>& ends = {},
             const BasicApproach<S, N>& approach = {}) {
     ends_ = ends;
     proven_ = proven;
@@ -194,8 +194,7 @@ class CurveSpeed {
   /// The limits of the tool and of the curve's own axes.
   [[nodiscard]] BasicMotionLimits<S, N> limits_of_curve() const { return seen_.limits_of_curve(limits_); }
   /// Adds what else is limited in the cells of a curve.
-  template <Path P>
-  void limited_rows(const Band<P>& band, std::pmr::vector<BasicLimitedRow<S, N>>& rows) const {
+  void limited_rows(const BasicBand<S, N>& band, std::pmr::vector<BasicLimitedRow<S, N>>& rows) const {
     if constexpr (Seen::count > N)
       for (std::size_t cell = 0; cell < band.cell_count(); ++cell) {
         const BasicCubic<S, N> curve = band.cubic(cell);
@@ -246,8 +245,7 @@ class CurveSpeed {
   static constexpr S growth = S(0.3);
 
   // The block of a run in which a place of its curve lies; the first one before its start.
-  template <Path P>
-  [[nodiscard]] static std::size_t block_of(const Band<P>& band, S at) {
+  [[nodiscard]] static std::size_t block_of(const BasicBand<S, N>& band, S at) {
     if constexpr (std::same_as<Seen, BasicOwnAxes<S, N>>)
       return 0;  // which it is changes nothing
     else
@@ -275,8 +273,7 @@ class CurveSpeed {
   }
 
   // Behind a cell without a length, as where motion begins at a speed.
-  template <Path P>
-  void take_approach(const Band<P>& band, const BasicApproach<S, N>& approach) {
+  void take_approach(const BasicBand<S, N>& band, const BasicApproach<S, N>& approach) {
     S start = -approach.length();
     const bool at_once = approach.size() == 0;
     const std::size_t block = block_of(band, S(0));
@@ -298,8 +295,7 @@ class CurveSpeed {
   }
 
   // So short that what motion from rest has come to at its end is well below what the cells near by allow.
-  template <Path P>
-  [[nodiscard]] S rest_length(const Band<P>& band, bool at_end) const {
+  [[nodiscard]] S rest_length(const BasicBand<S, N>& band, bool at_end) const {
     const std::size_t count = band.cell_count();
     const S feed = band.feed(at_end ? count - 1 : 0);
     const auto cell_at = [&](std::size_t k) {

@@ -72,124 +72,54 @@ struct BasicSmoothRun {
 
 /// Where a run is cut: curve and speed there are given. The plan of what follows begins with the approach to
 /// it, of which it may change the speed.
-template <Path P>
-struct RunCut {
-  BandCut<P> place;
-  typename P::Scalar speed{};  ///< mm/s along the programmed path
-  const BasicApproach<typename P::Scalar, P::Vector::RowsAtCompileTime>* approach{};  ///< if there is one
+template <std::floating_point S, int N>
+struct BasicRunCut {
+  BasicBandCut<S, N> place;
+  S speed{};                              ///< mm/s along the programmed path
+  const BasicApproach<S, N>* approach{};  ///< if there is one
 };
 
 /// A run of blocks on its way to a plan: where the whole is too long it is cut, and the next run goes on
 /// where this one ends. `Seen`: how the limits see its curve.
-template <Path P, class Seen = BasicOwnAxes<typename P::Scalar, P::Vector::RowsAtCompileTime>>
+template <std::floating_point S, int N, class Seen = BasicOwnAxes<S, N>>
 class SmoothRun {
  public:
-  using S = typename P::Scalar;
-  using Vector = typename P::Vector;
-  static constexpr int axis_count = Vector::RowsAtCompileTime;
+  using Vector = VectorN<S, N>;
+  static constexpr int axis_count = N;
+  using Block = BasicBandBlock<S, N>;
+  using Cut = BasicRunCut<S, N>;
   using Limits = BasicMotionLimits<S, Seen::count>;
-  using Plan = BasicSmoothRun<S, axis_count>;
+  using Plan = BasicSmoothRun<S, N>;
 
   /// Blocks, each of a length > 0; feeds and tolerances are > 0 and finite. They begin where the cut is. All
   /// lies in `memory`, the plans too.
-  SmoothRun(std::span<const BandBlock<P>> blocks, const Limits& limits,
-            const BasicSmoothOptions<S>& options = {}, const std::optional<RunCut<P>>& start = std::nullopt,
-            std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Seen& seen = {})
-      : blocks_(blocks),
-        limits_(limits),
-        options_(options),
-        memory_(memory),
-        band_(blocks, geometry(seen.along(limits), options),
-              start ? std::optional(start->place) : std::nullopt, memory),
-        speed_(limits, options.speed_window, memory, seen) {
-    if (!start) return;
-    ends_.start = start->speed;
-    if (start->approach != nullptr) approach_ = *start->approach;
-  }
+  SmoothRun(std::span<const Block> blocks, const Limits& limits, const BasicSmoothOptions<S>& options = {},
+            const std::optional<Cut>& start = std::nullopt,
+            std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Seen& seen = {});
 
   static constexpr std::size_t most_cuts = 8;
 
   /// Places between the starts of two blocks at which the run may be cut, before which cell, the best first:
   /// at the feed on little curved path if there are such, else where it is near it; rather late, for what is
   /// beyond a cut is planned again.
-  [[nodiscard]] FixedList<std::pair<std::size_t, RunCut<P>>, most_cuts> cuts(std::size_t from_block,
-                                                                             std::size_t to_block) {
-    const S from = band_.block_start(from_block), to = band_.block_start(to_block);
-    constexpr std::size_t calm = 12;
-    struct Choice {
-      S price = std::numeric_limits<S>::infinity();
-      std::size_t cell{};
-      S speed{};
-    };
-    std::array<Choice, most_cuts> best{};
-    speed_.take(band_, false, ends_, approach_);
-    speed_.plan(options_.coarse_gap, false, false);
-    const auto cells = speed_.cells();
-    const auto law = speed_.law();
-    for (std::size_t i = 3; i + 3 < cells.size(); ++i) {
-      const auto [cell, x] = speed_.origin(i);
-      const S at = band_.cell_start(cell);
-      if (x > S(0) || !(at > std::max(from, S(0)) && at < to)) continue;
-      const S b = law[i];
-      std::size_t flat = 0;  // cells of this speed on both sides
-      while (flat < calm && i >= flat + 2 && i + flat + 1 < law.size() && law[i - flat - 1] == b &&
-             law[i + flat] == b)
-        ++flat;
-      if (flat < 2) continue;
-      const S feed = std::min(cells[i - 1].feed, cells[i].feed), speed = std::sqrt(b);
-      const bool fast = speed > feed * (S(1) - S(1e-4));
-      const S force = std::max(sampled_use(cells[i - 1], limits_, {b, b, b}).force(),
-                               sampled_use(cells[i], limits_, {b, b, b}).force());
-      const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
-      const S beyond = (to - at) / (to - from);
-      const S price =
-          (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) + S(3) * beyond;
-      // Not slower from cut to cut, where what is held has no room for ramps.
-      const Choice choice{price, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
-      Choice& last = best[std::min(part, most_cuts - 1)];
-      if (choice.price < last.price) last = choice;
-    }
-    std::sort(best.begin(), best.end(), [](const Choice& a, const Choice& b) { return a.price < b.price; });
-    FixedList<std::pair<std::size_t, RunCut<P>>, most_cuts> result;
-    for (const Choice& choice : best)
-      if (choice.price < std::numeric_limits<S>::infinity())
-        result.push_back({choice.cell, {band_.cut_before(choice.cell), choice.speed}});
-    return result;
-  }
+  [[nodiscard]] FixedList<std::pair<std::size_t, Cut>, most_cuts> cuts(std::size_t from_block,
+                                                                       std::size_t to_block);
 
   /// Cuts the run before a cell of its curve, where it has a speed. A plan searches for the curve beyond as
   /// well, as if motion came to rest at the end of the blocks only, but leaves it as it is at the cut.
   void end_before(std::size_t cell, S speed) { end_ = {cell, speed}; }
 
   /// The fastest motion that is found.
-  [[nodiscard]] Plan plan(const Progress& progress = {}) {
-    work_ = Work(progress, options_);
-    if (end_) band_.pin(end_->cell);
-    move_curve();
-    let_go_beyond_end();
-    Plan fastest = make_plan(true);
-    if (deviation_ <= S(1) && std::isfinite(fastest.duration)) return fastest;
-    // Where a run is cut neither curve nor speed can give way: then on the curve of which it was known.
-    band_.reset();
-    deviation_ = band_.settle();
-    fastest = make_plan(true);
-    if (!std::isfinite(fastest.duration)) fastest = make_plan(false);
-    return fastest;
-  }
+  [[nodiscard]] Plan plan(const Progress& progress = {});
 
   /// The slow motion that the search begins with, for little work. Where it has a plan, so has the search:
   /// the duration is infinite where there is none.
-  [[nodiscard]] Plan slow_plan() {
-    let_go_beyond_end();
-    band_.reset();
-    deviation_ = band_.settle();
-    return make_plan(false);
-  }
+  [[nodiscard]] Plan slow_plan();
 
  private:
-  [[nodiscard]] static typename Band<P>::Options geometry(const BasicLimits<S>& along,
-                                                          const BasicSmoothOptions<S>& options) {
-    typename Band<P>::Options geometry;
+  [[nodiscard]] static typename BasicBand<S, N>::Options geometry(const BasicLimits<S>& along,
+                                                                  const BasicSmoothOptions<S>& options) {
+    typename BasicBand<S, N>::Options geometry;
     geometry.along = along;
     geometry.window = options.band_window;
     geometry.coarseness = options.coarseness;
@@ -231,7 +161,7 @@ class SmoothRun {
       time = coarse_time();
       // Both times are coarse: what seems a little worse may be better. Not where the way in which the limits
       // see the curve is a different one at every place.
-      const S loss = Seen::count > axis_count ? S(0) : options_.joint_loss;
+      const S loss = Seen::count > N ? S(0) : options_.joint_loss;
       if (time - last < loss * (last - at_feeds)) continue;
       band_.set_points(points_);
       coarse_time();
@@ -244,7 +174,7 @@ class SmoothRun {
     for (std::size_t i = 0; i < approach_.size(); ++i)
       time += approach_.curves[i].length() / approach_.feeds[i];
     for (std::size_t block = 0; block < blocks_.size(); ++block) {
-      const S start = band_.block_start(block), end = start + blocks_[block].path->length();
+      const S start = band_.block_start(block), end = start + blocks_[block].path.length();
       time += std::max(std::min(end, band_.length()) - std::max(start, S(0)), S(0)) / blocks_[block].feed;
     }
     return time;
@@ -346,7 +276,7 @@ class SmoothRun {
     double all_ = 1, done_ = 0;
   };
 
-  std::span<const BandBlock<P>> blocks_;
+  std::span<const Block> blocks_;
   Limits limits_;
   BasicSmoothOptions<S> options_;
   struct End {
@@ -355,25 +285,114 @@ class SmoothRun {
   };
 
   std::pmr::memory_resource* memory_;
-  Band<P> band_;
+  BasicBand<S, N> band_;
   CurveSpeed<S, axis_count, Seen> speed_;
   BasicSpeedEnds<S> ends_;
   std::optional<End> end_;  // where it will be cut
   Work work_;
-  BasicApproach<S, axis_count> approach_{memory_};
+  BasicApproach<S, N> approach_{memory_};
   std::pmr::vector<Vector> points_{memory_};  // before a round
-  std::pmr::vector<BasicLimitedRow<S, axis_count>> limited_{memory_};
+  std::pmr::vector<BasicLimitedRow<S, N>> limited_{memory_};
   S deviation_{};
 };
 
+template <std::floating_point S, int N, class Seen>
+SmoothRun<S, N, Seen>::SmoothRun(std::span<const Block> blocks, const Limits& limits,
+                                 const BasicSmoothOptions<S>& options, const std::optional<Cut>& start,
+                                 std::pmr::memory_resource* memory, const Seen& seen)
+    : blocks_(blocks),
+      limits_(limits),
+      options_(options),
+      memory_(memory),
+      band_(blocks, geometry(seen.along(limits), options), start ? std::optional(start->place) : std::nullopt,
+            memory),
+      speed_(limits, options.speed_window, memory, seen) {
+  if (!start) return;
+  ends_.start = start->speed;
+  if (start->approach != nullptr) approach_ = *start->approach;
+}
+
+template <std::floating_point S, int N, class Seen>
+auto SmoothRun<S, N, Seen>::cuts(std::size_t from_block, std::size_t to_block)
+    -> FixedList<std::pair<std::size_t, Cut>, most_cuts> {
+  const S from = band_.block_start(from_block), to = band_.block_start(to_block);
+  constexpr std::size_t calm = 12;
+  struct Choice {
+    S price = std::numeric_limits<S>::infinity();
+    std::size_t cell{};
+    S speed{};
+  };
+  std::array<Choice, most_cuts> best{};
+  speed_.take(band_, false, ends_, approach_);
+  speed_.plan(options_.coarse_gap, false, false);
+  const auto cells = speed_.cells();
+  const auto law = speed_.law();
+  for (std::size_t i = 3; i + 3 < cells.size(); ++i) {
+    const auto [cell, x] = speed_.origin(i);
+    const S at = band_.cell_start(cell);
+    if (x > S(0) || !(at > std::max(from, S(0)) && at < to)) continue;
+    const S b = law[i];
+    std::size_t flat = 0;  // cells of this speed on both sides
+    while (flat < calm && i >= flat + 2 && i + flat + 1 < law.size() && law[i - flat - 1] == b &&
+           law[i + flat] == b)
+      ++flat;
+    if (flat < 2) continue;
+    const S feed = std::min(cells[i - 1].feed, cells[i].feed), speed = std::sqrt(b);
+    const bool fast = speed > feed * (S(1) - S(1e-4));
+    const S force = std::max(sampled_use(cells[i - 1], limits_, {b, b, b}).force(),
+                             sampled_use(cells[i], limits_, {b, b, b}).force());
+    const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
+    const S beyond = (to - at) / (to - from);
+    const S price =
+        (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) + S(3) * beyond;
+    // Not slower from cut to cut, where what is held has no room for ramps.
+    const Choice choice{price, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
+    Choice& last = best[std::min(part, most_cuts - 1)];
+    if (choice.price < last.price) last = choice;
+  }
+  std::sort(best.begin(), best.end(), [](const Choice& a, const Choice& b) { return a.price < b.price; });
+  FixedList<std::pair<std::size_t, Cut>, most_cuts> result;
+  for (const Choice& choice : best)
+    if (choice.price < std::numeric_limits<S>::infinity())
+      result.push_back({choice.cell, {band_.cut_before(choice.cell), choice.speed}});
+  return result;
+}
+
+template <std::floating_point S, int N, class Seen>
+auto SmoothRun<S, N, Seen>::plan(const Progress& progress) -> Plan {
+  work_ = Work(progress, options_);
+  if (end_) band_.pin(end_->cell);
+  move_curve();
+  let_go_beyond_end();
+  Plan fastest = make_plan(true);
+  if (deviation_ <= S(1) && std::isfinite(fastest.duration)) return fastest;
+  // Where a run is cut neither curve nor speed can give way: then on the curve of which it was known.
+  band_.reset();
+  deviation_ = band_.settle();
+  fastest = make_plan(true);
+  if (!std::isfinite(fastest.duration)) fastest = make_plan(false);
+  return fastest;
+}
+
+template <std::floating_point S, int N, class Seen>
+auto SmoothRun<S, N, Seen>::slow_plan() -> Plan {
+  let_go_beyond_end();
+  band_.reset();
+  deviation_ = band_.settle();
+  return make_plan(false);
+}
+
 /// Smooths a run of blocks, each of a length > 0, within their tolerances, and finds the fastest motion along
 /// it that keeps `limits` and the feeds, from rest to rest. Feeds and tolerances are > 0 and finite.
-template <Path P>
-[[nodiscard]] BasicSmoothRun<typename P::Scalar, P::Vector::RowsAtCompileTime> smooth_run(
-    std::span<const BandBlock<P>> blocks,
-    const BasicMotionLimits<typename P::Scalar, P::Vector::RowsAtCompileTime>& limits,
-    const BasicSmoothOptions<typename P::Scalar>& options = {}) {
-  return SmoothRun<P>(blocks, limits, options).plan();
+template <std::floating_point S, int N>
+[[nodiscard]] BasicSmoothRun<S, N> smooth_run(std::span<const BasicBandBlock<S, N>> blocks,
+                                              const BasicMotionLimits<S, N>& limits,
+                                              const BasicSmoothOptions<S>& options = {}) {
+  return SmoothRun<S, N>(blocks, limits, options).plan();
 }
 
 }  // namespace cncplan::smooth
+
+#ifdef CNCPLAN_COMPILED
+#include "cncplan/compiled/smooth.hpp"
+#endif
