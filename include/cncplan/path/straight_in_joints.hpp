@@ -10,7 +10,6 @@
 #include <tuple>
 #include <type_traits>
 
-
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
@@ -145,8 +144,10 @@ class StraightInJoints {
       // Order by order: what the map makes of the lower ones is taken from what the joints do.
       point.first = least_squares<Scalar>(jacobian, joints.first);
       point.second = point.third = Coordinates::Zero();
-      point.second = least_squares<Scalar>(jacobian, Vector(joints.second - along(point, [](const auto& q) { return q.second; })));
-      point.third = least_squares<Scalar>(jacobian, Vector(joints.third - along(point, [](const auto& q) { return q.third; })));
+      point.second = least_squares<Scalar>(
+          jacobian, Vector(joints.second - along(point, [](const auto& q) { return q.second; })));
+      point.third = least_squares<Scalar>(
+          jacobian, Vector(joints.third - along(point, [](const auto& q) { return q.third; })));
     }
     return point;
   }
