@@ -82,7 +82,7 @@ report::Report html_report(const Options& options, const kinematics::Sidewall& s
   const Peaks& peaks = measures.peaks;
   report::Report result{.file = options.artwork,
                         .text = report::read_text(options.artwork),
-                        .summary = summary_rows(conversion, motion, measures),
+                        .summary = summary_rows(conversion, motion.duration(), measures),
                         .warnings = {},
                         .limits = motion.machine().limits,
                         .tool_peak = peaks.tool,

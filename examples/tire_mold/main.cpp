@@ -10,6 +10,7 @@
 #include "options.hpp"
 #include "plots.hpp"
 #include "report.hpp"
+#include "smooth_motion.hpp"
 #include "support/failure.hpp"
 #include "support/gnuplot.hpp"
 #include "support/main_program.hpp"
@@ -19,13 +20,57 @@ namespace tire_mold {
 
 namespace {
 
-void write_sample(std::ostream& out, const Machine& machine, const Motion& motion, const Sample& s) {
-  const auto flat = flat_point(motion, s);
+template <class S>
+void write_sample(std::ostream& out, const Machine& machine, const std::array<double, 3>& flat, const S& s) {
   out << fmt::format("{:.17g}", s.time);
   for (std::size_t i = 0; i < 4; ++i)
     out << fmt::format(",{:.17g}", machine.shown(i, s.position[static_cast<Eigen::Index>(i)]));
   out << fmt::format(",{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", s.along.position,
                      s.along.velocity, s.along.acceleration, s.along.jerk, flat[0], flat[1], flat[2]);
+}
+
+void write_header(std::ostream& out, const Machine& machine) {
+  out << 't';
+  for (const support::MachineAxis& axis : machine.axes) out << ',' << axis.letter;
+  out << ",s,v,a,j,x,y,z\n";
+}
+
+void print_summary(const Options& options, const Conversion& conversion, double time, const Machine& machine,
+                   const Measures& measures) {
+  if (options.json)
+    support::print(json_summary(conversion, time, machine, measures));
+  else if (!options.quiet)
+    support::print(table_summary(conversion, time, machine, measures),
+                   options.summary_aside ? stderr : stdout);
+}
+
+// The same within a tolerance: the program, samples and the summary.
+int run_smooth(const Options& options, const WallProgram& program, const Artwork& artwork,
+               const Conversion& conversion, const Machine& machine, Measures measures) {
+  const SmoothMotion motion = plan_smooth(program, artwork, machine, options);
+  measures.peaks = cncplan::peaks(motion);
+  measures.smooth = options.smooth;
+  const auto blocks = motion.program();
+  for (cncplan::Fallback part : motion.fallbacks()) {
+    part.first = static_cast<std::size_t>(blocks[part.first].line);
+    part.last = static_cast<std::size_t>(blocks[part.last].line);
+    measures.fallbacks.push_back(part);
+  }
+  support::OutputFiles files;
+  std::ostream* const out = files.open(options.out);
+  std::ostream* const samples = files.open(options.samples);
+  if (samples != nullptr) {
+    write_header(*samples, machine);
+    for (const auto& sample : motion.samples(options.period)) {
+      write_sample(*samples, machine, {sample.tool[0], sample.tool[1], sample.tool[2]}, sample);
+      ++measures.samples;
+    }
+  }
+  if (out != nullptr) *out << conversion.text;
+  files.finish();
+  files.commit();
+  print_summary(options, conversion, motion.duration(), machine, measures);
+  return static_cast<int>(support::Exit::done);
 }
 
 // At most so many points are drawn.
@@ -39,8 +84,10 @@ int run(const Options& options) {
   const Artwork artwork = read_artwork(options.artwork, artwork_dialect(machine));
   const WallProgram program = wall_program(artwork, sidewall, machine, options);
   const Conversion conversion = convert(artwork, sidewall, machine, options, program.table);
+  Measures measures{.profile_length = chain.length(), .entities = chain.pieces.size()};
+  if (options.smooth) return run_smooth(options, program, artwork, conversion, machine, measures);
   const Motion motion = plan_motion(program, artwork, machine);
-  Measures measures{chain.length(), chain.pieces.size(), cncplan::peaks(motion), {}, 0};
+  measures.peaks = cncplan::peaks(motion);
 
   if (options.plot) support::make_folder(*options.plot);
 
@@ -50,15 +97,11 @@ int run(const Options& options) {
   std::ostream* const steps = files.open(options.steps);
   std::ostream* const page = files.open(options.report);
   std::vector<Sample> drawn;
-  if (samples != nullptr) {
-    *samples << 't';
-    for (const support::MachineAxis& axis : machine.axes) *samples << ',' << axis.letter;
-    *samples << ",s,v,a,j,x,y,z\n";
-  }
+  if (samples != nullptr) write_header(*samples, machine);
   if (samples != nullptr || options.plot) {
     const auto every = static_cast<std::size_t>(motion.duration() / options.period) / drawn_points + 1;
     make_samples(motion, options.period, [&](const Sample& sample) {
-      if (samples != nullptr) write_sample(*samples, machine, motion, sample);
+      if (samples != nullptr) write_sample(*samples, machine, flat_point(motion, sample), sample);
       if (options.plot && measures.samples % every == 0) drawn.push_back(sample);
       ++measures.samples;
     });
@@ -78,11 +121,7 @@ int run(const Options& options) {
   files.finish();
   if (options.plot) draw(*options.plot, sidewall, conversion, machine, motion, drawn);
   files.commit();
-  if (options.json)
-    support::print(json_summary(conversion, motion, machine, measures));
-  else if (!options.quiet)
-    support::print(table_summary(conversion, motion, machine, measures),
-                   options.summary_aside ? stderr : stdout);
+  print_summary(options, conversion, motion.duration(), machine, measures);
   return static_cast<int>(support::Exit::done);
 }
 

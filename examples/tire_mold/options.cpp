@@ -2,6 +2,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <string>
+#include <utility>
+
+#include "support/failure.hpp"
+
 namespace tire_mold {
 
 std::optional<Options> parse_options(int argc, char** argv) {
@@ -36,6 +41,10 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--subdivide", options.subdivide, "rows of this length along the artwork instead, mm")
       ->check(support::positive())
       ->excludes(tolerance);
+  std::string smooth;
+  app.add_option("--smooth", smooth,
+                 "smooth the motion within --tolerance at the wall, at this level; exact without it")
+      ->check(CLI::IsMember({"fast", "good", "best"}));
   app.add_flag("--approach", options.approach,
                "map the way of the first move too, from where it comes over the profile");
   app.add_option(
@@ -44,6 +53,14 @@ std::optional<Options> parse_options(int argc, char** argv) {
       "written");
   support::add_run_options(app, options);
   if (!support::parse(app, argc, argv)) return std::nullopt;
+  for (const auto level :
+       {cncplan::SmoothLevel::fast, cncplan::SmoothLevel::good, cncplan::SmoothLevel::best})
+    if (smooth == to_text(level)) options.smooth = level;
+  for (const auto& [given, name] :
+       {std::pair{options.steps.has_value(), "--steps"}, std::pair{options.plot.has_value(), "--plot"},
+        std::pair{options.report.has_value(), "--report"}})
+    if (options.smooth && given)
+      throw support::Failure(support::Exit::bad_input, std::string("--smooth does not go with ") + name);
   if (side == "left") options.side = cncplan::kinematics::Side::left;
   support::refuse_shared_files({{"PROFILE", options.profile},
                                 {"ART", options.artwork},

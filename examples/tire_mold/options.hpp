@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cncplan/kinematics/tire_mold/profile_piece.hpp"
+#include "cncplan/plan/smooth_level.hpp"
 #include "support/arguments.hpp"
 
 namespace tire_mold {
@@ -21,6 +22,8 @@ struct Options : support::RunOptions {
   double chain_tolerance = 0.001;   ///< mm
   bool approach = false;
   int decimals = 3;
+  std::optional<cncplan::SmoothLevel>
+      smooth;                      ///< of the motion, within the tolerance at the wall; exact if not given
   std::optional<std::string> out;  ///< - for standard output
 };
 

@@ -40,7 +40,7 @@ Json per_axis(const Machine& machine, F&& value) {
 
 }  // namespace
 
-std::string json_summary(const Conversion& conversion, const Motion& motion, const Machine& machine,
+std::string json_summary(const Conversion& conversion, double time, const Machine& machine,
                          const Measures& measures) {
   Json json;
   json["points_in"] = conversion.points;
@@ -52,30 +52,37 @@ std::string json_summary(const Conversion& conversion, const Motion& motion, con
     return Json::array({low, high});
   });
   json["max_chord_error_mm"] = conversion.chord_error;
-  json["time_s"] = motion.duration();
+  json["time_s"] = time;
   const Peaks& peaks = measures.peaks;
   json["axis_peak"] = {
       {"velocity", per_axis(machine, [&](std::size_t i) { return shown(machine, peaks.velocity, i); })},
       {"acceleration",
        per_axis(machine, [&](std::size_t i) { return shown(machine, peaks.acceleration, i); })}};
   json["samples"] = measures.samples;
+  if (measures.smooth) {
+    json["level"] = to_text(*measures.smooth);
+    json["fallbacks"] = Json::array();
+    for (const Fallback& part : measures.fallbacks)
+      json["fallbacks"].push_back({{"lines", {part.first, part.last}},
+                                   {"level", to_text(part.level)},
+                                   {"reason", to_text(part.reason)}});
+  }
   json["steps"] = per_axis(machine, [&](std::size_t i) { return measures.steps[i].total_steps; });
   return json.dump(2) + "\n";
 }
 
-std::vector<std::pair<std::string, std::string>> summary_rows(const Conversion& conversion,
-                                                              const Motion& motion,
+std::vector<std::pair<std::string, std::string>> summary_rows(const Conversion& conversion, double time,
                                                               const Measures& measures) {
   return {{"points, rows", fmt::format("{}, {}", conversion.points, conversion.rows.size())},
           {"profile", fmt::format("{} entities, {:.4f} mm", measures.entities, measures.profile_length)},
           {"largest chord error", fmt::format("{:.4g} mm", conversion.chord_error)},
-          {"time", fmt::format("{:.3f} s", motion.duration())}};
+          {"time", fmt::format("{:.3f} s{}", time, measures.smooth ? ", smooth" : "")}};
 }
 
-std::string table_summary(const Conversion& conversion, const Motion& motion, const Machine& machine,
+std::string table_summary(const Conversion& conversion, double time, const Machine& machine,
                           const Measures& measures) {
   std::string text;
-  for (const auto& [name, value] : summary_rows(conversion, motion, measures))
+  for (const auto& [name, value] : summary_rows(conversion, time, measures))
     text += fmt::format("{:<24}{}\n", name, value);
   text += fmt::format("\n{:<6}{:>12}{:>12}{:>12}{:>12}{:>16}{:>12}\n", "axis", "from", "to", "peak /s",
                       "limit /s", "peak /s^2", "limit /s^2");
