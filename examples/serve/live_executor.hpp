@@ -21,9 +21,10 @@ class LiveExecutor final : public LiveMachine {
   /// The numbers of a row that depend on the machine.
   using Shown = std::function<void(const SetPoint&, std::vector<double>&)>;
 
-  /// `blocks` outlive it. Begins at rest, held.
-  LiveExecutor(const M& machine, std::span<const B> blocks, const cncplan::ExecutorOptions& options,
-               Shown shown)
+  /// `blocks` outlive it. Begins at rest, held. `options` of an executor, with a level of smoothing or
+  /// without.
+  template <class Options>
+  LiveExecutor(const M& machine, std::span<const B> blocks, const Options& options, Shown shown)
       : blocks_(blocks), shown_(std::move(shown)), executor_(machine, options) {
     executor_.feed_hold();
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cncplan/gcode/work_coordinates.hpp"
+#include "cncplan/plan/executor_levels.hpp"
 #include "machine.hpp"
 #include "serve.hpp"
 #include "serve/live_executor.hpp"
@@ -23,11 +24,22 @@ serve::LiveRun::Fresh live_machines(const Options& options, const support::Machi
         for (const auto* of : {&point.position, &point.velocity, &point.acceleration, &point.jerk})
           row.push_back(file.shown(i, (*of)[static_cast<Eigen::Index>(i)]));
     };
-    const cncplan::ExecutorOptions how{
-        .tolerance = options.tolerance,
-        .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
-        .junction_deviation = options.corner_tolerance};
-    return std::make_unique<Machine>(machine, program.blocks, how, shown);
+    const double rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree;
+    if constexpr (cncplan::MappedModel<M>)
+      return std::make_unique<Machine>(
+          machine, program.blocks,
+          cncplan::ExecutorOptions{.tolerance = options.tolerance,
+                                   .rotary_tolerance = rotary_tolerance,
+                                   .junction_deviation = options.corner_tolerance},
+          shown);
+    else
+      return std::make_unique<Machine>(
+          machine, program.blocks,
+          cncplan::LevelExecutorOptions{.tolerance = options.tolerance,
+                                        .level = options.level(),
+                                        .rotary_tolerance = rotary_tolerance,
+                                        .junction_deviation = options.corner_tolerance},
+          shown);
   };
 }
 

@@ -19,11 +19,11 @@ using cncplan::SmoothLevel;
 using support::Exit;
 using support::Failure;
 
-// An executor smooths in closed form.
+// An executor smooths in closed form unless another level is asked for.
 void settle_for_executor(Options& options) {
   if (options.corner_tolerance < 0.0)
     throw Failure(Exit::bad_input, "--serve passes corners by --tolerance: it goes without --junction");
-  if (options.tolerance > 0.0) options.smooth = SmoothLevel::fast;
+  if (options.tolerance > 0.0 && !options.smooth) options.smooth = SmoothLevel::fast;
 }
 
 // Refuses what the options ask for and the machine cannot do.
@@ -33,8 +33,8 @@ void settle(Options& options, const support::Machine& machine) {
       options.motions || options.blocks || options.samples || options.steps || options.plot || options.report;
   if (options.check && (writes || options.events || options.serve))
     refuse("--check plans nothing: it goes without outputs and events");
-  if (options.serve && (writes || options.events || options.json || options.count_steps || options.smooth))
-    refuse("--serve runs the program as it is: it goes without outputs, events and --smooth");
+  if (options.serve && (writes || options.events || options.json || options.count_steps))
+    refuse("--serve runs the program as it is: it goes without outputs and events");
   if (options.compare && !options.report) refuse("--compare goes with --report");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
     refuse("--tool-length is for machines with a tilting axis");

@@ -211,6 +211,21 @@ def browser():
             page.picture(sys.argv[4])
 
 
+def levels():
+    """Each level of smoothing, by the option that a plan has: the higher one is the faster one."""
+    took = {}
+    program = b"G1 X4 F1800\n" + b"".join(b"G91 X1 Y%d\n" % (1 - 2 * (i % 2)) for i in range(60)) + b"G90 X0\n"
+    for level in ("fast", "good", "best"):
+        with Served("--tolerance", "0.05", "--smooth", level, program=program) as served:
+            rows = drive(served, "XYZ")
+            check_rates(rows, "XYZ", corners=0)
+            check(max(map(abs, rows[-1][0])) < 1e-9, f"it ends at {rows[-1][0]}")
+            took[level] = PERIOD * len({tool[0] for tool, _, _ in rows})
+    check(took["best"] <= took["good"] < took["fast"], f"the levels take {took} s")
+    run = subprocess.run([SIMULATE, os.devnull, "--serve=0", "--smooth=good", "--tolerance=0"], capture_output=True, text=True, timeout=60)
+    check(run.returncode == 2 and run.stderr == "error: --smooth goes with a --tolerance above 0\n", f"{run.returncode} {run.stderr}")
+
+
 def machine(name):
     return os.path.join(EXAMPLES, "machines", name + ".toml")
 
@@ -302,6 +317,6 @@ def rows_of_axes():
         check(abs(rows[-1][1]["A"] + 5) < 1e-9 and abs(rows[-1][1]["C"] - 10) < 1e-9, f"it ends at {rows[-1][1]}")
 
 
-CASES = {"http": http, "refusals": refusals, "browser": browser, "four axes": four_axes, "table": table, "rows": rows_of_axes}
+CASES = {"http": http, "refusals": refusals, "levels": levels, "browser": browser, "four axes": four_axes, "table": table, "rows": rows_of_axes}
 CASES[sys.argv[3]]()
 print(f"{sys.argv[3]}: passed")
