@@ -333,6 +333,29 @@ TEST_CASE("a program is over only behind the last cell of its last block", "[exe
   CHECK(executor->tick(period).along.position == Approx(wave->length()));
 }
 
+TEST_CASE("a push plans in as many steps as it is given, and what is left is planned later", "[executor]") {
+  const auto blocks = test::blocks_of({"G1 X60 F1200", "Y20", "X0"}, mill);
+  const auto at_once = std::make_unique<Runner>(mill, Runner::Options{.background = true});
+  const auto later = std::make_unique<Runner>(mill, Runner::Options{.background = true});
+  for (const auto& block : blocks) {
+    REQUIRE(at_once->push(block));
+    REQUIRE(later->push(block, 0));
+  }
+  for (Runner* executor : {at_once.get(), later.get()}) executor->end_of_program();
+  CHECK(later->plan(0));
+  for (int tick = 0; tick < 10; ++tick) CHECK(later->tick(period).position.isZero());
+  while (at_once->plan(1)) {
+  }
+  while (later->plan(1)) {
+  }
+  double apart = 0;
+  for (int tick = 0; tick < 100'000 && !at_once->finished(); ++tick)
+    apart = std::max(apart, (at_once->tick(period).position - later->tick(period).position).norm());
+  CHECK(at_once->finished());
+  CHECK(later->finished());
+  CHECK(apart == 0);
+}
+
 TEST_CASE("nothing is allocated once an executor and a reader are made", "[executor]") {
   BlockReader reader(mill);
   const auto executor = std::make_unique<Runner>(mill);

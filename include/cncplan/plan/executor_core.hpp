@@ -67,9 +67,9 @@ class ExecutorCore {
 
   /// Takes the next block of the program. False where there is no room: try again behind the next tick. A
   /// block that cannot be planned ends the motion where it begins: `error` says why. Behind an error blocks
-  /// are taken and dropped. It does the work for one block; where more is to be done, ticks or `plan` do
-  /// that.
-  [[nodiscard]] bool push(const B& block);
+  /// are taken and dropped. It does the work for one block, in so many steps of `plan` at most; where more is
+  /// to be done, ticks or `plan` do that. Levels other than `fast` have no such steps.
+  [[nodiscard]] bool push(const B& block, std::size_t most_steps = steps_in_push);
   /// How many blocks have been taken.
   [[nodiscard]] std::int64_t pushed() const { return level_ != nullptr ? level_->pushed() : feed_.pushed(); }
   /// Nothing will follow: marks the end. Ticks, or `plan`, do the work for it.
@@ -329,12 +329,12 @@ ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& ma
 }
 
 template <MachineModel M, BlockModel B>
-bool ExecutorCore<M, B>::push(const B& block) {
+bool ExecutorCore<M, B>::push(const B& block, std::size_t most_steps) {
   if (!options_ || failed_.load(std::memory_order_acquire)) return true;
   if (level_ != nullptr) return level_->push(block);
   const bool taken = feed_.push(block);
   if (taken) ended_.store(false, std::memory_order_relaxed);
-  plan(steps_in_push);
+  plan(most_steps);
   return taken;
 }
 
