@@ -23,9 +23,11 @@ def mill():
 
 @pytest.fixture
 def simulate():
-    """The program cncplan_simulate, which CNCPLAN_SIMULATE names."""
+    """The program cncplan_simulate, which CNCPLAN_SIMULATE names: made of the same sources, or plans differ."""
     program = os.environ.get("CNCPLAN_SIMULATE", str(ROOT / "build/g++/examples/cncplan_simulate"))
     if not os.access(program, os.X_OK):
+        if "CNCPLAN_SIMULATE" in os.environ:
+            pytest.fail(f"CNCPLAN_SIMULATE: {program} is no program")
         pytest.skip("cncplan_simulate is not built here (CNCPLAN_SIMULATE)")
     return program
 
