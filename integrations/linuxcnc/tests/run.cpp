@@ -89,8 +89,9 @@ double deviation(const Run& run, const std::vector<CanonMove>& moves) {
     // The move that runs, and its neighbours: a smoothed corner belongs to either.
     const auto now = static_cast<std::ptrdiff_t>(sample.id) - 1;
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(now - 3, 0);
-         i < std::min<std::ptrdiff_t>(now + 4, static_cast<std::ptrdiff_t>(moves.size())); ++i) {
+    for (const std::ptrdiff_t step : {0, 1, -1, 2, -2, 3, -3}) {
+      const std::ptrdiff_t i = now + step;
+      if (i < 0 || i >= static_cast<std::ptrdiff_t>(moves.size())) continue;
       const auto slot = static_cast<std::size_t>(i);
       nearest = std::min(nearest, distance(sample.position.head<3>(), starts[slot], moves[slot], most));
       if (nearest <= most) break;
