@@ -335,8 +335,8 @@ TEST_CASE("a program is over only behind the last cell of its last block", "[exe
 
 TEST_CASE("a push plans in as many steps as it is given, and what is left is planned later", "[executor]") {
   const auto blocks = test::blocks_of({"G1 X60 F1200", "Y20", "X0"}, mill);
-  const auto at_once = std::make_unique<Runner>(mill, Runner::Options{.background = true});
-  const auto later = std::make_unique<Runner>(mill, Runner::Options{.background = true});
+  const auto at_once = std::make_unique<Runner>(mill, Runner::Options{.tolerance = 0, .background = true});
+  const auto later = std::make_unique<Runner>(mill, Runner::Options{.tolerance = 0, .background = true});
   for (const auto& block : blocks) {
     REQUIRE(at_once->push(block));
     REQUIRE(later->push(block, 0));
