@@ -20,7 +20,7 @@ constexpr std::size_t capacity = 256;
 // Steps of planning in one servo period: one takes 20 us on average and 160 us at most. With many blocks
 // ahead there is time.
 constexpr std::size_t steps_in_period = 2, steps_with_many_ahead = 1;
-constexpr std::int64_t many_ahead = capacity / 2;
+constexpr std::int64_t many_ahead = capacity / 4;
 
 // At the level fast, which the servo thread plans itself.
 template <int N>
