@@ -180,9 +180,16 @@ double distance(const Vector3& point, const Vector3& start, const CanonMove& mov
   };
   for (const double angle : angles) nearest = std::min(nearest, distance_at(angle));
   if (nearest <= enough) return nearest;
-  // A helix is nearest beside that angle.
+  // A helix is nearest beside that angle: the steeper it is, the farther from it.
   for (const double angle : angles) {
-    double low = std::max(angle - 0.2, 0.0), high = std::min(angle + 0.2, whole);
+    constexpr int steps = 32;
+    constexpr double step = 0.05;
+    double best = std::clamp(angle, 0.0, whole);
+    for (int i = -steps; i <= steps; ++i) {
+      const double other = std::clamp(angle + i * step, 0.0, whole);
+      if (distance_at(other) < distance_at(best)) best = other;
+    }
+    double low = std::max(best - step, 0.0), high = std::min(best + step, whole);
     for (int i = 0; i < 55; ++i) {
       const double third = (high - low) / 3.0;
       if (distance_at(low + third) < distance_at(high - third))
