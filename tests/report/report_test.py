@@ -400,7 +400,7 @@ def ball():
     with Run(os.path.join(shared, "data", "ball.nc"), "--period", "0.0311") as run:
         run.check_opened()
         check(os.path.getsize(run.page) <= 15e6, f"the page has {os.path.getsize(run.page)} bytes")
-        check(run.seconds < 15, f"the page took {run.seconds:.1f} s to open")
+        check(run.seconds < 60, f"the page took {run.seconds:.1f} s to open")
         run.check_whole()
         run.check_samples()
         check_drawn_speed(run)
