@@ -14,7 +14,6 @@ using namespace cncplan;
 
 // The blocks of the program as one run. An item is a block; `seconds` is the motion's duration.
 void smooth_ball(benchmark::State& state, const smooth::BasicSmoothOptions<double>& options) {
-  using Segment = bench::Block::Path;
   const Limits& tool = bench::mill.limits;
   const auto program = read_text(bench::ball(), bench::mill);
   if (program.failed()) return state.SkipWithError("the program does not read");
