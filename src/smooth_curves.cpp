@@ -3,11 +3,7 @@
 
 namespace cncplan::smooth {
 
-CNCPLAN_SMOOTH_CURVES(, 1)
-CNCPLAN_SMOOTH_CURVES(, 2)
 CNCPLAN_SMOOTH_CURVES(, 3)
-CNCPLAN_SMOOTH_CURVES(, 4)
-CNCPLAN_SMOOTH_CURVES(, 5)
 CNCPLAN_SMOOTH_CURVES(, 6)
 
 }  // namespace cncplan::smooth

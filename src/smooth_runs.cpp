@@ -3,11 +3,7 @@
 
 namespace cncplan::smooth {
 
-CNCPLAN_SMOOTH_RUNS(, 1)
-CNCPLAN_SMOOTH_RUNS(, 2)
 CNCPLAN_SMOOTH_RUNS(, 3)
-CNCPLAN_SMOOTH_RUNS(, 4)
-CNCPLAN_SMOOTH_RUNS(, 5)
 CNCPLAN_SMOOTH_RUNS(, 6)
 
 }  // namespace cncplan::smooth

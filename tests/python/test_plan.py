@@ -185,7 +185,7 @@ def test_fallbacks_of_simulate(simulate, tmp_path):
     lines = trajectory.blocks["line"]
     assert [{"lines": [lines[part["first"]], lines[part["last"]]], "level": part["level"], "reason": part["reason"]}
             for part in trajectory.fallbacks] == summary["fallbacks"]
-    # The program plans it with six axes, the module with nine: sums of more numbers are rounded otherwise.
+    # The program plans it with six axes, the module with nine: they agree to rounding.
     assert trajectory.duration == pytest.approx(summary["time_s"], rel=1e-10)
 
 

@@ -19,6 +19,8 @@ class BasicPathView {
   BasicPathView() = default;
   template <Path P>
   BasicPathView(const P& path) : path_(&path), functions_(&of<P>) {}  // NOLINT: a path is one
+  template <Path P>
+  BasicPathView(const P&&) = delete;  // would be gone
 
   [[nodiscard]] S length() const { return functions_->length(path_); }
   [[nodiscard]] Vector position_at(S s) const { return functions_->position_at(path_, s); }

@@ -215,7 +215,7 @@ template <std::floating_point S, int N>
   for (int i = first; i <= speeds; ++i) {
     const S v = i < 0 ? low : least + static_cast<S>(i) * rise;
     const S most = acceleration_at(v);
-    for (int part = 0; part < 4; part += i < 0 ? 2 : 1) {  // at the low speed few make the most of the gain
+    for (int part = 0; part < 4; part += i < 0 ? 2 : 1) {  // two of four at the low speed: most of the gain
       const BasicLimits<S> other = at(v, (S(1) - S(0.15) * static_cast<S>(part)) * most);
       const S takes = time_with_ramps(other, length, S(2));
       if (!(takes < shortest && time_with_ramps(other, length, S(1)) <= alone)) continue;
