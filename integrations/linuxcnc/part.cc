@@ -17,9 +17,9 @@ namespace {
 
 // Blocks of look-ahead.
 constexpr std::size_t capacity = 256;
-// Steps of planning in one servo period: one takes 20 us on average and 160 us at most. With many blocks
-// ahead there is time.
-constexpr std::size_t steps_in_period = 2, steps_with_many_ahead = 1;
+// Steps of planning in one servo period: one takes some microseconds on average. With many blocks ahead there
+// is time.
+constexpr std::size_t steps_in_period = 6, steps_with_many_ahead = 3;
 constexpr std::int64_t many_ahead = capacity / 4;
 
 // At the level fast, which the servo thread plans itself.

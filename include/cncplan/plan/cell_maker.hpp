@@ -65,24 +65,24 @@ class CutByLimits {
 
   [[nodiscard]] bool done() const { return count_ == 0; }
 
-  /// The next part, in order along the path, until the next call; only before it is done.
-  [[nodiscard]] const Part& next(const Driven& driven) {
-    for (;;) {
-      const Part& top = open_[--count_].part;
-      if (straight_) return top;
-      const int depth = open_[count_].depth;
-      const Scalar middle = top.from + (top.to - top.from) / Scalar(2);
-      const bool divides = top.from < middle && middle < top.to;  // not where it is as short as rounding
-      if (depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return top;
-      const Part part = top;
-      const Part first{part.from, middle, limits(driven, part.from, middle, speed_)};
-      const Part second{middle, part.to, limits(driven, middle, part.to, speed_)};
-      const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
-      // Of a part without any speed nothing is known: the halves of its halves may have one.
-      if (part.limits.velocity > Scalar(0) && halves >= worth_it / part.limits.velocity) return top;
-      open_[count_++] = {second, depth + 1};
-      open_[count_++] = {first, depth + 1};
-    }
+  /// The next part, in order along the path, until the next call; nothing where this step halved one. Only
+  /// before it is done.
+  [[nodiscard]] const Part* step(const Driven& driven) {
+    const Part& top = open_[--count_].part;
+    if (straight_) return &top;
+    const int depth = open_[count_].depth;
+    const Scalar middle = top.from + (top.to - top.from) / Scalar(2);
+    const bool divides = top.from < middle && middle < top.to;  // not where it is as short as rounding
+    if (depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return &top;
+    const Part part = top;
+    const Part first{part.from, middle, limits(driven, part.from, middle, speed_)};
+    const Part second{middle, part.to, limits(driven, middle, part.to, speed_)};
+    const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
+    // Of a part without any speed nothing is known: the halves of its halves may have one.
+    if (part.limits.velocity > Scalar(0) && halves >= worth_it / part.limits.velocity) return &top;
+    open_[count_++] = {second, depth + 1};
+    open_[count_++] = {first, depth + 1};
+    return nullptr;
   }
 
   /// The limits of a part of the block at any speed.
@@ -164,35 +164,34 @@ class CellMaker {
   /// Whether all cells of the block have been made.
   [[nodiscard]] bool done() const { return !has_ahead_ && !(cut_until_ < length_); }
 
-  /// Makes the next cell of the block: see `cell`. Errors: those of `validate` for its limits.
-  [[nodiscard]] Expected<void> next() {
+  /// Takes a step towards the next cell of the block; whether that made it: see `cell`. The work of a step
+  /// is bounded, that of a cell is some hundred times as much at most. Errors: those of `validate` for its
+  /// limits.
+  [[nodiscard]] Expected<bool> step() {
     if (!has_ahead_)
-      if (auto ok = cut_ahead(); !ok) return ok;
-    Cell& cell = cell_;
-    // One by one: the processor waits where it loads as a whole what has just been stored in parts.
-    cell.part.from = ahead_.from;
-    cell.part.to = ahead_.to;
-    cell.part.limits = ahead_.limits;
-    if (above_) cell.above = ahead_above_;
-    cell.entry = std::exchange(entry_, infinity);
-    cell.rest = Scalar(0);
+      if (auto ok = cut_ahead(); !ok) return tl::unexpected(ok.error());
+    if (!has_ahead_) return false;
+    if (parts_ == 0) {
+      begin_cell();
+    } else if (turning_count_ > 0 || ahead_.limits != cell_.part.limits) {
+      parts_ = 0;
+      return true;
+    } else {
+      cell_.part.to = ahead_.to;
+      if (above_) cell_.above = lowest(cell_.above, ahead_above_);
+    }
     has_ahead_ = false;
-    for (; turning_count_ > 0; --turning_count_) {
-      const auto& turning = turning_[turning_count_ - 1];
-      cell.entry = std::min(cell.entry, turning.speed(cell.part.limits));
-      if (moved_ && !(cell.entry > Scalar(0)))
-        cell.rest = std::max(cell.rest, turning.pause(cell.part.limits) - paused_);
+    const bool made = ++parts_ == most_parts || done();
+    if (made) parts_ = 0;
+    return made;
+  }
+  /// Makes the next cell of the block: see `step`.
+  [[nodiscard]] Expected<void> next() {
+    for (;;) {
+      const auto made = step();
+      if (!made) return tl::unexpected(made.error());
+      if (*made) return {};
     }
-    paused_ = Scalar(0);
-    moved_ = true;
-    for (int parts = 1; parts < most_parts && !done(); ++parts) {
-      if (auto ok = cut_ahead(); !ok) return ok;
-      if (turning_count_ > 0 || ahead_.limits != cell.part.limits) break;
-      cell.part.to = ahead_.to;
-      if (above_) cell.above = lowest(cell.above, ahead_above_);
-      has_ahead_ = false;
-    }
-    return {};
   }
   /// The cell that was made last.
   [[nodiscard]] const Cell& cell() const { return cell_; }
@@ -208,6 +207,7 @@ class CellMaker {
     before_.reset();
     cut_ = Cut(machine_);
     has_ahead_ = false;
+    parts_ = 0;
     length_ = cut_until_ = Scalar(0);
     turnings_ = Turnings<M>(machine_);
     turning_count_ = 0;
@@ -285,10 +285,32 @@ class CellMaker {
     return std::min(speed, axis_corner_speed(joint_, machine_, rules_.tolerance, rules_.rotary_tolerance));
   }
 
-  // Cuts the next part and makes its limits like those before.
+  // The cell begins with the part ahead.
+  void begin_cell() {
+    Cell& cell = cell_;
+    // One by one: the processor waits where it loads as a whole what has just been stored in parts.
+    cell.part.from = ahead_.from;
+    cell.part.to = ahead_.to;
+    cell.part.limits = ahead_.limits;
+    if (above_) cell.above = ahead_above_;
+    cell.entry = std::exchange(entry_, infinity);
+    cell.rest = Scalar(0);
+    for (; turning_count_ > 0; --turning_count_) {
+      const auto& turning = turning_[turning_count_ - 1];
+      cell.entry = std::min(cell.entry, turning.speed(cell.part.limits));
+      if (moved_ && !(cell.entry > Scalar(0)))
+        cell.rest = std::max(cell.rest, turning.pause(cell.part.limits) - paused_);
+    }
+    paused_ = Scalar(0);
+    moved_ = true;
+  }
+
+  // A step towards the next part, whose limits are made like those before.
   [[nodiscard]] Expected<void> cut_ahead() {
     if (cut_.done()) cut_on(cut_until_);
-    const BasicPartLimits<Scalar>& part = cut_.next(driven_);
+    const BasicPartLimits<Scalar>* const cut = cut_.step(driven_);
+    if (cut == nullptr) return {};
+    const BasicPartLimits<Scalar>& part = *cut;
     if (MappedModel<M> && !(part.limits.velocity > Scalar(0)))
       return refusal(ErrorCode::unreachable, "singular place of the machine's map, after a length of",
                      part.from);
@@ -341,6 +363,7 @@ class CellMaker {
   BasicPartLimits<Scalar> ahead_;    // the next part that is not in a cell yet
   BasicLimits<Scalar> ahead_above_;  // its limits above the feed
   bool has_ahead_ = false;
+  int parts_ = 0;       // of the cell that is being made
   Scalar cut_until_{};  // mm of the block that has been cut
   Scalar length_{};     // mm of the block
   const B* block_ = nullptr;

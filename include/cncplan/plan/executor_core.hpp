@@ -199,7 +199,7 @@ class ExecutorCore {
  private:
   using Cell = BasicPlayedBlock<Scalar>;
   using Tell = FunctionRef<void(const Part&)>;
-  static constexpr std::size_t steps_in_tick = 3, steps_in_push = 8;
+  static constexpr std::size_t steps_in_tick = 8, steps_in_push = 32;
   static constexpr int ticks_to_go_on = 16;  // in which blocks that are let go are there to be run
 
   // What moves the axes along the path: the player, or at higher levels another one.

@@ -94,7 +94,7 @@ class CellFeed {
   }
 
   /// Hands cells to `take`, which says false when there is no room; whether there is more to do. It takes so
-  /// many steps at most: a cell, or the smoothing of a block.
+  /// many steps at most: one towards a cell, or the smoothing of a block.
   template <class Take>
   bool cut(std::size_t most, Take&& take) {
     if (waits_.exchange(false, std::memory_order_acquire)) end_part();
@@ -318,7 +318,7 @@ bool CellFeed<M, B>::smooth() {
   return true;
 }
 
-// The next cell, or a block that has none. False where there is nothing to cut.
+// A step towards the next cell, or a block that has none. False where there is nothing to cut.
 template <MachineModel M, BlockModel B>
 bool CellFeed<M, B>::make() {
   if (failed()) return false;
@@ -334,7 +334,9 @@ bool CellFeed<M, B>::make() {
     }
   }
   const B& block = slot(begun_ - 1).block;
-  if (const auto ok = maker_.next(); !ok) return fail({ok.error(), block.line, block.column, {}}), false;
+  const auto made = maker_.step();
+  if (!made) return fail({made.error(), block.line, block.column, {}}), false;
+  if (!*made) return true;
   auto cell = maker_.cell();
   if (cell.part.to <= skipped_ && !maker_.done()) return true;
   if (cell.part.from < skipped_) {
