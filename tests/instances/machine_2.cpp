@@ -2,6 +2,7 @@
 
 namespace cncplan {
 
-CNCPLAN_MACHINE(, Machine<2>)
+CNCPLAN_PLANNED_MACHINE(, Machine<2>)
+CNCPLAN_RUN_BLOCKS(, Machine<2>, ProgramBlock<Machine<2>>)
 
 }  // namespace cncplan

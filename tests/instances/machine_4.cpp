@@ -2,6 +2,6 @@
 
 namespace cncplan {
 
-CNCPLAN_MACHINE(, Machine<4>)
+CNCPLAN_PLANNED_MACHINE(, Machine<4>)
 
 }  // namespace cncplan

@@ -2,6 +2,6 @@
 
 namespace cncplan {
 
-CNCPLAN_MACHINE(, Machine<5>)
+CNCPLAN_PLANNED_MACHINE(, Machine<5>)
 
 }  // namespace cncplan
