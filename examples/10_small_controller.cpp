@@ -26,7 +26,8 @@ void tick() {
   if (ticks == 500) executor.resume();
   if (ticks == 700) executor.feed_override(1.5);
   const SetPoint<3> now = executor.tick(0.001);
-  for (const gcode::Word& word : now.words) std::printf("%5d ms %c%g\n", ticks, word.letter, word.number);
+  for (const auto& word : now.words)
+    std::printf("%9.3f ms %c%g\n", ticks + 1e3 * word.in_tick, word.letter, word.number);
   if (ticks % 50 == 0)
     std::printf("%5d ms %9.4f %9.4f mm %8.3f mm/s\n", ticks, now.position[0], now.position[1],
                 now.along.velocity);

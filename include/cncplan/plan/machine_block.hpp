@@ -72,4 +72,10 @@ concept BlockModel = requires(const B& block) {
   { block.rapid } -> std::convertible_to<bool>;
 };
 
+/// mm/s that a program asks of a block; infinite for a rapid, which goes as fast as may be.
+template <BlockModel B>
+[[nodiscard]] constexpr typename B::Scalar programmed_feed(const B& block) {
+  return block.rapid ? std::numeric_limits<typename B::Scalar>::infinity() : block.feed;
+}
+
 }  // namespace cncplan

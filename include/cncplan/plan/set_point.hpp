@@ -11,8 +11,18 @@
 
 namespace cncplan {
 
-/// Words that are reached at one instant.
-using ReachedWords = FixedList<gcode::Word, 8>;
+/// A word that an executor has come to.
+template <std::floating_point S>
+struct BasicReachedWord : gcode::Word {
+  S in_tick{};  ///< s, from the start of the tick to the instant at which it was reached
+};
+
+/// Words that are reached in one tick.
+template <std::floating_point S>
+using BasicReachedWords = FixedList<BasicReachedWord<S>, 8>;
+
+using ReachedWord = BasicReachedWord<double>;
+using ReachedWords = BasicReachedWords<double>;
 
 /// The axes and the tool at one instant; mm, rad and s.
 template <std::floating_point S, int N>
@@ -28,7 +38,8 @@ struct BasicSetPoint {
   Vector jerk = Vector::Zero();
   BasicVector3<S> tool = BasicVector3<S>::Zero();  ///< X Y Z
   BasicState<S> along{};  ///< programmed length since the start, and its time derivatives
-  ReachedWords words{};   ///< of an executor: reached since the set point before, each told once, in order
+  S feed{};  ///< mm/s, what the program asks for, before overrides; infinite for as fast as may be
+  BasicReachedWords<S> words{};  ///< of an executor: reached in the tick, each told once, in order
 };
 
 template <int N>

@@ -341,7 +341,8 @@ auto Trajectory<M, B>::evaluate(std::size_t piece, BasicState<Scalar> along, Sca
                  axes.acceleration,
                  axes.jerk,
                  BasicVector3<Scalar>::Zero(),
-                 along};
+                 along,
+                 programmed_feed(blocks_[number])};
   if constexpr (MappedModel<M>)
     point.tool = driven.visit(
         [&](const auto& p) { return tool_position(machine_, p, along.position, axes.position, tool_); });

@@ -108,6 +108,13 @@ class TrajectoryClock {
     search_from(S(1));
   }
 
+  /// s since it showed a time that its last step came to, forwards.
+  [[nodiscard]] S since(S shown) const {
+    if (!standing_) return elapsed_ - time_to(shown);
+    if (shown >= rest_.from) return shown_ - shown;
+    return shown_ - rest_.from + time_to(rest_.from) - time_to(shown);
+  }
+
   /// One step: dwells, leaves a rest, or drives on to the next one, at most for `left` seconds; whether more
   /// may happen in what is left of them. `wanted()` is the rate that is asked for, `may_leave()` is asked at
   /// rests, and `may_change(ramp)` before a change of the rate begins.

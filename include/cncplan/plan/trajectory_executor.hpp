@@ -106,11 +106,14 @@ class TrajectoryExecutor {
     time_.add(period);
     reached_.clear();
     Scalar left = period;
-    while (left > Scalar(0) && clock_.step(
-                                   left, [this] { return wanted(); }, [this] { return tell_words(); },
-                                   [](const auto&) { return true; })) {
+    const auto tell = [&] { return tell_words(period - left); };
+    while (left > Scalar(0)) {
+      const bool goes_on = clock_.step(
+          left, [this] { return wanted(); }, tell, [](const auto&) { return true; });
+      tell();
+      if (!goes_on) break;
     }
-    tell_words();
+    tell();
     const BasicState<Scalar> now = clock();
     SetPoint point = trajectory_->at(now);
     point.time = time_.since(Scalar(0));
@@ -165,13 +168,14 @@ class TrajectoryExecutor {
 
   [[nodiscard]] Scalar wanted() const { return held_ ? Scalar(0) : backwards_ ? -share_ : share_; }
 
-  // Words that the clock has come to, each once; false where the set point has no room for more of them: they
-  // come with the next one.
-  bool tell_words() {
+  // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
+  // no room for more of them: they come with the next one.
+  bool tell_words(Scalar in_tick) {
     const Scalar shown = clock().position;
     for (; told_ < words_.size() && words_[told_].time <= static_cast<double>(shown); ++told_) {
       const gcode::Word& word = words_[told_].word;
-      if (!reached_.push_back(word)) return false;
+      const Scalar ago = clock_.since(static_cast<Scalar>(words_[told_].time));
+      if (!reached_.push_back({word, std::clamp(in_tick - ago, Scalar(0), in_tick)})) return false;
       if (word.letter == 'M' && ((program_stop_ && (word.number == 0 || word.number == 60)) ||
                                  (optional_stop_ && word.number == 1)))
         held_ = true;
@@ -184,7 +188,7 @@ class TrajectoryExecutor {
   plan::TrajectoryClock<M, B> clock_;
   std::vector<TimedWord> words_;
   std::size_t told_ = 0;
-  ReachedWords reached_;
+  BasicReachedWords<Scalar> reached_;
   std::optional<RunError> error_;
   Scalar worst_hold_{};
   Scalar last_period_{};  // s

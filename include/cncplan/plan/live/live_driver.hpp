@@ -146,11 +146,12 @@ class LiveDriver final : public LevelDriver<M, B> {
     while (left > S(0) && step(left, period)) {
     }
     rested_ = rests() ? (parts_.empty() ? rested_ : S(0)) + left : S(0);
-    tell_words();
+    tell_words(period - left);
     if (!clock_.chain().empty()) {
       const S time = point.time;
       point = clock_.chain().at(clock_.state());
       point.time = time;
+      point.feed /= shares_.share_of(static_cast<std::int64_t>(point.block), oldest_block());
     }
     point.words = words_;
     release();
@@ -307,7 +308,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Rests, or one part of the tick; whether more may happen in it.
   bool step(S& left, S period) {
     if (clock_.chain().empty()) {
-      tell_words();
+      tell_words(period - left);
       return false;
     }
     if (tail_ahead_ && !clock_.heads_back() && clock_.state().position + left >= cut_) take_tail();
@@ -315,8 +316,9 @@ class LiveDriver final : public LevelDriver<M, B> {
     const S before = left;
     const bool stood = clock_.standing();
     const bool goes_on = clock_.step(
-        left, [this] { return wanted(); }, [this] { return may_leave(); },
+        left, [this] { return wanted(); }, [&] { return may_leave(period - left); },
         [this](const Motion& ramp) { return may_change(ramp); });
+    tell_words(period - left);
     const S used = before - left;
     if (!stood && used > S(0) &&
         !(clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration()))
@@ -327,8 +329,8 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   // A change of the rate that leads beyond a cut is one along the tail.
   bool may_change(const Motion& ramp) { return !tail_ahead_ || !(ramp.end().position > cut_) || take_tail(); }
-  bool may_leave() {
-    if (!tell_words()) return false;
+  bool may_leave(S in_tick) {
+    if (!tell_words(in_tick)) return false;
     if (!held_ && pauses())
       if (const auto pause = next_pause(); pause && std::abs(*pause - clock_.state().position) <= same_time)
         hold_at(*pause);
@@ -397,13 +399,14 @@ class LiveDriver final : public LevelDriver<M, B> {
     return told_part_ + 1 == seen_ && tells_tail_ == seen(told_part_).has_tail &&
            told_ == (tells_tail_ ? part.tail->words : part.motion->words).size();
   }
-  // Words that the clock has come to, each once; false where the set point has no room for more of them: they
-  // come with the next one.
-  bool tell_words() {
+  // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
+  // no room for more of them: they come with the next one.
+  bool tell_words(S in_tick) {
     const S shown = clock_.state().position;
     S time{};
     for (const auto* next = next_word(time); next != nullptr && time <= shown; next = next_word(time)) {
-      if (!words_.push_back(next->word)) return false;
+      const S at = std::clamp(in_tick - clock_.since(time), S(0), in_tick);
+      if (!words_.push_back({next->word, at})) return false;
       ++told_;
       const gcode::Word& word = next->word;
       if (word.letter != 'M' || !((program_stop_ && (word.number == 0 || word.number == 60)) ||
@@ -448,7 +451,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   std::int64_t told_part_ = 0;
   std::size_t told_ = 0;
   bool tells_tail_{};
-  ReachedWords words_;
+  BasicReachedWords<S> words_;
   FixedList<Driven, Base::most_parts> parts_;
   S rested_{}, quiet_{};  // s
   std::int64_t pushed_before_ = 0;
