@@ -1,4 +1,5 @@
 // Jogs before a program, on the way and behind it, and the way back.
+#include <algorithm>
 #include <cmath>
 
 #include "cncplan/plan/executor.hpp"
@@ -206,4 +207,51 @@ TEST_CASE("axes are jogged before a program, which waits until they are at its s
   executor.resume();
   CHECK(run(executor).position == Vector3(20, 0, 0));
   CHECK(executor.finished());
+}
+
+TEST_CASE("a jog to a place keeps the speeds that it is given, of the tool or of each axis", "[executor]") {
+  const bool tool = GENERATE(true, false);
+  Runner executor(mill);
+  const Vector3 place(12, -9, 4);
+  const Vector3 axes(3, 2, 1), way = place.normalized();
+  REQUIRE(executor.jog_to(place, tool ? Runner::JogSpeed{.tool = 4} : Runner::JogSpeed{.axes = axes}));
+  double fastest = 0, off = 0;
+  Vector3 most = Vector3::Zero();
+  SetPoint<3> point;
+  for (int tick = 0; tick < 20'000 && !(tick > 10 && executor.state() != ExecutorState::jogging); ++tick) {
+    point = executor.tick(period);
+    fastest = std::max(fastest, point.velocity.norm());
+    most = most.cwiseMax(point.velocity.cwiseAbs());
+    off = std::max(off, (point.position - point.position.dot(way) * way).norm());
+  }
+  CHECK(point.position == place);
+  if (tool) {
+    CHECK(fastest == Approx(4).epsilon(1e-9));
+    CHECK(off < 1e-9);
+  } else {
+    for (int i = 0; i < 3; ++i) CHECK(most[i] <= axes[i] * (1 + 1e-12));
+    CHECK((most - axes).cwiseAbs().minCoeff() < 1e-9);  // one is as fast as it may be
+  }
+}
+
+TEST_CASE("increments of a jog add up, however fast they come", "[executor]") {
+  Runner executor(mill);
+  for (int click = 0; click < 5; ++click) {
+    REQUIRE(executor.jog_by({1, 0, -0.5}, {.tool = 3}));
+    run(executor, 0.02);
+  }
+  CHECK((run(executor, 10.0).position - Vector3(5, 0, -2.5)).norm() < 1e-12);
+  REQUIRE(executor.jog({0, 2, 0}));
+  const double y = run(executor, 1.0).position[1];
+  REQUIRE(executor.jog_by({0, 1, 0}));  // from where it is: no target goes on
+  CHECK(run(executor, 5.0).position[1] == Approx(y + 1).margin(1e-9));
+  CHECK(executor.jog_by({1000, 0, 0}).error().code == ErrorCode::above_limit);
+}
+
+TEST_CASE("a jog of no speed is refused", "[executor]") {
+  Runner executor(mill);
+  CHECK(executor.jog_to({1, 0, 0}, {.tool = 0}).error().code == ErrorCode::not_positive);
+  CHECK(executor.jog_to({1, 0, 0}, {.axes = {1, -1, 1}}).error().code == ErrorCode::not_positive);
+  CHECK(executor.jog_by({1, 0, 0}, {.tool = std::nan("")}).error().code == ErrorCode::not_finite);
+  CHECK(run(executor, 1.0).position == Vector3::Zero());
 }

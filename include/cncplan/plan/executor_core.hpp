@@ -51,6 +51,7 @@ class ExecutorCore {
   using Options = BasicExecutorOptions<Scalar>;
   /// The axes over a part of a tick, by time.
   using Part = AxisPart<M, B>;
+  using JogSpeed = BasicJogSpeed<Scalar, M::axis_count>;
   using Core = ExecutorCore;
 
   /// A machine or options that `validate` refuses are told by `error`.
@@ -156,8 +157,11 @@ class ExecutorCore {
   /// keeps its limits; those of the tool do not act. Errors: those of `validate` for the machine, and of
   /// `reach_velocity`; unfinished, with the line, while a program moves the axes.
   [[nodiscard]] Expected<void> jog(const Vector& velocities);
-  /// The axes go to positions. Errors: those of `move_to`, and as for `jog`.
-  [[nodiscard]] Expected<void> jog_to(const Vector& positions);
+  /// The axes go to positions. Errors: those of `move_to` and of `validate` for the speed, and as for `jog`.
+  [[nodiscard]] Expected<void> jog_to(const Vector& positions, const JogSpeed& speed = {});
+  /// The axes go so much further: from where a jog to positions goes, or else from where they are now.
+  /// Errors as for `jog_to`.
+  [[nodiscard]] Expected<void> jog_by(const Vector& increments, const JogSpeed& speed = {});
   /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
   [[nodiscard]] Expected<void> return_to_path();
 
@@ -388,9 +392,15 @@ Expected<void> ExecutorCore<M, B>::jog(const Vector& velocities) {
 }
 
 template <MachineModel M, BlockModel B>
-Expected<void> ExecutorCore<M, B>::jog_to(const Vector& positions) {
+Expected<void> ExecutorCore<M, B>::jog_to(const Vector& positions, const JogSpeed& speed) {
   if (auto ok = begin_jog(); !ok) return ok;
-  return jogged(jog_.to_positions(last_.position, positions, machine_), false);
+  return jogged(jog_.to_positions(last_.position, positions, machine_, speed), false);
+}
+
+template <MachineModel M, BlockModel B>
+Expected<void> ExecutorCore<M, B>::jog_by(const Vector& increments, const JogSpeed& speed) {
+  if (auto ok = begin_jog(); !ok) return ok;  // says where the axes stand
+  return jog_to(jog_.target().value_or(last_.position) + increments, speed);
 }
 
 template <MachineModel M, BlockModel B>

@@ -1,12 +1,44 @@
 // Axes that are moved by hand, while no program moves them.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <limits>
+#include <optional>
 
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/plan/move_to.hpp"
+#include "cncplan/plan/tool.hpp"
 
-namespace cncplan::plan {
+namespace cncplan {
+
+/// How fast a jog to a place may be, where that is slower than the machine's limits.
+template <std::floating_point S, int N>
+struct BasicJogSpeed {
+  static constexpr S infinity = std::numeric_limits<S>::infinity();
+
+  VectorN<S, N> axes = VectorN<S, N>::Constant(infinity);  ///< of each, mm/s and rad/s; > 0
+  S tool = infinity;  ///< mm/s, of X, Y and Z together; > 0. From rest they go straight then
+};
+
+template <int N>
+using JogSpeed = BasicJogSpeed<double, N>;
+
+/// Nothing, or the first speed that is none.
+template <std::floating_point S, int N>
+[[nodiscard]] Expected<void> validate(const BasicJogSpeed<S, N>& speed) {
+  for (int i = 0; i <= N; ++i) {
+    const S own = i < N ? speed.axes[i] : speed.tool;
+    if (std::isnan(own)) return refusal(ErrorCode::not_finite, "speed of a jog", own);
+    if (!(own > S(0))) return refusal(ErrorCode::not_positive, "speed of a jog", own);
+  }
+  return {};
+}
+
+namespace plan {
 
 /// A machine's axes in a motion of their own, each within its limits, from one request to the next.
 template <MachineModel M>
@@ -15,16 +47,29 @@ class Jog {
   using Scalar = typename M::Scalar;
   using States = BasicAxisStates<Scalar, M::axis_count>;
   using Vector = VectorN<Scalar, M::axis_count>;
+  using Speed = BasicJogSpeed<Scalar, M::axis_count>;
 
   /// Begins to come to velocities, from where the axes are and as they move; from rest at `place` where they
   /// are at rest. Errors: those of `reach_velocity`.
   Expected<void> to_velocities(const Vector& place, const Vector& velocities, const M& machine) {
     return follow(reach_velocity(now(place), row(velocities), machine));
   }
-  /// Begins to go to positions. Errors: those of `move_to`.
-  Expected<void> to_positions(const Vector& place, const Vector& positions, const M& machine) {
-    return follow(move_to(now(place), row(positions), machine));
+  /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`.
+  Expected<void> to_positions(const Vector& place, const Vector& positions, const M& machine,
+                              const Speed& speed = {}) {
+    if (auto ok = validate(speed); !ok) return ok;
+    const States from = now(place);
+    const auto together = std::isfinite(speed.tool) ? Synchronization::phase : Synchronization::time;
+    if (auto ok =
+            follow(move_to(from, row(positions), slowed(machine, speed, positions - vector(from.position)),
+                           {.synchronization = together}));
+        !ok)
+      return ok;
+    target_ = positions;
+    return {};
   }
+  /// Where it goes, while it goes to positions.
+  [[nodiscard]] std::optional<Vector> target() const { return moves_ ? target_ : std::nullopt; }
   /// Begins to come to rest with so many times the limits of acceleration and jerk, where it does not brake
   /// as hard already.
   void to_rest(const M& machine, Scalar share) {
@@ -78,6 +123,22 @@ class Jog {
     decltype(M::axes) axes;
   };
 
+  // Its axes on a way that is no faster.
+  [[nodiscard]] static Axes slowed(const M& machine, const Speed& speed, const Vector& way) {
+    Axes result{machine.axes};
+    const std::array<int, 3> tool = tool_axes(machine);
+    const Scalar length = in_space(way, tool).norm();
+    for (int i = 0; i < M::axis_count; ++i) {
+      Scalar most = speed.axes[i];
+      if (way[i] != Scalar(0) && std::find(tool.begin(), tool.end(), i) != tool.end())
+        most = std::min(most, speed.tool * (std::abs(way[i]) / length));
+      auto& axis = result.axes[static_cast<std::size_t>(i)];
+      axis.velocity = std::min(axis.velocity, most);
+      axis.velocity_down = std::min(axis.velocity_down, most);
+    }
+    return result;
+  }
+
   static typename States::Row row(const Vector& vector) {
     typename States::Row result;
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = vector[static_cast<Eigen::Index>(i)];
@@ -93,13 +154,17 @@ class Jog {
     if (!move) return tl::unexpected(move.error());
     move_ = *move;
     moves_ = true;
+    target_.reset();
     brakes_ = Scalar(0);
     return {};
   }
 
   Moved move_{};
   bool moves_ = false;
+  std::optional<Vector> target_;
   Scalar brakes_{};  // share of the limits with which it comes to rest; 0: it does not
 };
 
-}  // namespace cncplan::plan
+}  // namespace plan
+
+}  // namespace cncplan
