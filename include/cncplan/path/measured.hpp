@@ -30,8 +30,8 @@ concept Curve = requires(const C& curve, typename C::Scalar u, const BasicJet<ty
   curve.point(bounded)[0];
 };
 
-/// The point whose way counts as length: what a curve's `travelled(u)` says, X Y Z in mm, else its first
-/// three axes.
+/// The point whose way counts as length: what a curve's `travelled(u)` says, X Y Z in mm, or other axes where
+/// its `tool_rests()`; else its first three axes.
 template <Curve C, class T>
 [[nodiscard]] auto travelled(const C& curve, const T& u) {
   if constexpr (requires { curve.travelled(u); }) {
@@ -98,8 +98,14 @@ class Measured {
   /// X Y Z of the point that counts, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
     PathPoint<BasicVector3<Scalar>> result;
-    int i = 0;
-    for (const auto& axis : travelled(curve(), by_length(parameter_at(s)))) put(axis, result, i++);
+    if constexpr (axis_count > 3)
+      if (tool_rests()) {
+        result.position = position_at(s).template head<3>();
+        return result;
+      }
+    const auto way = travelled(curve(), by_length(parameter_at(s)));
+    for (std::size_t i = 0; i < std::min<std::size_t>(way.size(), 3); ++i)
+      put(way[i], result, static_cast<int>(i));
     return result;
   }
   [[nodiscard]] auto enclosure(Scalar from, Scalar to) const {
@@ -124,6 +130,14 @@ class Measured {
     else
       return 4;
   }();
+
+  // Where the way of other axes counts.
+  [[nodiscard]] bool tool_rests() const {
+    if constexpr (axis_count > 3 && requires(const C& c) { c.tool_rests(); })
+      return curve().tool_rests();
+    else
+      return false;
+  }
 
   static Vector values(const std::array<Scalar, static_cast<std::size_t>(axis_count)>& point) {
     return Eigen::Map<const Vector>(point.data());
@@ -154,6 +168,7 @@ class Measured {
 
   // Of a unit-speed curve: the part of r''' along r' is the square of the curvature, the rest lies across.
   [[nodiscard]] BasicToolBounds<Scalar> tool_bounds(Scalar from, Scalar to) const {
+    if (tool_rests()) return {};
     const Scalar width = (to - from) / Scalar(parts);
     BasicToolBounds<Scalar> result{.first = Scalar(1)};
     for (int part = 0; part < parts; ++part) {

@@ -83,7 +83,12 @@ class BasicRationalCubic {
 
   /// Of the two inner controls the weights are > 0.
   explicit BasicRationalCubic(const Controls& controls, S second_weight = S(1), S third_weight = S(1))
-      : controls_(controls), weights_{second_weight, third_weight} {}
+      : controls_(controls), weights_{second_weight, third_weight} {
+    if constexpr (N > 3)
+      tool_rests_ = std::all_of(controls.begin() + 1, controls.end(), [&](const Vector& control) {
+        return control.template head<3>() == controls[0].template head<3>();
+      });
+  }
 
   [[nodiscard]] const Controls& controls() const { return controls_; }
   [[nodiscard]] const std::array<S, 2>& weights() const { return weights_; }
@@ -107,11 +112,27 @@ class BasicRationalCubic {
     return result;
   }
 
+  /// Whether X Y Z stay where they are.
+  [[nodiscard]] bool tool_rests() const { return tool_rests_; }
+  /// The way that counts as length: that of X Y Z, and where they rest that of the other coordinates.
+  template <class T>
+  [[nodiscard]] auto travelled(const T& u) const requires(N > 3) {
+    constexpr std::size_t others = static_cast<std::size_t>(N) - 3;
+    std::array<T, std::max<std::size_t>(3, others)> result{};
+    const auto at = point(u);
+    if (tool_rests_)
+      std::copy_n(at.begin() + 3, others, result.begin());
+    else
+      std::copy_n(at.begin(), 3, result.begin());
+    return result;
+  }
+
   friend bool operator==(const BasicRationalCubic&, const BasicRationalCubic&) = default;
 
  private:
   Controls controls_;
   std::array<S, 2> weights_;
+  bool tool_rests_{};
 };
 
 template <int N>

@@ -19,9 +19,11 @@
 #include "cncplan/path/spline.hpp"
 #include "cncplan/path/straight_in_joints.hpp"
 #include "cncplan/path/switched.hpp"
+#include "cncplan/plan/great_circle.hpp"
 #include "cncplan/plan/machine.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/mapped_paths.hpp"
+#include "cncplan/plan/orientation.hpp"
 #include "cncplan/plan/tool.hpp"
 
 namespace cncplan {
@@ -91,8 +93,9 @@ class BlockBuilder {
   using Block = ProgramBlock<M>;
   using Scalar = typename M::Scalar;
 
-  BlockBuilder(const M& machine, const gcode::Dialect& dialect, const path::ArcTolerance<double>& arcs = {})
-      : machine_(machine), arcs_(arcs.cast<Scalar>()) {
+  BlockBuilder(const M& machine, const gcode::Dialect& dialect, const path::ArcTolerance<double>& arcs = {},
+               Orientation orientation = Orientation::joints)
+      : machine_(machine), arcs_(arcs.cast<Scalar>()), orientation_(orientation) {
     const auto index_of = [&](char letter) {
       const auto found = std::find_if(dialect.axes.begin(), dialect.axes.end(),
                                       [&](const gcode::Axis& axis) { return axis.letter == letter; });
@@ -112,13 +115,14 @@ class BlockBuilder {
   /// are not X Y Z; unreachable for a motion of an axis that the machine lacks; above_limit for a thread that
   /// the axes cannot follow at the spindle's speed.
   [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> take(const gcode::Item& item) {
+    circle_.reset();
     if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
-      auto made = block(*motion);
-      if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion->line, motion->column, {}});
-      state_.place = coordinates_of(machine_place(motion->end, motion->offset));
-      state_.tool_point = motion->tool_point;
-      if constexpr (MappedModel<M>) state_.axes = made->path.end();
-      return std::optional<Block>(*made);
+      if (along_great_circle(*motion)) {
+        if (const auto ok = begin_circle(*motion); !ok)
+          return tl::unexpected(gcode::Diagnostic{ok.error(), motion->line, motion->column, {}});
+        return more();
+      }
+      return moved(*motion, block(*motion), coordinates_of(machine_place(motion->end, motion->offset)));
     }
     const auto* word = std::get_if<gcode::Word>(&item);
     if (const auto* dwell = std::get_if<gcode::Dwell>(&item)) return rest(dwell->line, dwell->seconds);
@@ -127,11 +131,22 @@ class BlockBuilder {
     return std::optional<Block>();
   }
 
+  /// The next block of the item taken last: a line along which the tool goes on a great circle has several.
+  /// None behind the last one. Errors as for `take`.
+  [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> more() {
+    if constexpr (directed)
+      if (circle_) return circle_piece();
+    return std::optional<Block>();
+  }
+
   using State = plan::BasicMotionStart<Scalar, program_coordinates<M>, M::axis_count>;
 
   /// Where the axes are before the first motion.
-  void start_at(const gcode::Position& place) { state_ = {coordinates_of(place), {}, {}}; }
-  void start_at(const State& state) { state_ = state; }
+  void start_at(const gcode::Position& place) { start_at({coordinates_of(place), {}, {}}); }
+  void start_at(const State& state) {
+    state_ = state;
+    circle_.reset();
+  }
   /// Where the last motion ended.
   [[nodiscard]] const State& state() const { return state_; }
 
@@ -160,6 +175,64 @@ class BlockBuilder {
     else
       return false;
   }();
+
+  // Whose map knows the tool's direction.
+  static constexpr bool directed = [] {
+    if constexpr (MappedModel<M>)
+      return plan::DirectedMap<MapOf<M>>;
+    else
+      return false;
+  }();
+  struct NoCircle {};
+  template <class Model>
+  struct CircleOf {
+    plan::GreatCircle<MapOf<Model>> pieces;
+    gcode::Motion motion;
+  };
+  using Circle = typename std::conditional_t<directed, std::type_identity<CircleOf<M>>,
+                                             std::type_identity<NoCircle>>::type;
+
+  [[nodiscard]] bool along_great_circle(const gcode::Motion& motion) const {
+    return switchable && orientation_ == Orientation::great_circle && motion.tool_point &&
+           motion.kind == gcode::MotionKind::line;
+  }
+  [[nodiscard]] Expected<void> begin_circle([[maybe_unused]] const gcode::Motion& motion) {
+    if constexpr (!directed)
+      return tl::unexpected(
+          Error{ErrorCode::not_supported, "great circle of a tool whose direction the map does not tell"});
+    else
+      circle_.emplace(Circle{{machine_.map, coordinates_of(machine_place(motion.start, motion.offset)),
+                              coordinates_of(machine_place(motion.end, motion.offset))},
+                             motion});
+    return {};
+  }
+  [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> circle_piece() {
+    const gcode::Motion& motion = circle_->motion;
+    const auto piece = circle_->pieces.next();
+    if (!piece) return tl::unexpected(gcode::Diagnostic{piece.error(), motion.line, motion.column, {}});
+    if (!*piece) {
+      circle_.reset();
+      return std::optional<Block>();
+    }
+    const auto& [start, end, cubic, turns_alone] = **piece;
+    auto made = block(motion, cubic ? path::spline(*cubic).map([](const auto& p) { return Programmed(p); })
+                              : turns_alone ? Programmed(path::BasicLine<Scalar, program_coordinates<M>>(
+                                                  start, end, (end - start).norm(), Scalar(0)))
+                                            : Programmed(line(motion, start, end)));
+    if (made && turns_alone) made->feed = std::numeric_limits<Scalar>::infinity();
+    return moved(motion, made, end);
+  }
+
+  // A block of a motion, or why there is none; what follows begins at its end.
+  [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> moved(const gcode::Motion& motion,
+                                                                        const Expected<Block>& made,
+                                                                        const Coordinates& end) {
+    if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion.line, motion.column, {}});
+    state_.place = end;
+    state_.tool_point = motion.tool_point;
+    if constexpr (MappedModel<M>) state_.axes = made->path.end();
+    return std::optional<Block>(*made);
+  }
 
   [[nodiscard]] Coordinates coordinates_of(const gcode::Position& place) const {
     Coordinates result = Coordinates::Zero();
@@ -214,14 +287,27 @@ class BlockBuilder {
     const auto map = plan::block_map(of(self).machine_, length);
     return of(self).place_of(map.joints(of(self).joints_of(tip)), tip);
   }
+  // Those that a great circle leads to, if that is wanted and leads to any.
+  [[nodiscard]] std::optional<Joints> turned_to(const std::array<Scalar, 3>& direction,
+                                                const Joints& from) const {
+    if constexpr (directed)
+      if (orientation_ == Orientation::great_circle) {
+        const auto place = [](const Joints& joints) { return Eigen::Map<const Coordinates>(joints.data()); };
+        const auto led = plan::joints_of_direction(machine_, direction, from, [&](const Joints& there) {
+          return plan::GreatCircle<MapOf<M>>(machine_.map, place(from), place(there)).possible();
+        });
+        if (led) return led;
+      }
+    return plan::joints_of_direction(machine_, direction, from, [](const Joints&) { return true; });
+  }
   static std::optional<gcode::Position> turned(const void* self, const Vector3& direction,
                                                const gcode::Position& from) {
     if constexpr (requires(const Joints& q) { of(self).machine_.map.angles(std::array<Scalar, 3>{}); }) {
       const std::array<Scalar, 3> along{static_cast<Scalar>(direction.x()),
                                         static_cast<Scalar>(direction.y()),
                                         static_cast<Scalar>(direction.z())};
-      const auto joints = plan::joints_of_direction(of(self).machine_, along, of(self).joints_of(from));
-      if (joints) return of(self).place_of(*joints, from);
+      if (const auto joints = of(self).turned_to(along, of(self).joints_of(from)))
+        return of(self).place_of(*joints, from);
     }
     return std::nullopt;
   }
@@ -247,8 +333,12 @@ class BlockBuilder {
   }
 
   [[nodiscard]] Expected<Block> block(const gcode::Motion& motion) const {
+    return block(motion, programmed_path(motion));
+  }
+  // Along all of a motion, or a piece of it.
+  [[nodiscard]] Expected<Block> block(const gcode::Motion& motion,
+                                      const Expected<Programmed>& programmed) const {
     if (auto ok = check_axes(motion); !ok) return tl::unexpected(ok.error());
-    const auto programmed = programmed_path(motion);
     if (!programmed) return tl::unexpected(programmed.error());
     const bool exact_stop = motion.path_mode == gcode::PathMode::exact_stop;
     const bool exact_path = motion.exact_stop && !exact_stop;  // G64 P0 as well
@@ -293,7 +383,8 @@ class BlockBuilder {
   // mm/s, or rad/s where the tool stands still: F counts degrees there.
   [[nodiscard]] Scalar feed(const gcode::Motion& motion, const Programmed& programmed) const {
     if (motion.feed_mode == gcode::FeedMode::inverse_time)
-      return static_cast<Scalar>(*motion.feed) * programmed.length();
+      return static_cast<Scalar>(*motion.feed) *
+             (along_great_circle(motion) ? whole_line(motion).length() : programmed.length());
     const bool turns = rotary_only(motion);
     return static_cast<Scalar>(*motion.feed * (turns ? gcode::radians_per_degree : 1.0));
   }
@@ -384,6 +475,11 @@ class BlockBuilder {
     return {start, end, std::sqrt(linear_sq > Scalar(0) ? linear_sq : rotary_sq), Scalar(0)};
   }
 
+  [[nodiscard]] auto whole_line(const gcode::Motion& motion) const {
+    return line(motion, coordinates_of(machine_place(motion.start, motion.offset)),
+                coordinates_of(machine_place(motion.end, motion.offset)));
+  }
+
   static bool is_curve(const gcode::Motion& motion) {
     return motion.kind != gcode::MotionKind::rapid && motion.kind != gcode::MotionKind::line;
   }
@@ -396,11 +492,13 @@ class BlockBuilder {
 
   M machine_;
   path::ArcTolerance<Scalar> arcs_;
+  Orientation orientation_;
   std::size_t word_count_ = 0;
   std::array<AxisKind, gcode::max_axes> kinds_{};
   std::array<int, coordinates> words_{};  // which word each coordinate is; -1 for none
   std::array<int, 3> space_{};            // which words X Y Z are
   State state_;
+  std::optional<Circle> circle_;  // of a line that is not at its end
 };
 
 }  // namespace cncplan

@@ -83,7 +83,8 @@ class BlockReader {
     std::size_t call_ = 0;
   };
 
-  /// Of the options: start, dialect and arcs; the tolerance tells whether P and Q of G64 have an effect.
+  /// Of the options: start, dialect, arcs and orientation; the tolerance tells whether P and Q of G64 have an
+  /// effect.
   explicit BlockReader(const M& machine, const PlanOptions& options = {})
       : BlockReader(machine, options, options.dialect ? *options.dialect : dialect_of(machine)) {}
   BlockReader(const BlockReader&) = delete;  // ranges point to it
@@ -115,7 +116,7 @@ class BlockReader {
       : machine_(machine),
         machine_ok_(validate(machine)),
         smoothed_(level_of(options) != SmoothLevel::exact),
-        builder_(machine, dialect, options.arcs),
+        builder_(machine, dialect, options.arcs, options.orientation),
         lines_(builder_.with_tool_point(dialect), start_position(options)) {
     builder_.start_at(start_position(options));
   }
@@ -156,13 +157,16 @@ auto BlockReader<M>::take(Read&& read) -> Expected<Blocks, ProgramError> {
       if (!(smoothed_ && gcode::void_if_smoothed(warning->about))) warnings_.push_back(warning->about);
       return {};
     }
-    const auto block = make(item);
-    if (!block) return tl::unexpected(block.error());
-    if (const auto ok = plan::drivable(*block, machine_); !ok) {
-      at_fault = taken_ + count;
-      return tl::unexpected(gcode::Diagnostic{ok.error(), block->line, block->column, {}});
+    auto made = make(item).map([](const Block& block) { return std::optional<Block>(block); });
+    for (; made && *made; made = builder_.more()) {
+      const Block& block = **made;
+      if (const auto ok = plan::drivable(block, machine_); !ok) {
+        at_fault = taken_ + count;
+        return tl::unexpected(gcode::Diagnostic{ok.error(), block.line, block.column, {}});
+      }
+      ++count;
     }
-    ++count;
+    if (!made) return tl::unexpected(made.error());
     return {};
   });
   builder_.start_at(before);
@@ -194,6 +198,10 @@ auto BlockReader<M>::make(const gcode::Item& item) -> Expected<Block, gcode::Dia
 template <MachineModel M>
 void BlockReader<M>::advance() {
   if (--left_ == 0) return;
+  if (auto more = builder_.more(); more && *more) {
+    block_ = **more;
+    return;
+  }
   const gcode::Item* item = lines_.next();
   while (item != nullptr && std::holds_alternative<gcode::Warning>(*item)) item = lines_.next();
   if (item != nullptr)

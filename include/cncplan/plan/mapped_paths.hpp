@@ -106,11 +106,12 @@ template <MappedModel M, Path P, class Start>
   return path::StraightInJoints<Map>(ends.map(), programmed.start(), programmed.end(), from, to, turning);
 }
 
-/// The joints with those rotary ones that give a direction of the tool, of all that do those nearest to
-/// `here`, and within the travel if any are; none where the map knows none.
-template <MappedModel M>
+/// The joints with those rotary ones that give a direction of the tool, of all that do and that `allowed`
+/// says yes to those nearest to `here`, and within the travel if any are; none where there are none.
+template <MappedModel M, class Allowed>
 [[nodiscard]] auto joints_of_direction(const M& machine, const std::array<typename M::Scalar, 3>& direction,
-                                       const path::MapJoints<MapOf<M>, typename M::Scalar>& here) {
+                                       const path::MapJoints<MapOf<M>, typename M::Scalar>& here,
+                                       const Allowed& allowed) {
   using S = typename M::Scalar;
   constexpr S upright = S(1e-9);  // rad; nearer than that the second angle may be any
   std::optional<path::MapJoints<MapOf<M>, S>> best;
@@ -128,7 +129,7 @@ template <MappedModel M>
       inside = inside && axis.low <= there[i] && there[i] <= axis.high;
       way += std::abs(there[i] - here[i]);
     }
-    if (!std::isfinite(way)) continue;
+    if (!std::isfinite(way) || !allowed(there)) continue;
     if (best && (within > inside || (within == inside && !(way < least)))) continue;
     best = there;
     least = way;

@@ -9,6 +9,7 @@
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
+#include "cncplan/plan/orientation.hpp"
 #include "cncplan/plan/smooth_level.hpp"
 #include "cncplan/plan/valid_tolerances.hpp"
 
@@ -27,7 +28,9 @@ struct PlanOptions {
   std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
   path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be
-  gcode::FindFile subprograms{};            ///< files of subprograms; those in the program's folder if empty
+  /// How the tool turns along lines under tool-point control
+  Orientation orientation = Orientation::joints;
+  gcode::FindFile subprograms{};  ///< files of subprograms; those in the program's folder if empty
   /// Called from time to time with the share of the way from the text to the plan that is done, 0 to 1, never
   /// less than before; false ends the work with the error `interrupted`. What it throws goes on to the
   /// caller. Blocks alone begin where the reading of a text would end.

@@ -49,7 +49,7 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
   const auto valid = validate(machine);
   if (!valid) add({{valid.error(), 0, 0, {}}}, file);
   const gcode::Dialect dialect = options.dialect ? *options.dialect : dialect_of(machine);
-  BlockBuilder<M> builder(machine, dialect, options.arcs);
+  BlockBuilder<M> builder(machine, dialect, options.arcs, options.orientation);
   gcode::Reader reader(builder.with_tool_point(dialect), start_position(options));
   builder.start_at(start_position(options));
   constexpr std::size_t short_line = 24;  // bytes: few programs need more room than that
@@ -72,9 +72,11 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
     return tl::unexpected(ProgramError{{ok.error(), block.line, block.column, {}}, {}, blocks_.size()});
   };
   const auto make = [&](const gcode::Item& item) -> Expected<std::size_t, ProgramError> {
-    auto block = builder.take(item);
-    if (!block) return tl::unexpected(ProgramError{block.error()});
-    return *block ? keep(std::move(**block)) : blocks_.size();
+    for (auto block = builder.take(item);; block = builder.more()) {
+      if (!block) return tl::unexpected(ProgramError{block.error()});
+      if (!*block) return blocks_.size();
+      if (auto kept = keep(std::move(**block)); !kept) return kept;
+    }
   };
   read(text, file, reader, options, make);
   if (!blocks_.empty()) return;
