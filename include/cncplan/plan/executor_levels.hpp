@@ -12,8 +12,6 @@ namespace cncplan::plan {
 /// What an executor with a `SmoothLevel` in its options is made of.
 template <MachineModel M, BlockModel B>
 struct ExecutorLevels {
-  static_assert(!MappedModel<M>, "under a map an executor has the level `fast` only");
-
   using S = typename M::Scalar;
   using Options = BasicExecutorOptions<S, SmoothLevel>;
   using Fast = BasicExecutorOptions<S>;

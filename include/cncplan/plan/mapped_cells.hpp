@@ -94,6 +94,18 @@ class MappedCells {
     return cell;
   }
 
+  /// The same, with an enclosure of that derivative along the piece.
+  [[nodiscard]] Cell proven_cell(const Cubic& piece, S feed, std::size_t block) const {
+    Cell cell = start_of(piece, feed, block);
+    const auto along = of(*maps_[block], piece.enclosure(S(0), piece.length()));
+    for (int i = 0; i < joints; ++i) {
+      const auto& third = along[static_cast<std::size_t>(i)].third;
+      cell.third[i] = third.low + (third.high - third.low) / S(2);
+      cell.spread[i] = (third.high - third.low) / S(2);
+    }
+    return cell;
+  }
+
   /// Calls `add(part, cell)` for parts of a piece on which the third derivative is well enough known.
   template <class Add>
   void proven_cells(const Cubic& piece, S feed, std::size_t block, Add&& add) const {
@@ -136,13 +148,7 @@ class MappedCells {
 
   template <class Add>
   void add_parts(const Cubic& piece, S feed, std::size_t block, int halvings, Add&& add) const {
-    Cell cell = start_of(piece, feed, block);
-    const auto along = of(*maps_[block], piece.enclosure(S(0), piece.length()));
-    for (int i = 0; i < joints; ++i) {
-      const auto& third = along[static_cast<std::size_t>(i)].third;
-      cell.third[i] = third.low + (third.high - third.low) / S(2);
-      cell.spread[i] = (third.high - third.low) / S(2);
-    }
+    Cell cell = proven_cell(piece, feed, block);
     const S known = known_speed(cell);
     if (known >= place_speed(cell) || halvings == 0) {
       // What is no number lets nothing move.

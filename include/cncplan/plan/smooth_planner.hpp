@@ -366,45 +366,43 @@ class SmoothPlanner {
   }
 
   // The first part of a run, up to where it is cut; false where it cannot be.
-  bool add_part([[maybe_unused]] std::size_t end) try {
-    if constexpr (!MappedModel<M>) {
-      const Given given = run_blocks(cut_ ? 0 : planned_, end);
-      Run run = given.blocks.run(work_, cut_, memory_);
-      const std::size_t count = given.blocks.size();
-      for (const auto& [cell, cut] : run.cuts(count / 2, count * 19 / 20)) {
-        // From there the machine can come to rest along what is known.
-        std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
-        while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
-        typename Run::Cut there = cut;
-        there.place.block -= moving;
-        const Given rest = run_blocks(given.sources[moving], end);
-        if (!works(rest.blocks.run(work_, there, memory_).slow_plan(), rest.blocks)) continue;
-        run.end_before(cell, cut.speed);
-        RunPlan planned = run.plan(progress_to(end));
-        const bool fastest = works(planned, given.blocks);
-        if (!fastest) planned = run.slow_plan();
-        if (!works(planned, given.blocks)) return false;
-        const std::size_t at = given.sources[planned.end_block];
-        const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
-        if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return false;  // nothing is let go
-        // The very way to rest that is driven if nothing else can be: it begins with the approach.
-        typename Run::Cut next = cut;
-        next.place.block -= kept;
-        next.approach = &planned.approach;
-        const Given way = run_blocks(gone, end);
-        if (!works(way.blocks.run(work_, next, memory_).slow_plan(), way.blocks)) return false;
-        make_room(fallbacks_, 1);
-        const std::size_t before = out_.size();
-        add_pieces(planned, given, at);
-        if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
-        begun_ = !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + at;
-        approach_ = std::move(planned.approach);
-        cut_ = next;
-        cut_->approach = &approach_;
-        known_ = end - gone;
-        let_go(gone);
-        return true;
-      }
+  bool add_part(std::size_t end) try {
+    const Given given = run_blocks(cut_ ? 0 : planned_, end);
+    Run run = given.blocks.run(work_, cut_, memory_);
+    const std::size_t count = given.blocks.size();
+    for (const auto& [cell, cut] : run.cuts(count / 2, count * 19 / 20)) {
+      // From there the machine can come to rest along what is known.
+      std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
+      while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
+      typename Run::Cut there = cut;
+      there.place.block -= moving;
+      const Given rest = run_blocks(given.sources[moving], end);
+      if (!works(rest.blocks.run(work_, there, memory_).slow_plan(), rest.blocks)) continue;
+      run.end_before(cell, cut.speed);
+      RunPlan planned = run.plan(progress_to(end));
+      const bool fastest = works(planned, given.blocks);
+      if (!fastest) planned = run.slow_plan();
+      if (!works(planned, given.blocks)) return false;
+      const std::size_t at = given.sources[planned.end_block];
+      const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
+      if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return false;  // nothing is let go
+      // The very way to rest that is driven if nothing else can be: it begins with the approach.
+      typename Run::Cut next = cut;
+      next.place.block -= kept;
+      next.approach = &planned.approach;
+      const Given way = run_blocks(gone, end);
+      if (!works(way.blocks.run(work_, next, memory_).slow_plan(), way.blocks)) return false;
+      make_room(fallbacks_, 1);
+      const std::size_t before = out_.size();
+      add_pieces(planned, given, at);
+      if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
+      begun_ = !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + at;
+      approach_ = std::move(planned.approach);
+      cut_ = next;
+      cut_->approach = &approach_;
+      known_ = end - gone;
+      let_go(gone);
+      return true;
     }
     return false;
   } catch (const std::bad_alloc&) {

@@ -55,6 +55,11 @@ struct BasicOwnAxes {
     const auto& start = piece.start();
     return {piece.length(), feed, start.first, start.second, start.third};
   }
+  /// The same, for limits to be proven on a piece that is short enough.
+  [[nodiscard]] BasicSpeedCell<S, N> proven_cell(const BasicCubic<S, N>& piece, S feed,
+                                                 std::size_t block) const {
+    return cell(piece, feed, block);
+  }
   /// Calls `add(piece, cell)` for the parts of a piece that are short enough for limits to be proven on them.
   template <class Add>
   void proven_cells(const BasicCubic<S, N>& piece, S feed, std::size_t block, Add&& add) const {
@@ -244,12 +249,12 @@ class CurveSpeed {
  private:
   static constexpr S growth = S(0.3);
 
-  // The block of a run in which a place of its curve lies; the first one before its start.
+  // The block of a run in which a place of its curve lies, or of an approach to it.
   [[nodiscard]] static std::size_t block_of(const BasicBand<S, N>& band, S at) {
     if constexpr (std::same_as<Seen, BasicOwnAxes<S, N>>)
       return 0;  // which it is changes nothing
     else
-      return band.block_at(std::max(at, S(0)));
+      return band.block_at(std::max(at, band.block_start(0)));
   }
   void add(const BasicCubic<S, N>& curve, S feed, S start, std::pair<std::size_t, S> origin,
            std::size_t block) {
@@ -276,13 +281,16 @@ class CurveSpeed {
   void take_approach(const BasicBand<S, N>& band, const BasicApproach<S, N>& approach) {
     S start = -approach.length();
     const bool at_once = approach.size() == 0;
-    const std::size_t block = block_of(band, S(0));
     add_cell({(at_once ? band.cubic(0) : approach.curves[0]).start(), S(0)},
-             at_once ? band.feed(0) : approach.feeds[0], start, {0, S(0)}, block);
+             at_once ? band.feed(0) : approach.feeds[0], start, {0, S(0)}, block_of(band, start));
     for (std::size_t i = 0; i < approach.size(); ++i) {
-      add_cell(approach.curves[i], approach.feeds[i], start, {0, S(0)}, block);
+      const auto& curve = approach.curves[i];
+      const S feed = approach.feeds[i];
+      const std::size_t block = block_of(band, start + curve.length() / S(2));
+      add_cell(curve, proven_ ? seen_.proven_cell(curve, feed, block) : seen_.cell(curve, feed, block), start,
+               {0, S(0)});
       cells_.back().skew = approach.skews[i];
-      start += approach.curves[i].length();
+      start += curve.length();
     }
   }
 
