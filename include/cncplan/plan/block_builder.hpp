@@ -214,13 +214,18 @@ class BlockBuilder {
       circle_.reset();
       return std::optional<Block>();
     }
-    const auto& [start, end, cubic, turns_alone] = **piece;
-    auto made = block(motion, cubic ? path::spline(*cubic).map([](const auto& p) { return Programmed(p); })
-                              : turns_alone ? Programmed(path::BasicLine<Scalar, program_coordinates<M>>(
-                                                  start, end, (end - start).norm(), Scalar(0)))
-                                            : Programmed(line(motion, start, end)));
-    if (made && turns_alone) made->feed = std::numeric_limits<Scalar>::infinity();
-    return moved(motion, made, end);
+    auto made = block(motion, path_of_piece(motion, **piece));
+    if (made && (*piece)->turns_alone) made->feed = std::numeric_limits<Scalar>::infinity();
+    return moved(motion, made, (*piece)->end);
+  }
+  template <class Piece>
+  [[nodiscard]] Expected<Programmed> path_of_piece(const gcode::Motion& motion, const Piece& piece) const {
+    if (piece.cubic)
+      return path::spline(*piece.cubic).map([](const auto& curve) { return Programmed(curve); });
+    if (!piece.turns_alone) return Programmed(line(motion, piece.start, piece.end));
+    const Scalar turn = (piece.end - piece.start).norm();
+    return Programmed(
+        path::BasicLine<Scalar, program_coordinates<M>>(piece.start, piece.end, turn, Scalar(0)));
   }
 
   // A block of a motion, or why there is none; what follows begins at its end.

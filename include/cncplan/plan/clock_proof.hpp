@@ -7,8 +7,10 @@
 #include <cstddef>
 
 #include "cncplan/core/in_space.hpp"
+#include "cncplan/path/mapped.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/plan/limits_along.hpp"
+#include "cncplan/plan/tool.hpp"
 #include "cncplan/plan/trajectory_chain.hpp"
 #include "cncplan/smooth/cubic.hpp"
 #include "cncplan/state/motion.hpp"
@@ -38,6 +40,14 @@ template <Path P, std::floating_point S, int N>
   }
   return S(2) * bounds.third.norm();
 }
+
+/// Whether q''' of the tool does not change along a path under a map: on lines and cubics of the program.
+template <class P>
+inline constexpr bool third_of_tool_is_constant = false;
+template <path::Map M, std::floating_point S, int N>
+inline constexpr bool third_of_tool_is_constant<path::Mapped<M, smooth::BasicCubic<S, N>>> = true;
+template <path::Map M, std::floating_point S, int N>
+inline constexpr bool third_of_tool_is_constant<path::Mapped<M, path::BasicLine<S, N>>> = true;
 
 }  // namespace detail
 
@@ -157,10 +167,29 @@ class ClockProof {
       proven = proven && value + spread <= limit * rounding;
       return value <= limit * rounding;
     };
-    const auto tool = [&](const Vector& v) { return in_space(v, tool_).norm(); };
-    if (!fits(tool(axes.acceleration), tool(acceleration_spread), limits_.tool.acceleration) ||
-        !fits(tool(axes.jerk), tool(jerk_spread), limits_.tool.jerk))
-      return Answer::no;
+    if constexpr (MappedModel<M>) {
+      // The tool is no vector of axes: the same by its own point.
+      const auto tool = motion(tool_point(path, s, tool_), now);
+      const S first = bounds.tool.first,
+              second = std::hypot(bounds.tool.second_along, bounds.tool.second_across),
+              third = std::hypot(bounds.tool.third_along, bounds.tool.third_across);
+      const S spread = first * acceleration_off +
+                       second * (S(2) * velocity * velocity_off + way * std::abs(now.acceleration)) +
+                       third * way * square;
+      const S third_off = detail::third_of_tool_is_constant<P> ? S(0) : S(2) * third;
+      const S jerk_of_tool = first * jerk_off + second * (S(3) * product_off + way * std::abs(now.jerk)) +
+                             third * (S(3) * velocity * velocity * velocity_off +
+                                      S(3) * way * std::abs(now.velocity * now.acceleration)) +
+                             third_off * cube;
+      if (!fits(tool.acceleration.norm(), spread, limits_.tool.acceleration) ||
+          !fits(tool.jerk.norm(), jerk_of_tool, limits_.tool.jerk))
+        return Answer::no;
+    } else {
+      const auto tool = [&](const Vector& v) { return in_space(v, tool_).norm(); };
+      if (!fits(tool(axes.acceleration), tool(acceleration_spread), limits_.tool.acceleration) ||
+          !fits(tool(axes.jerk), tool(jerk_spread), limits_.tool.jerk))
+        return Answer::no;
+    }
     for (const auto& [i, own] : limits_.axes)
       if (!fits(std::abs(axes.acceleration[i]), acceleration_spread[i], own.acceleration) ||
           !fits(std::abs(axes.jerk[i]), jerk_spread[i], own.jerk))

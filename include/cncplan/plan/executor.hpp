@@ -48,7 +48,7 @@ class ExecutorRoom {
 /// What a block's path is depends on the blocks that follow: half of `capacity`, 66 at most, hold it back
 /// until they come, until a rest is known, or until the machine has rested for `longest_wait` (then the part
 /// ends at rest). One that is merged waits for the next line that is not, too: a line is made of a quarter of
-/// `capacity`, 64 at most. Under a map paths stay exact.
+/// `capacity`, 64 at most. Under a map paths stay exact at the level `fast`.
 ///
 /// Look-ahead reaches over `capacity` cells: one for a line on the exact path, one or two for a block that is
 /// smoothed, more for a long curve (docs/real-time.md has figures). As many blocks are kept behind to run
