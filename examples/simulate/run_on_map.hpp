@@ -156,7 +156,8 @@ int run_on_map(const Options& options, const support::Machine& file, const Map& 
       .tolerance = options.tolerance,
       .level = options.level(),
       .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
-      .dialect = file.dialect};
+      .dialect = file.dialect,
+      .orientation = file.map.orientation};
   cncplan::path::MapJoints<Map, double> joints;
   std::copy(file.map.start.begin(), file.map.start.end(), joints.begin());
   if constexpr (cncplan::path::switchable<Map>) {  // the map is off, coordinates are the joints

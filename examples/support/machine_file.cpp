@@ -343,6 +343,17 @@ void read_start(const Section& top, const toml::node& kinematics, Machine& machi
                                      machine.map.name));
 }
 
+void read_orientation(const Section& top, const kinematics::ReadyMade& made, Machine& machine) {
+  const toml::node* const node = top.find("orientation");
+  if (node == nullptr) return;
+  if (!std::holds_alternative<kinematics::FiveAxes>(machine.map.map))
+    top.refuse(*node, fmt::format("orientation is for five-axis machines, {} is none", made.name));
+  const std::string way = top.text(*node, "orientation");
+  if (way != "joints" && way != "great-circle")
+    top.refuse(*node, "orientation must be joints or great-circle");
+  if (way == "great-circle") machine.map.orientation = Orientation::great_circle;
+}
+
 // A machine whose file names its kinematics.
 void read_map(const Section& top, const toml::node& node, Machine& machine) {
   const std::string name = top.text(node, "kinematics");
@@ -373,6 +384,7 @@ void read_map(const Section& top, const toml::node& node, Machine& machine) {
   for (const char letter : made->coordinates)
     machine.dialect.axes.push_back(
         {letter, letter < 'X' ? gcode::AxisKind::rotary : gcode::AxisKind::linear});
+  read_orientation(top, *made, machine);
   read_start(top, node, machine);
 }
 
@@ -388,6 +400,8 @@ void settle_kinematics(const Section& top, Machine& machine) {
     top.refuse(*lengths, "lengths are those of the machine that kinematics names");
   if (const toml::node* start = top.find("start"))
     top.refuse(*start, "start is where the joints of the machine are that kinematics names");
+  if (const toml::node* orientation = top.find("orientation"))
+    top.refuse(*orientation, "orientation is that of the five-axis machine that kinematics names");
   const auto refuse = [&](const char* why) {
     throw Failure(Exit::bad_input, fmt::format("{}:1:1: error: {}", top.file(), why));
   };
@@ -425,7 +439,8 @@ void settle_kinematics(const Section& top, Machine& machine) {
 Machine interpret(const std::string& file, const toml::table& root) {
   const Section top(file, root, "");
   top.allow({"name", "dialect", "g18", "unit", "rapid_rate", "feed_limit", "axis", "tools", "offsets", "home",
-             "pass_through", "smallest_radius", "table_center", "kinematics", "lengths", "start"});
+             "pass_through", "smallest_radius", "table_center", "kinematics", "lengths", "start",
+             "orientation"});
   Machine machine;
   if (const toml::node* name = top.find("name")) (void)top.text(*name, "name");
   if (const toml::node* dialect = top.find("dialect")) {
@@ -502,7 +517,7 @@ std::string beyond_travel(const MachineAxis& axis, double place, bool at_start) 
 MapEntry table_map(const Machine& machine) {
   const kinematics::PolarMap map{.center = machine.table_center};
   const auto start = map.joints(std::array<double, 3>{});
-  return {"polar", kinematics::ThreeJoints(map), {start.begin(), start.end()}};
+  return {"polar", kinematics::ThreeJoints(map), {start.begin(), start.end()}, Orientation::joints};
 }
 
 Machine read_machine(const std::string& file) {

@@ -14,6 +14,7 @@
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/plan/machine.hpp"
+#include "cncplan/plan/orientation.hpp"
 #include "cncplan/step/drive.hpp"
 
 namespace support {
@@ -55,7 +56,8 @@ enum class Kinematics {
 struct MapEntry {
   std::string name;  ///< as in the file: "table-table-ac"
   cncplan::kinematics::ReadyMadeMap map;
-  std::vector<double> start;  ///< of each joint, mm or rad
+  std::vector<double> start;           ///< of each joint, mm or rad
+  cncplan::Orientation orientation{};  ///< along lines of tool-point control
 };
 
 struct Machine {

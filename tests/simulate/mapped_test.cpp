@@ -1,5 +1,6 @@
 // Machine files that name their kinematics: tips by formulas of the test's own, and what is refused.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -59,6 +60,36 @@ TEST_CASE("a table-table machine of a file holds the part under the tip") {
   CHECK(json["time_s"].get<double>() == Approx(rows["t"].back()));
   CHECK(json["axis_peak"]["velocity"]["C"].get<double>() <= 100 * (1 + 1e-9));
   CHECK(json["axis_peak"]["velocity"]["C"].get<double>() > 20);
+}
+
+TEST_CASE("a file may have the tool go along great circles") {
+  const auto off = [](const std::string& orientation) {
+    const Folder folder;
+    folder.write("m.toml", orientation + mill("table-table-ac", "A", "center = [0, 0, -60]\n"));
+    const auto run = folder.run_text("F3000\nG43.4\nG1 X40 A-30 C45\nY30 A-50 C120\nG49\n",
+                                     "--machine m.toml --tolerance 0 --period 0.005 --samples s --json");
+    INFO(run.err);
+    REQUIRE(run.exit == 0);
+    const Table rows(folder / "s");
+    using Direction = std::array<double, 3>;
+    const auto direction = [](double a, double c) -> Direction {
+      return {std::sin(a * degree) * std::sin(c * degree), std::sin(a * degree) * std::cos(c * degree),
+              std::cos(a * degree)};
+    };
+    const Direction p = direction(-30, 45), q = direction(-50, 120);
+    const Direction across{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+    const double length = std::hypot(across[0], across[1], across[2]);
+    double most = 0;
+    for (std::size_t i = 0; i < rows.rows(); ++i) {
+      if (!(rows["y"][i] > 1e-6)) continue;
+      const Direction d = direction(rows["A"][i], rows["C"][i]);
+      most = std::max(most, std::abs(d[0] * across[0] + d[1] * across[1] + d[2] * across[2]) / length);
+    }
+    return most;
+  };
+  CHECK(off("orientation = \"great-circle\"\n") < 2e-6);
+  CHECK(off("orientation = \"joints\"\n") > 0.05);
+  CHECK(off("") > 0.05);
 }
 
 TEST_CASE("an arm of a file draws a line, from its joints at 0") {
@@ -214,6 +245,12 @@ TEST_CASE("what machine files with kinematics refuse") {
            "[lengths]\napart = 120\nupper = 150\nfore = 200\n",
        "G0 X1\n", "", "m.toml:1:14: error: five-bar cannot stand where all joints are 0: start must say"},
       {mill("nutating-head", "B", "lean = 91\n"), "G0 X1\n", "", "m.toml:"},
+      {"orientation = \"linear\"\n" + table, "G0 X1\n", "",
+       "m.toml:1:15: error: orientation must be joints or great-circle"},
+      {"orientation = \"joints\"\n" + arm("upper = 200\nfore = 100\n"), "G0 X1\n", "",
+       "m.toml:1:15: error: orientation is for five-axis machines, scara is none"},
+      {"orientation = \"joints\"\n", "G0 X1\n", "",
+       "m.toml:1:15: error: orientation is that of the five-axis machine"},
       {"kinematics = \"linear-delta\"\n" + axis("A", "linear") + axis("B", "linear") + axis("C", "linear") +
            "[lengths]\nradius = 140\nrod = 140\n",
        "G0 X1\n", "", "m.toml:25:7: error: rod must be more than 140"},

@@ -1,22 +1,22 @@
-// Random programs within a tolerance on random machines behind a map: joints and tool by differences of
-// sampled joints, the tool's distance from the program by brute force, and the time against stops at every
+// Random programs within a tolerance on every ready-made machine behind a map: joints and tool by differences
+// of sampled joints, the tool's distance from the program by brute force, and the time against stops at every
 // corner. Prints the worst of each with the seed of its program; `--show SEED` prints that program. Exit 1 if
 // a bound is broken.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cncplan/junction/exact_stop.hpp"
-#include "cncplan/kinematics/delta.hpp"
-#include "cncplan/kinematics/polar.hpp"
-#include "cncplan/kinematics/scara.hpp"
-#include "cncplan/kinematics/table_table.hpp"
+#include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/plan/plan_program.hpp"
+#include "maps/maps.hpp"
 #include "plan/mapped_motion.hpp"
 #include "soak/worst.hpp"
 #include "support/random.hpp"
@@ -41,16 +41,19 @@ std::string word(char letter, double value) {
   return text;
 }
 
-// Lines in X Y Z, and in angles of `angles`, degrees; `reach` bounds how far X and Y are from `middle`.
-Case draw(test::Random& random, const Vector3& middle, double reach, const std::string& angles,
-          const std::string& before, SmoothLevel level) {
+// Lines in X Y Z, and in angles of `angles`, degrees, `turn` at most from those of `start`; `reach` bounds
+// how far X, Y and Z are from the start.
+Case draw(test::Random& random, const std::array<double, 9>& start, double reach, const std::string& angles,
+          double turn, bool switched, SmoothLevel level) {
   const double stride = random.log_uniform(0.1, 0.6 * reach);
   Case result;
   result.options = {.tolerance = random.log_uniform(0.002, 0.1),
                     .level = level,
                     .rotary_tolerance = random.log_uniform(1e-4, 3e-3),
-                    .start = {middle.x(), middle.y(), middle.z()}};
-  result.text = before + "F" + std::to_string(random.log_uniform(200, 8000)) + "\n";
+                    .start = start};
+  if (switched && random.coin()) result.options.orientation = Orientation::great_circle;
+  result.text = (switched ? "G43.4 H0\nF" : "F") + std::to_string(random.log_uniform(200, 8000)) + "\n";
+  const Vector3 middle(start[0], start[1], start[2]);
   Vector3 at = middle;
   std::vector<double> turned(angles.size(), 0.0);
   const int lines = random.integer(2, 15);
@@ -60,8 +63,8 @@ Case draw(test::Random& random, const Vector3& middle, double reach, const std::
       at[k] = std::clamp(at[k] + far * random.uniform(-1, 1), middle[k] - reach, middle[k] + reach);
     result.text += "G1" + word('X', at.x()) + word('Y', at.y()) + word('Z', at.z());
     for (std::size_t k = 0; k < angles.size(); ++k) {
-      turned[k] += far * random.uniform(-1, 1);
-      result.text += word(angles[k], turned[k]);
+      turned[k] = std::clamp(turned[k] + far * random.uniform(-1, 1), -turn, turn);
+      result.text += word(angles[k], turned[k] + start[3 + k] / gcode::radians_per_degree);
     }
     result.text += "\n";
   }
@@ -82,8 +85,13 @@ void draw_limits(test::Random& random, M& machine) {
 }
 
 template <class M, class Tip>
-bool examine(const Case& drawn, const M& machine, const Tip& tip, Errors& errors) {
-  const auto program = read_text(drawn.text, machine, drawn.options);
+bool examine(Case drawn, const M& machine, const Tip& tip, Errors& errors) {
+  auto program = read_text(drawn.text, machine, drawn.options);
+  if (program.failed() && drawn.options.orientation == Orientation::great_circle) {  // none leads there
+    drawn.options.orientation = Orientation::joints;
+    program = read_text(drawn.text, machine, drawn.options);
+  }
+  if (program.failed()) return std::printf("%s\n", to_text(*program.first_error()).c_str()), false;
   const auto planned = plan_program(program, machine, drawn.options);
   if (!planned) return std::printf("%s\n", to_text(planned.error()).c_str()), false;
   const auto stops = plan_blocks(program.blocks(), machine, junction::ExactStop{});
@@ -103,56 +111,69 @@ bool examine(const Case& drawn, const M& machine, const Tip& tip, Errors& errors
   return true;
 }
 
+// Where programs of a ready-made machine go.
+struct Place {
+  const char* name;
+  std::vector<double> lengths;     // mm, rad
+  std::array<double, 9> start;     // coordinates, mm and rad; joints of a map that is switched
+  double least_reach, most_reach;  // mm
+  double turn;                     // degrees
+};
+
+std::vector<Place> places(test::Random& random) {
+  const double r = random.log_uniform(3, 200), left = random.coin() ? 1 : 0;
+  const auto any = [&](double most) { return random.uniform(-most, most); };
+  const double x = any(50), y = any(50), z = any(50), pivot = random.log_uniform(20, 300);
+  const std::vector<double> table{any(20), any(20), any(40) - 40, any(10), any(10), any(10)};
+  const std::array<double, 9> mill{x, y, z};
+  constexpr double slanted = 60 * gcode::radians_per_degree;
+  return {{"table-table-ac", table, mill, 5, 100, 1e9},
+          {"table-table-bc", table, mill, 5, 100, 1e9},
+          {"head-table", {table[0], table[1], table[2], pivot}, mill, 5, 100, 1e9},
+          {"head-head-ac", {pivot}, mill, 5, 100, 1e9},
+          {"head-head-bc", {pivot}, mill, 5, 100, 1e9},
+          {"nutating-head", {random.uniform(0.3, 1.57), pivot}, mill, 5, 100, 1e9},
+          {"polar", {}, {r, 0, 0}, 0.2 * r, 0.9 * r, 0},
+          {"scara", {200, 150, left}, {200 + x / 2, y, 0}, 5, 60, 0},
+          {"scara-wrist", {200, 150, left}, {200 + x / 2, y, 0}, 5, 60, 1e9},
+          {"linear-delta", {140, 270}, {0, 0, -200}, 5, 80, 0},
+          {"rotary-delta", {120, 40, 150, 320}, {0, 0, -300}, 5, 60, 0},
+          {"five-bar", {120, 150, 200}, {0, 220, 0}, 5, 50, 0},
+          {"core-xy", {}, mill, 5, 100, 0},
+          {"wrist-arm", {400, 25, 560, 35, 515, 80, 0, 0}, {600, 0, 400, 0, slanted, 0}, 5, 60, 12}};
+}
+
 bool examine(std::uint64_t seed, SmoothLevel level, bool show, Errors& errors) {
   test::Random random(seed);
-  const auto run = [&](auto machine, const Vector3& middle, double reach, const std::string& angles,
-                       const std::string& before, const auto& tip) {
-    draw_limits(random, machine);
-    const Case drawn = draw(random, middle, reach, angles, before, level);
-    if (show) std::printf("%s", drawn.text.c_str());
-    return examine(drawn, machine, tip, errors);
-  };
-  const auto linear = [](char letter) { return Axis{.letter = letter}; };
-  const auto rotary = [](char letter) { return Axis{.letter = letter, .kind = AxisKind::rotary}; };
-  switch (random.integer(0, 3)) {
-    case 0: {
-      const MappedMachine<kinematics::PolarMap> table{.axes = {linear('R'), linear('Z'), rotary('C')}};
-      const double radius = random.log_uniform(3, 200);
-      return run(table, {radius, 0, 0}, 0.9 * radius, "", "", [](const Vector3& q) {
-        return Vector3(q[0] * std::cos(q[2]), q[0] * std::sin(q[2]), q[1]);
-      });
-    }
-    case 1: {
-      MappedMachine<kinematics::TableTableAC> table{
-          .axes = {linear('X'), linear('Y'), linear('Z'), rotary('A'), rotary('C')}};
-      table.map.center = {random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-80, 0)};
-      return run(table, {random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50)},
-                 random.log_uniform(5, 100), "AC", "G43.4 H0\n", [&](const VectorN<double, 5>& q) {
-                   const auto& c = table.map.center;
-                   const Vector3 d(q[0] - c[0], q[1] - c[1], q[2] - c[2]);
-                   const double ca = std::cos(q[3]), sa = std::sin(q[3]), cc = std::cos(q[4]),
-                                sc = std::sin(q[4]);
-                   const Vector3 tilted(d.x(), ca * d.y() + sa * d.z(), -sa * d.y() + ca * d.z());
-                   return Vector3(cc * tilted.x() + sc * tilted.y() + c[0],
-                                  -sc * tilted.x() + cc * tilted.y() + c[1], tilted.z() + c[2]);
-                 });
-    }
-    case 2: {
-      const MappedMachine<kinematics::Scara> arm{.axes = {rotary('J'), rotary('K'), linear('Z')}};
-      return run(arm, {random.uniform(150, 250), random.uniform(-50, 50), 0}, random.log_uniform(5, 60), "",
-                 "", [](const Vector3& q) {
-                   return Vector3(200 * std::cos(q[0]) + 150 * std::cos(q[0] + q[1]),
-                                  200 * std::sin(q[0]) + 150 * std::sin(q[0] + q[1]), q[2]);
-                 });
-    }
-    default: {
-      const MappedMachine<kinematics::LinearDelta> delta{.axes = {linear('U'), linear('V'), linear('W')}};
-      return run(delta, {0, 0, 0}, random.log_uniform(5, 80), "", "", [&](const Vector3& q) {
-        const auto p = delta.map.point(std::array<double, 3>{q[0], q[1], q[2]});
-        return Vector3(p[0], p[1], p[2]);
-      });
-    }
-  }
+  const std::vector<Place> all = places(random);
+  const Place& place = all[static_cast<std::size_t>(random.integer(0, static_cast<int>(all.size()) - 1))];
+  const kinematics::ReadyMade* const made = kinematics::find_ready_made(place.name);
+  const auto chosen = kinematics::make(*made, place.lengths);
+  if (!chosen) return std::printf("%s: %s\n", place.name, to_text(chosen.error()).c_str()), false;
+  return std::visit(
+      [&]<class Map>(const Map& map) {
+        MappedMachine<Map> machine{.map = map};
+        for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+          machine.axes[i].letter = made->named_axes ? made->coordinates[i] : "UVWABC"[i];
+          machine.axes[i].kind = made->axes[i] == 'R' ? AxisKind::rotary : AxisKind::linear;
+        }
+        draw_limits(random, machine);
+        const Case drawn =
+            draw(random, place.start, random.log_uniform(place.least_reach, place.most_reach),
+                 std::string(made->coordinates.substr(3)), place.turn, path::switchable<Map>, level);
+        if (show) std::printf("; %s\n%s", place.name, drawn.text.c_str());
+        // The inverse: tests/kinematics/machines_test.cpp holds it against rotations and lengths of rods.
+        return examine(
+            drawn, machine,
+            [&](const VectorN<double, Map::axis_count>& q) {
+              std::array<double, static_cast<std::size_t>(Map::axis_count)> joints;
+              std::copy(q.data(), q.data() + q.size(), joints.begin());
+              const auto p = map.point(joints);
+              return Vector3(p[0], p[1], p[2]);
+            },
+            errors);
+      },
+      *chosen);
 }
 
 }  // namespace
