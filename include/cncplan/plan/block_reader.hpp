@@ -152,21 +152,26 @@ auto BlockReader<M>::take(Read&& read) -> Expected<Blocks, ProgramError> {
   const auto before = builder_.state();
   std::size_t count = 0;
   std::optional<std::size_t> at_fault;
+  const auto check = [&](const Block& block) -> Expected<void, gcode::Diagnostic> {
+    if (const auto ok = plan::drivable(block, machine_); !ok) {
+      at_fault = taken_ + count;
+      return tl::unexpected(gcode::Diagnostic{ok.error(), block.line, block.column, {}});
+    }
+    ++count;
+    return {};
+  };
   const auto done = read([&](const gcode::Item& item) -> Expected<void, gcode::Diagnostic> {
     if (const auto* warning = std::get_if<gcode::Warning>(&item)) {
       if (!(smoothed_ && gcode::void_if_smoothed(warning->about))) warnings_.push_back(warning->about);
       return {};
     }
-    auto made = make(item).map([](const Block& block) { return std::optional<Block>(block); });
-    for (; made && *made; made = builder_.more()) {
-      const Block& block = **made;
-      if (const auto ok = plan::drivable(block, machine_); !ok) {
-        at_fault = taken_ + count;
-        return tl::unexpected(gcode::Diagnostic{ok.error(), block.line, block.column, {}});
-      }
-      ++count;
-    }
-    if (!made) return tl::unexpected(made.error());
+    const auto first = make(item);
+    if (!first) return tl::unexpected(first.error());
+    if (const auto ok = check(*first); !ok) return ok;
+    auto more = builder_.more();
+    for (; more && *more; more = builder_.more())
+      if (const auto ok = check(**more); !ok) return ok;
+    if (!more) return tl::unexpected(more.error());
     return {};
   });
   builder_.start_at(before);
