@@ -6,9 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <span>
-#include <utility>
 
 #include "cncplan/plan/caps.hpp"
 #include "cncplan/plan/cells.hpp"
@@ -42,12 +40,14 @@ class WholeBlocks {
                  to,
                  {std::min(tool.velocity, own.velocity), std::min(tool.acceleration, own.acceleration),
                   std::min(tool.jerk, own.jerk)}};
+    done_ = false;
   }
 
-  [[nodiscard]] bool done() const { return !part_; }
+  [[nodiscard]] bool done() const { return done_; }
   template <class Driven>
-  [[nodiscard]] Part next(const Driven&) {
-    return *std::exchange(part_, std::nullopt);
+  [[nodiscard]] const Part* step(const Driven&) {
+    done_ = true;
+    return &part_;
   }
 
  private:
@@ -55,7 +55,8 @@ class WholeBlocks {
 
   BasicLimits<Scalar> tool_;
   plan::BasicMachineLimits<Scalar, M::axis_count> axes_;  // the tool without limits
-  std::optional<Part> part_;
+  Part part_;
+  bool done_ = true;
 };
 
 /// The speed at each junction, such that every pair of speeds can be driven within its block and no junction
