@@ -5,6 +5,8 @@
 
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/exact_stop.hpp"
+#include "cncplan/kinematics/polar.hpp"
+#include "cncplan/kinematics/table_table.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/plan/cells.hpp"
 #include "path/random_arcs.hpp"
@@ -144,4 +146,28 @@ TEST_CASE("behind a stop, a pause, and at the start, motion begins at rest") {
   CHECK(caps({paused, second}, fast)[1].entry == 0.0);
   CHECK(caps({first, second}, junction::ExactStop{})[1].entry == 0.0);
   CHECK(caps({first}, fast)[0].entry == 0.0);
+}
+
+TEST_CASE("where the tool goes straight on and turns, its axes are held to a corner of their own") {
+  MappedMachine<kinematics::TableTableBC> tables;
+  for (auto& axis : tables.axes) axis.acceleration = 500;
+  auto& table = tables.axes[4];
+  table.kind = AxisKind::rotary;
+  table.acceleration = 20;
+  plan::BasicJoint<double, 5> joint;
+  joint.tool.before.tangent = joint.tool.after.tangent = Vector3(1, 0, 0);
+  joint.before << 1, 0, 0, 0, 0.01;
+  joint.after << 1, 0, 0, 0, 0.13;
+  // A blend of half length l turns the axis by l 0.12 / 4 = 1e-3 rad at most, and v^2 0.12 / (2 l) = 20.
+  CHECK(plan::axis_corner_speed(joint, tables, 0.01, 1e-3) ==
+        Approx(std::sqrt(2 * (4 * 1e-3 / 0.12) * 20 / 0.12)));
+  // Without angles among the coordinates the joints turn as the tool does.
+  MappedMachine<kinematics::PolarMap> polar;
+  for (auto& axis : polar.axes) axis.acceleration = 500;
+  polar.axes[2].kind = AxisKind::rotary;
+  plan::BasicJoint<double, 3> rounded;
+  rounded.tool.before.tangent = rounded.tool.after.tangent = Vector3(1, 0, 0);
+  rounded.before << 1, 0, 0.01;
+  rounded.after << 1, 0, 0.01 + 1e-12;
+  CHECK(plan::axis_corner_speed(rounded, polar, 0.01, 1e-3) == std::numeric_limits<double>::infinity());
 }

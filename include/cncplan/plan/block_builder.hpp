@@ -56,15 +56,6 @@ struct ProgramBlockOf<M> {
 template <MachineModel M>
 using ProgramBlock = typename detail::ProgramBlockOf<M>::type;
 
-/// How many coordinates a machine's programs have.
-template <MachineModel M>
-inline constexpr int program_coordinates = [] {
-  if constexpr (MappedModel<M>)
-    return path::coordinate_count<MapOf<M>>;
-  else
-    return M::axis_count;
-}();
-
 /// The language of a machine's programs: words for its axes, or for the coordinates of its map, and no
 /// tables. Z is a word of the language even where the machine has none.
 template <MachineModel M>

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "cncplan/junction/geometry.hpp"
+#include "cncplan/plan/machine.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/tool.hpp"
 
@@ -43,12 +44,14 @@ template <MachineModel M>
     const S jump = std::abs(after - before);
     return jump > rounding * (std::abs(before) + std::abs(after)) ? jump : S(0);
   };
-  if constexpr (!MappedModel<M>)
-    for (int i = 0; i < M::axis_count; ++i)
-      if (const S jump = jump_of(i); jump > S(0)) {
-        const bool rotary = machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
+  // Under a map the joints turn with the tool's path, or where angles are coordinates by themselves.
+  constexpr bool linear = !MappedModel<M>, turned = linear || program_coordinates < M >> 3;
+  for (int i = 0; i < M::axis_count; ++i)
+    if (const S jump = jump_of(i); jump > S(0)) {
+      const bool rotary = machine.axes[static_cast<std::size_t>(i)].kind == AxisKind::rotary;
+      if (rotary ? turned : linear)
         blend = std::min(blend, S(4) * (rotary ? rotary_tolerance : tolerance) / jump);
-      }
+    }
   S speed = none;
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];

@@ -170,6 +170,15 @@ concept MappedModel = MachineModel<M> && requires(const M& machine) {
 template <MappedModel M>
 using MapOf = std::remove_cvref_t<decltype(M::map)>;
 
+/// How many coordinates a machine's programs have.
+template <MachineModel M>
+inline constexpr int program_coordinates = [] {
+  if constexpr (MappedModel<M>)
+    return path::coordinate_count<MapOf<M>>;
+  else
+    return M::axis_count;
+}();
+
 /// The lower of the limits upwards and downwards.
 template <std::floating_point S>
 [[nodiscard]] constexpr S least_velocity(const BasicAxis<S>& axis) {
