@@ -99,7 +99,9 @@ class Machine:
     dialect : str, optional
         "linuxcnc", "grbl", "fanuc", "marlin" or "mach3".
     **entries
-        The other entries of a machine file: unit, tools, offsets, home, pass_through, g18, name.
+        The other entries of a machine file: unit, tools, offsets, home, pass_through, g18, name; and
+        kinematics ("table-table-ac" ...), lengths and start, for a machine whose axes are not the program's
+        coordinates: `position` of samples has its axes then, and `tool` of set points X Y Z.
     """
 
     def __init__(self, source: str | os.PathLike[str] | Mapping[str, Any] | None = None, *,
@@ -159,6 +161,11 @@ class Machine:
     def letters(self) -> str:
         """The letters of the axes, in the order of all arrays: "XYZ"."""
         return self._core.letters
+
+    @property
+    def coordinates(self) -> str:
+        """The letters of a program: those of the axes, but for a machine with kinematics."""
+        return self._core.coordinates
 
     @property
     def rotary(self) -> tuple[bool, ...]:

@@ -17,7 +17,7 @@ from ._trajectory import _program, options_of
 _ROW_DTYPE = np.dtype([("line", "i8"), ("column", "i8"), ("kind", "i8"), ("plane", "i8"), ("start", "f8", (9,)),
                        ("end", "f8", (9,)), ("center", "f8", (3,)), ("radius", "f8"), ("sweep", "f8"),
                        ("length", "f8"), ("feed", "f8")])
-_KINDS = np.array(["rapid", "line", "arc", "spline"])
+_KINDS = np.array(["rapid", "line", "arc", "spline", "mapped"])
 
 
 class Program:
@@ -47,7 +47,7 @@ class Program:
     @property
     def motions(self) -> np.ndarray:
         """The motions, in machine coordinates, as a structured array: line, column, kind ("rapid", "line", "arc",
-        "spline"), plane (of an arc: 17, 18, 19), start and end (axes,) in mm and rad, center (3,), radius (mm) and sweep (rad;
+        "spline"; behind kinematics "mapped"), plane (of an arc: 17, 18, 19), start and end (axes,) in mm and rad, center (3,), radius (mm) and sweep (rad;
         + counter-clockwise) of an arc, length (mm), feed (mm/s). What a motion lacks is NaN."""
         rows = np.asarray(self._core.motions()).view(_ROW_DTYPE)
         n = len(self.machine)

@@ -241,7 +241,8 @@ def options_of(machine: Machine, tolerance: Any, rotary_tolerance: Any, junction
     turn = not_negative(rotary_tolerance, "rotary_tolerance")
     return _core.PlanOptions(not_negative(tolerance, "tolerance"), LEVELS.index(choice(level, "level", LEVELS)),
                              turn * (np.pi / 180), not_negative(junction_deviation, "junction_deviation"),
-                             [] if start is None else row(start, "start", len(machine)))
+                             core_of(machine).start if start is None else
+                             row(start, "start", len(machine.coordinates)))
 
 
 def _listener(progress: Any) -> Any:

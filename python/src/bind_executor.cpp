@@ -12,6 +12,8 @@ void bind_executor(py::module_& module) {
   py::class_<AnyExecutor>(module, "Executor")
       .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
                        double quick_stop_share, double reserve) {
+        if (machine.has_map())
+          raise(Error{ErrorCode::not_supported, "executor of a machine behind a map", 0, 0});
         const ExecutorSettings settings{options,
                                         {.tolerance = options.tolerance,
                                          .level = options.level,

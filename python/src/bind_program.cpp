@@ -16,7 +16,7 @@ namespace {
 
 ReadProgram read(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
                  const std::string& file) {
-  return with_size(machine.axes.size(), [&](auto n) { return read_all<n>(machine, text, options, file); });
+  return with_machine(machine, [&](auto n) { return read_all<n>(machine, text, options, file); });
 }
 
 ReadProgram read_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options) {
@@ -83,7 +83,11 @@ void bind_program(py::module_& module) {
              for (const auto& word : program.words) words.append(word_tuple(word));
              return words;
            })
-      .def("write", [](const ReadProgram& program) { return write(program.items, program.dialect); });
+      .def("write", [](const ReadProgram& program) {
+        if (program.behind_map)
+          raise(Error{ErrorCode::not_supported, "writing of a program for a machine behind a map", 0, 0});
+        return write(program.items, program.dialect);
+      });
   module.def("read_file", &read_file);
   module.def("read_text", &read_text);
   module.def("write_blocks", [](const AnyMachine& machine, const py::list& blocks) {

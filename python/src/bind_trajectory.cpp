@@ -25,7 +25,7 @@ PlanOptions options_of(double tolerance, int level, double rotary_tolerance, dou
 
 TrajectoryPointer plan(const AnyMachine& machine, const std::string& text, const PlanOptions& options,
                        const std::string& file) {
-  return with_size(machine.axes.size(), [&](auto n) { return plan_text<n>(machine, text, options, file); });
+  return with_machine(machine, [&](auto n) { return plan_text<n>(machine, text, options, file); });
 }
 
 TrajectoryPointer plan_file(const AnyMachine& machine, const std::string& file, const PlanOptions& options,
@@ -157,8 +157,7 @@ void bind_trajectory(py::module_& module) {
     std::vector<AnyBlock> blocks;
     for (const auto& block : given) blocks.push_back(block_from(block.cast<py::tuple>()));
     return interruptible(options, progress, [&](const PlanOptions& listening) {
-      return with_size(machine.axes.size(),
-                       [&](auto n) { return plan_hand_made<n>(machine, blocks, listening); });
+      return with_machine(machine, [&](auto n) { return plan_hand_made<n>(machine, blocks, listening); });
     });
   });
 }

@@ -33,8 +33,15 @@ AnyMachine read_machine(const std::string& text, const std::string& name, const 
       refuse(failure.what(), name);
     }
   }();
-  if (file.kinematics != support::Kinematics::cartesian)
-    refuse(name + ": error: machines with joints of their own (kinematics) are not known to Python", name);
+  const bool mapped = file.kinematics == support::Kinematics::mapped;
+  if (file.kinematics != support::Kinematics::cartesian && !mapped)
+    refuse(name +
+               ": error: machines that turn the work on a rotary table are not known to Python but by "
+               "kinematics",
+           name);
+#ifndef CNCPLAN_PYTHON_MAPS
+  if (mapped) refuse(name + ": error: this module is built without kinematics (CNCPLAN_PYTHON_MAPS)", name);
+#endif
   AnyMachine machine;
   machine.limits = limits;
   machine.rapid_rate = file.rapid_rate.value_or(0.0);

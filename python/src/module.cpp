@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "bindings.hpp"
+#include "cncplan/path/map.hpp"
 #include "cncplan/plan/program.hpp"
 #include "cncplan/version.hpp"
 #include "fault.hpp"
@@ -105,6 +106,25 @@ AnyBlock block_from(const py::tuple& block) {
   return made;
 }
 
+namespace {
+
+// The program's coordinates where the joints of a machine behind a map stand at first; nothing for another
+// machine, and where coordinates are joints at first.
+std::vector<double> start_of(const AnyMachine& machine) {
+  if (!machine.has_map()) return {};
+  return std::visit(
+      [&]<class Map>(const Map& map) -> std::vector<double> {
+        if constexpr (path::switchable<Map>) return machine.file.map.start;
+        path::MapJoints<Map, double> joints{};
+        std::copy(machine.file.map.start.begin(), machine.file.map.start.end(), joints.begin());
+        const auto point = map.point(joints);
+        return {point.begin(), point.end()};
+      },
+      machine.file.map.map);
+}
+
+}  // namespace
+
 void bind_machine(py::module_& module) {
   py::class_<AnyMachine>(module, "Machine")
       .def(py::init([](const std::string& text, const std::string& name, double velocity, double acceleration,
@@ -113,9 +133,19 @@ void bind_machine(py::module_& module) {
         if (machine.axes.size() > static_cast<std::size_t>(most_axes))
           raise(Error{ErrorCode::above_limit, "number of axes", static_cast<double>(machine.axes.size()),
                       static_cast<double>(most_axes)});
-        with_size(machine.axes.size(), [&](auto n) { value_of(validate(machine_of<n>(machine))); });
+        with_machine(machine, [&](auto n) { value_of(validate(machine_of<n>(machine))); });
         return machine;
       }))
+      .def_property_readonly("coordinates",
+                             [](const AnyMachine& machine) {
+                               std::string letters;
+                               if (machine.has_map())
+                                 for (const auto& axis : machine.dialect.axes) letters += axis.letter;
+                               else
+                                 for (const Axis& axis : machine.axes) letters += axis.letter;
+                               return letters;
+                             })
+      .def_property_readonly("start", &start_of)
       .def_property_readonly("letters",
                              [](const AnyMachine& machine) {
                                std::string letters;

@@ -14,9 +14,9 @@
 namespace cncplan::python {
 
 template <int N>
-using ReadBlock = ProgramBlock<Machine<N>>;
+using ReadBlock = ProgramBlock<SizedMachine<N>>;
 template <int N>
-using Planned = Trajectory<Machine<N>, ReadBlock<N>>;
+using Planned = Trajectory<SizedMachine<N>, ReadBlock<N>>;
 
 /// The trajectory for Python.
 template <int N>

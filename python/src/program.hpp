@@ -19,7 +19,7 @@ namespace cncplan::python {
 /// elsewhere.
 struct MotionRow {
   std::int64_t line{}, column{};
-  std::int64_t kind{};   ///< 0 rapid, 1 line, 2 arc, 3 spline
+  std::int64_t kind{};   ///< 0 rapid, 1 line, 2 arc, 3 spline, 4 any feed move behind a map
   std::int64_t plane{};  ///< of an arc: 17, 18 or 19
   Places start{}, end{};
   std::array<double, 3> center{};
@@ -29,7 +29,8 @@ struct MotionRow {
 
 struct ReadProgram {
   gcode::Dialect dialect;
-  std::vector<gcode::Item> items;  ///< none where there is a problem
+  std::vector<gcode::Item> items;  ///< none where there is a problem, or a map
+  bool behind_map{};
   std::vector<MotionRow> motions;
   std::vector<ProgramError> problems;  ///< each with its file
   std::vector<std::string> warnings;

@@ -1,4 +1,4 @@
-// An executor for machines of AXES axes.
+// An executor for machines of SIZE axes.
 #include "executor.hpp"
 
 #include <algorithm>
@@ -15,21 +15,21 @@ namespace cncplan::python {
 
 namespace {
 
-using MachineOfSize = Machine<AXES>;
+using MachineOfSize = Machine<SIZE>;
 using Runner = Executor<MachineOfSize, 256>;
 using Reader = BlockReader<MachineOfSize>;
 using Vector = Runner::Vector;
 
 Vector vector_of(const Places& places) {
   Vector vector;
-  for (int i = 0; i < AXES; ++i) vector[i] = places[static_cast<std::size_t>(i)];
+  for (int i = 0; i < SIZE; ++i) vector[i] = places[static_cast<std::size_t>(i)];
   return vector;
 }
 
 // Axes that are not there stand still. A jog asks for limits of every axis, so they have some that do not
 // matter where the machine's own have any.
 MachineOfSize runnable(const AnyMachine& from) {
-  MachineOfSize machine = machine_of<AXES>(from);
+  MachineOfSize machine = machine_of<SIZE>(from);
   const bool limited = std::any_of(from.axes.begin(), from.axes.end(),
                                    [](const Axis& axis) { return std::isfinite(axis.velocity); });
   for (std::size_t i = from.axes.size(); limited && i < machine.axes.size(); ++i)
@@ -42,7 +42,7 @@ class ExecutorOfSize final : public AnyExecutor {
   ExecutorOfSize(const AnyMachine& machine, const ExecutorSettings& settings)
       : axes_(machine.axes.size()),
         read_(with_dialect(settings.read, machine)),
-        reader_(std::in_place, machine_of<AXES>(machine), read_),
+        reader_(std::in_place, machine_of<SIZE>(machine), read_),
         executor_(runnable(machine), settings.run) {
     value_of(validate(settings.run));
     value_of(validate(executor_.machine()));
@@ -56,7 +56,7 @@ class ExecutorOfSize final : public AnyExecutor {
     return true;
   }
   bool push_block(const AnyBlock& block) override {
-    const auto made = block_of<AXES>(block);
+    const auto made = block_of<SIZE>(block);
     return push_pending() && executor_.push(made);
   }
   void end_of_program() override {

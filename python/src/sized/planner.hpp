@@ -1,14 +1,20 @@
-// The planner for machines of AXES axes, at every level: defined by plan.cpp and smooth.cpp, or by
-// cncplan::compiled.
+// The planner for machines of the number SIZE of `SizedMachine`, at every level: defined by plan.cpp and
+// smooth.cpp, by cncplan::compiled, or by cncplan_maps.
 #pragma once
 
 #include "cncplan/compiled/plan_blocks.hpp"
 #include "cncplan/plan/block_builder.hpp"
 
+#if SIZE < 0
+#include "maps/maps.hpp"
+#else
+
 namespace cncplan {
 
-CNCPLAN_PLAN_BLOCKS(extern, Machine<AXES>, ProgramBlock<Machine<AXES>>)
-CNCPLAN_PLAN_LOOK_AHEAD(extern, Machine<AXES>, ProgramBlock<Machine<AXES>>)
-CNCPLAN_PLAN_SMOOTH(extern, Machine<AXES>, ProgramBlock<Machine<AXES>>)
+CNCPLAN_PLAN_BLOCKS(extern, Machine<SIZE>, ProgramBlock<Machine<SIZE>>)
+CNCPLAN_PLAN_LOOK_AHEAD(extern, Machine<SIZE>, ProgramBlock<Machine<SIZE>>)
+CNCPLAN_PLAN_SMOOTH(extern, Machine<SIZE>, ProgramBlock<Machine<SIZE>>)
 
 }  // namespace cncplan
+
+#endif

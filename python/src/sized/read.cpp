@@ -1,12 +1,10 @@
-// From a program's text, or from blocks made by hand, to a trajectory, for machines of AXES axes.
+// From a program's text to a trajectory, for machines of the number SIZE of `SizedMachine`.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <span>
 
-#include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "fault.hpp"
 #include "planned.hpp"
@@ -17,20 +15,6 @@ namespace cncplan::python {
 
 namespace {
 
-VectorN<double, AXES> place_of(const gcode::Position& position) {
-  VectorN<double, AXES> place;
-  for (int i = 0; i < AXES; ++i) place[i] = position[static_cast<std::size_t>(i)];
-  return place;
-}
-
-Expected<path::Arc> arc_of(const AnyBlock& block) {
-  const Vector3 start(block.start[0], block.start[1], block.start[2]);
-  const Vector3 end(block.end[0], block.end[1], block.end[2]);
-  if (block.kind == BlockKind::arc_center)
-    return path::arc_from_center(start, end, block.center, block.turn, block.plane, {}, block.extra_turns);
-  return path::arc_from_radius(start, end, block.radius, block.turn, block.plane, {}, block.extra_turns);
-}
-
 // An arc as it is in space, and as it is with axes that go along.
 [[maybe_unused]] const path::Arc& in_space(const path::Arc& arc) { return arc; }
 template <class ArcAlong>
@@ -38,15 +22,7 @@ const path::Arc& in_space(const ArcAlong& arc) {
   return arc.arc();
 }
 template <int N>
-typename ReadBlock<N>::Path with_others(const path::Arc& arc, const VectorN<double, N>& start,
-                                        const VectorN<double, N>& end) {
-  if constexpr (N == 3)
-    return arc;
-  else
-    return path::BasicArcAlong<double, N>(arc, start, end);
-}
-
-MotionRow row_of(const ReadBlock<AXES>& block) {
+MotionRow row_of(const ReadBlock<N>& block) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   MotionRow row{.line = block.line,
                 .column = block.column,
@@ -57,9 +33,11 @@ MotionRow row_of(const ReadBlock<AXES>& block) {
                 .length = block.path.length(),
                 .feed = block.rapid || !std::isfinite(block.feed) ? none : block.feed};
   const auto start = block.path.position_at(0), end = block.path.position_at(row.length);
-  std::copy_n(start.data(), AXES, row.start.begin());
-  std::copy_n(end.data(), AXES, row.end.begin());
-  if (block.path.line() != nullptr) {
+  std::copy_n(start.data(), start.size(), row.start.begin());
+  std::copy_n(end.data(), end.size(), row.end.begin());
+  if constexpr (N < 0) {
+    if (!block.rapid) row.kind = 4;
+  } else if (block.path.line() != nullptr) {
     if (!block.rapid) row.kind = 1;
   } else if (const auto* along = block.path.arc()) {
     constexpr std::array<int, 4> planes{17, 18, 19, 18};
@@ -76,10 +54,10 @@ MotionRow row_of(const ReadBlock<AXES>& block) {
 }  // namespace
 
 template <>
-ReadProgram read_all<AXES>(const AnyMachine& machine, std::string_view text, const PlanOptions& given,
+ReadProgram read_all<SIZE>(const AnyMachine& machine, std::string_view text, const PlanOptions& given,
                            const std::string& file) {
   const PlanOptions options = with_dialect(given, machine);
-  const Program<Machine<AXES>> program(text, machine_of<AXES>(machine), options, file);
+  const Program<SizedMachine<SIZE>> program(text, machine_of<SIZE>(machine), options, file);
   ReadProgram result;
   result.dialect = machine.dialect;
   result.lines = program.lines();
@@ -92,10 +70,11 @@ ReadProgram read_all<AXES>(const AnyMachine& machine, std::string_view text, con
   };
   tell(program.problems());
   if (!(options.tolerance > 0)) tell(program.if_not_smoothed());
-  for (const ReadBlock<AXES>& block : program.blocks())
-    if (block.path.length() > 0) result.motions.push_back(row_of(block));
+  for (const ReadBlock<SIZE>& block : program.blocks())
+    if (block.path.length() > 0) result.motions.push_back(row_of<SIZE>(block));
   for (const ProgramWord& word : program.words()) result.words.push_back(word.word);
-  if (!result.problems.empty()) return result;
+  result.behind_map = SIZE < 0;
+  if (!result.problems.empty() || result.behind_map) return result;
   // What is written is the program as its items.
   gcode::Reader reader(machine.dialect, start_position(options));
   gcode::TextLines lines(text);
@@ -107,37 +86,10 @@ ReadProgram read_all<AXES>(const AnyMachine& machine, std::string_view text, con
 }
 
 template <>
-ReadBlock<AXES> block_of<AXES>(const AnyBlock& from) {
-  const auto start = place_of(from.start), end = place_of(from.end);
-  ReadBlock<AXES> block;
-  block.feed = from.feed;
-  block.pause = from.pause;
-  block.exact_stop = from.exact_stop;
-  block.rapid = from.rapid;
-  block.tolerance = from.tolerance;
-  block.line = from.line;
-  if (from.kind == BlockKind::line) {
-    block.path = path::BasicLine<double, AXES>(start, end);
-  } else if (from.kind == BlockKind::spline) {
-    auto second = start, third = end;
-    second.head<3>() = from.controls[0];
-    third.head<3>() = from.controls[1];
-    const path::RationalCubic<AXES> curve({start, second, third, end});
-    if (path::is_straight(curve))
-      block.path = path::BasicLine<double, AXES>(start, end);
-    else
-      block.path = value_of(path::spline(curve));
-  } else {
-    block.path = with_others<AXES>(value_of(arc_of(from)), start, end);
-  }
-  return block;
-}
-
-template <>
-TrajectoryPointer plan_text<AXES>(const AnyMachine& given, std::string_view text, const PlanOptions& options,
+TrajectoryPointer plan_text<SIZE>(const AnyMachine& given, std::string_view text, const PlanOptions& options,
                                   const std::string& file) {
-  const auto machine = machine_of<AXES>(given);
-  Program<Machine<AXES>> program(text, machine, with_dialect(options, given), file);
+  const auto machine = machine_of<SIZE>(given);
+  Program<SizedMachine<SIZE>> program(text, machine, with_dialect(options, given), file);
   if (const Problem* error = program.first_error()) raise(*error);
   auto planned = plan_blocks(std::move(program).take_blocks(), machine, options);
   if (!planned) {
@@ -145,19 +97,7 @@ TrajectoryPointer plan_text<AXES>(const AnyMachine& given, std::string_view text
     raise(planned.error());
   }
   plan::tell(*planned, program, level_of(options) != SmoothLevel::exact);
-  return any_trajectory<AXES>(given, std::move(*planned));
-}
-
-template <>
-TrajectoryPointer plan_hand_made<AXES>(const AnyMachine& given, const std::vector<AnyBlock>& blocks,
-                                       const PlanOptions& options) {
-  const auto machine = machine_of<AXES>(given);
-  std::vector<ReadBlock<AXES>> own;
-  own.reserve(blocks.size());
-  for (const AnyBlock& block : blocks) own.push_back(block_of<AXES>(block));
-  auto planned = plan_blocks(std::move(own), machine, options);
-  if (!planned) raise(planned.error());
-  return any_trajectory<AXES>(given, std::move(*planned));
+  return any_trajectory<SIZE>(given, std::move(*planned));
 }
 
 }  // namespace cncplan::python

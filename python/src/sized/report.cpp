@@ -1,4 +1,4 @@
-// What a report shows of a trajectory of a machine of AXES axes.
+// What a report shows of a trajectory of a machine of SIZE axes.
 #include <array>
 #include <charconv>
 
@@ -14,7 +14,7 @@ namespace cncplan::python {
 namespace {
 
 // The largest magnitudes of the axes that the machine has, mm or degrees.
-Eigen::VectorXd shown(const support::Machine& machine, const Planned<AXES>::SetPoint::Vector& axes) {
+Eigen::VectorXd shown(const support::Machine& machine, const Planned<SIZE>::SetPoint::Vector& axes) {
   Eigen::VectorXd result(static_cast<Eigen::Index>(machine.axes.size()));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -32,7 +32,7 @@ std::string text_of(const gcode::Word& word) {
 }  // namespace
 
 template <>
-report::Report report_of<AXES>(const Planned<AXES>& trajectory, const AnyMachine& machine,
+report::Report report_of<SIZE>(const Planned<SIZE>& trajectory, const AnyMachine& machine,
                                const ReportText& text) {
   const auto channels = simulate::channels_of(machine.file);
   const auto tool = tool_axes(trajectory.machine());
@@ -42,7 +42,7 @@ report::Report report_of<AXES>(const Planned<AXES>& trajectory, const AnyMachine
     return report::channel_point(machine.file, channels, tool_at, path.point_at(s));
   };
   const auto place_of = [&](std::size_t piece) {
-    const ReadBlock<AXES>& block = trajectory.program()[trajectory.block_of(piece)];
+    const ReadBlock<SIZE>& block = trajectory.program()[trajectory.block_of(piece)];
     report::Place place{.line = block.line, .kind = junction::Kind::line};
     if (block.rapid) place.kind = junction::Kind::rapid;
     if (block.path.arc() != nullptr) place.kind = junction::Kind::arc;

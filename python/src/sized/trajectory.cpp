@@ -1,4 +1,4 @@
-// What Python asks a trajectory, for machines of AXES axes.
+// What Python asks a trajectory, for machines of the number SIZE of `SizedMachine`.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ namespace cncplan::python {
 
 namespace {
 
-void write(const Planned<AXES>::SetPoint& point, std::size_t row, const Columns& out) {
+void write(const Planned<SIZE>::SetPoint& point, std::size_t row, const Columns& out) {
   const auto put = [row](double* column, double value) {
     if (column != nullptr) column[row] = value;
   };
@@ -39,7 +39,7 @@ void write(const Planned<AXES>::SetPoint& point, std::size_t row, const Columns&
 
 class TrajectoryOfSize final : public AnyTrajectory {
  public:
-  TrajectoryOfSize(const AnyMachine& machine, Planned<AXES>&& planned)
+  TrajectoryOfSize(const AnyMachine& machine, Planned<SIZE>&& planned)
       : machine_(machine), planned_(std::move(planned)) {}
 
   [[nodiscard]] double duration() const override { return planned_.duration(); }
@@ -114,7 +114,7 @@ class TrajectoryOfSize final : public AnyTrajectory {
   [[nodiscard]] std::string report(const ReportText& text) const override {
     std::ostringstream page;
     try {
-      report::write(page, report_of<AXES>(planned_, machine_, text));
+      report::write(page, report_of<SIZE>(planned_, machine_, text));
     } catch (const support::Failure& failure) {
       throw Fault{{{{ErrorCode::not_supported, "report", 0, 0}, 0, 0, {}}, {}, {}}, failure.what()};
     }
@@ -123,13 +123,13 @@ class TrajectoryOfSize final : public AnyTrajectory {
 
  private:
   AnyMachine machine_;
-  Planned<AXES> planned_;
+  Planned<SIZE> planned_;
 };
 
 }  // namespace
 
 template <>
-TrajectoryPointer any_trajectory<AXES>(const AnyMachine& machine, Planned<AXES>&& planned) {
+TrajectoryPointer any_trajectory<SIZE>(const AnyMachine& machine, Planned<SIZE>&& planned) {
   return std::make_unique<TrajectoryOfSize>(machine, std::move(planned));
 }
 
