@@ -6,10 +6,9 @@
 
 #include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/executor_levels.hpp"
 #include "fault.hpp"
+#include "levels.hpp"
 #include "planned.hpp"
-#include "planner.hpp"
 
 namespace cncplan::python {
 

@@ -1,5 +1,5 @@
-// The planner for machines of the number SIZE of `SizedMachine`, at every level: defined by plan.cpp and
-// smooth.cpp, by cncplan::compiled, or by cncplan_maps.
+// The planner for machines of the number SIZE of `SizedMachine`, at every level: defined by plan_blocks.cpp,
+// look_ahead.cpp and smooth.cpp, by cncplan::compiled, or by cncplan_maps.
 #pragma once
 
 #include "cncplan/compiled/plan_blocks.hpp"
