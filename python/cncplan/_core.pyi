@@ -10,6 +10,9 @@ code_names: tuple[str, ...]
 level_names: tuple[str, ...]
 reasons: tuple[str, ...]
 
+def available_memory() -> int: ...
+def leave_memory(bytes: int) -> None: ...
+
 _Block = tuple[Any, ...]
 _Progress = Callable[[float], Any]
 _Rows = list[list[float]]

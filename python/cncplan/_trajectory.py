@@ -86,10 +86,6 @@ def _named(rows: np.ndarray, dtype: np.dtype) -> np.ndarray:
     return made
 
 
-def _available_bytes() -> int:
-    return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-
-
 class Trajectory:
     """A planned program: where everything is at any instant. `plan_file` and its kin make it."""
 
@@ -166,14 +162,14 @@ class Trajectory:
         period = positive(period, "period")
         count = self._core.sample_count(period)
         axes = len(self.machine)
-        if count * 8 * (6 + 4 * axes) > _available_bytes():
+        if count * 8 * (6 + 4 * axes) > _core.available_memory():
             raise MemoryError(f"period: {period} makes {count} samples, more than there is memory for")
         return Samples(**self._core.sample(period, axes))
 
     def step_edges(self) -> np.ndarray:
         """Every step of the machine's motors, in order of time, as a structured array: time (s), motor (from 0,
         in the order of the axes), axis (from 0), direction (+1 or -1)."""
-        most = max(1, _available_bytes() // (3 * EDGE_DTYPE.itemsize))
+        most = _core.available_memory() // (3 * EDGE_DTYPE.itemsize)
         return np.asarray(self._core.step_edges(most)).view(EDGE_DTYPE)
 
     def peaks(self) -> Peaks:
@@ -193,10 +189,13 @@ class Trajectory:
             s, > 0.
         """
         samples = self.sample(period)
-        table = np.column_stack([samples.t, samples.position, samples.s, samples.v, samples.a, samples.j])
-        heading = ",".join(["t", *self.machine.letters.lower(), "s", "v", "a", "j"])
-        # no number is -0
-        np.savetxt(path_of(path), table + 0.0, fmt="%.17g", delimiter=",", header=heading, comments="")
+        with open(path_of(path), "w", encoding="ascii", newline="\n") as file:
+            file.write(",".join(["t", *self.machine.letters.lower(), "s", "v", "a", "j"]) + "\n")
+            for first in range(0, len(samples), 65536):  # a table of all would need as much memory again
+                part = slice(first, first + 65536)
+                table = np.column_stack([samples.t[part], samples.position[part], samples.s[part], samples.v[part],
+                                         samples.a[part], samples.j[part]])
+                np.savetxt(file, table + 0.0, fmt="%.17g", delimiter=",")  # no number is -0
 
     def report(self, path: str | os.PathLike[str]) -> None:
         """Writes one page of HTML that shows the motion beside its program: the path in space, speeds and axes over

@@ -4,6 +4,9 @@
 
 #include <chrono>
 #include <functional>
+#include <new>
+
+#include "memory.hpp"
 
 namespace cncplan::python {
 
@@ -18,12 +21,13 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// Whether to go on: the function may say False. Throws what it raises, or the handler of a signal. Most
-  /// calls look at the clock only.
+  /// Whether to go on: the function may say False. Throws what it raises, or the handler of a signal, and
+  /// std::bad_alloc where memory gives out. Most calls look at the clock only.
   bool goes_on(double share = 0.0) {
     const auto now = Clock::now();
     if (now - last_ < std::chrono::milliseconds(50)) return true;
     last_ = now;
+    if (available_memory() == 0) throw std::bad_alloc();
     return ask(share);
   }
   /// For the options of the library; a view.

@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,7 @@
 #include "cncplan/version.hpp"
 #include "fault.hpp"
 #include "interruption.hpp"
+#include "memory.hpp"
 #include "sizes.hpp"
 
 namespace cncplan::python {
@@ -31,7 +33,13 @@ static_assert(!code_names.back().empty());
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
+  } catch (const std::bad_alloc&) {
+    PyErr_SetString(PyExc_MemoryError, "this needs more memory than there is");
   } catch (const Fault& fault) {
+    if (fault.error.error().code == ErrorCode::no_memory) {
+      PyErr_SetString(PyExc_MemoryError, fault.text.c_str());
+      return;
+    }
     const py::object type = py::module_::import("cncplan._errors").attr("Error");
     PyErr_SetObject(type.ptr(), type(*error_arguments(fault.error, fault.text)).ptr());
   }
@@ -172,6 +180,8 @@ PYBIND11_MODULE(_core, module) {
     for (const auto name : code_names) names.append(py::str(name.data(), name.size()));
     return py::tuple(names);
   }();
+  module.def("available_memory", &available_memory);
+  module.def("leave_memory", &leave_memory);
   bind_machine(module);
   bind_trajectory(module);
   bind_executor(module);

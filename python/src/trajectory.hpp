@@ -70,7 +70,7 @@ class AnyTrajectory {
   [[nodiscard]] virtual std::vector<FallbackRow> fallbacks() const = 0;
   [[nodiscard]] virtual std::vector<TimedWord> words() const = 0;
   [[nodiscard]] virtual std::vector<std::string> warnings() const = 0;
-  /// Error above_limit where there are more than `most`.
+  /// std::bad_alloc where there are more than `most`.
   [[nodiscard]] virtual std::vector<EdgeRow> step_edges(std::size_t most) const = 0;
   [[nodiscard]] virtual PeakRow peaks() const = 0;
   /// One page of HTML. Throws `Fault` where the build had no libraries to make it of.

@@ -239,6 +239,27 @@ def test_everything_public_is_explained():
             assert signature.return_annotation is not signature.empty, name
 
 
+def test_memory_gives_out(mill):
+    """Linux would end the interpreter where more is used than there is."""
+    trajectory = cncplan.plan_text("G1 X10 F600", mill)
+    loop = "F600\nG1 X1\n#1=0\no1 while [#1 LT 1000000000]\nX1\nX0\n#1=[#1+1]\no1 endwhile\n"
+    far = [cncplan.line([0, 0, 0], [1e5, 0, 0]), cncplan.line([1e5, 0, 0], [1e5, 1e5, 0])]
+    calls = [lambda: trajectory.sample(1e-6), trajectory.step_edges, lambda: cncplan.read_program(text=loop),
+             lambda: cncplan.plan_text(loop, mill), lambda: cncplan.plan_text(loop, mill, level="exact")]
+    cncplan._core.leave_memory(2**62)
+    try:
+        for call in calls:
+            with pytest.raises(MemoryError, match="memory"):
+                call()
+        start = time.perf_counter()
+        slower = cncplan.plan_blocks(far, mill, level="good")
+        assert {part["reason"] for part in slower.fallbacks} == {"the memory gave out"} and slower.duration > 6000
+        assert time.perf_counter() < start + 20
+    finally:
+        cncplan._core.leave_memory(0)
+    assert len(trajectory.step_edges()) == 4000 and len(trajectory.sample(0.001)) > 300
+
+
 def test_nothing_is_lost_over_many_trajectories(mill):
     import gc
 

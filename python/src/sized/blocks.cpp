@@ -5,6 +5,7 @@
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/plan/plan_blocks.hpp"
 #include "fault.hpp"
+#include "memory.hpp"
 #include "planned.hpp"
 #include "planner.hpp"
 
@@ -71,7 +72,7 @@ TrajectoryPointer plan_hand_made<SIZE>(const AnyMachine& given, const std::vecto
   std::vector<ReadBlock<SIZE>> own;
   own.reserve(blocks.size());
   for (const AnyBlock& block : blocks) own.push_back(block_of<SIZE>(block));
-  auto planned = plan_blocks(std::move(own), machine, options);
+  auto planned = plan_blocks(std::move(own), machine, options, guarded_memory());
   if (!planned) raise(planned.error());
   return any_trajectory<SIZE>(given, std::move(*planned));
 }

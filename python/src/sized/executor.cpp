@@ -8,6 +8,7 @@
 #include "cncplan/plan/executor.hpp"
 #include "fault.hpp"
 #include "levels.hpp"
+#include "memory.hpp"
 #include "planned.hpp"
 
 namespace cncplan::python {
@@ -42,7 +43,7 @@ class ExecutorOfSize final : public AnyExecutor {
       : axes_(machine.axes.size()),
         read_(with_dialect(settings.read, machine)),
         reader_(std::in_place, machine_of<SIZE>(machine), read_),
-        executor_(runnable(machine), settings.run) {
+        executor_(runnable(machine), settings.run, guarded_memory()) {
     value_of(validate(settings.run));
     value_of(validate(executor_.machine()));
   }

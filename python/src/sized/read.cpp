@@ -7,6 +7,7 @@
 
 #include "cncplan/plan/plan_program.hpp"
 #include "fault.hpp"
+#include "memory.hpp"
 #include "planned.hpp"
 #include "planner.hpp"
 #include "program.hpp"
@@ -91,7 +92,7 @@ TrajectoryPointer plan_text<SIZE>(const AnyMachine& given, std::string_view text
   const auto machine = machine_of<SIZE>(given);
   Program<SizedMachine<SIZE>> program(text, machine, with_dialect(options, given), file);
   if (const Problem* error = program.first_error()) raise(*error);
-  auto planned = plan_blocks(std::move(program).take_blocks(), machine, options);
+  auto planned = plan_blocks(std::move(program).take_blocks(), machine, options, guarded_memory());
   if (!planned) {
     planned.error().file = program.file_of(planned.error().block.value_or(0));
     raise(planned.error());

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <sstream>
 
 #include "cncplan/plan/peaks.hpp"
@@ -94,9 +95,7 @@ class TrajectoryOfSize final : public AnyTrajectory {
     Interruption interruption;
     std::vector<EdgeRow> rows;
     for (const MotorEdge& edge : planned_.step_edges()) {
-      if (rows.size() == most)
-        raise(Error{ErrorCode::above_limit, "number of step edges", static_cast<double>(most + 1),
-                    static_cast<double>(most)});
+      if (rows.size() == most) throw std::bad_alloc();
       rows.push_back({edge.time, static_cast<std::int64_t>(edge.motor), edge.axis, edge.direction});
       if (rows.size() % 4096 == 0) static_cast<void>(interruption.goes_on());
     }
