@@ -9,31 +9,60 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import Error, choice, finite, flag, integer, kind, not_negative, positive, rows
+from ._errors import Error, choice, finite, flag, integer, kind, not_negative, positive, row, rows
 
 _PLANES = {"xy": 0, "zx": 1, "yz": 2}
 _KINDS = {"line": 0, "arc_center": 1, "arc_radius": 2, "spline": 3}
 
 
+_ORIGIN = (0.0, 0.0, 0.0)
+_NO_CONTROLS = (_ORIGIN, _ORIGIN)
+
+
 @dataclass(frozen=True)
 class Block:
-    """One motion: made by `line`, `arc` and `curve`. Positions are mm, and rad of rotary axes."""
+    """One motion: made by `line`, `arc` and `curve`; `dataclasses.replace` changes one. Positions are mm, and rad of
+    rotary axes."""
 
     kind: str
-    start: tuple[float, ...]
-    end: tuple[float, ...]
-    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    start: Sequence[float]  #: a tuple, as all that are several numbers
+    end: Sequence[float]
+    center: Sequence[float] = _ORIGIN
     radius: float = 0.0
     clockwise: bool = False
     plane: str = "xy"
     extra_turns: int = 0
-    controls: tuple[tuple[float, float, float], tuple[float, float, float]] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    controls: Sequence[Sequence[float]] = _NO_CONTROLS
     feed: float | None = None
     pause: float = 0.0
     exact_stop: bool = False
     rapid: bool = False
     tolerance: float | None = None
     number: int = 0
+
+    def __post_init__(self) -> None:
+        checked: dict[str, Any] = {
+            "kind": choice(self.kind, "kind", _KINDS), "start": _place(self.start, "start"), "end": _place(self.end, "end"),
+            "radius": finite(self.radius, "radius"), "clockwise": flag(self.clockwise, "clockwise"),
+            "plane": choice(self.plane, "plane", _PLANES), "extra_turns": integer(self.extra_turns, "extra_turns", 0),
+            "feed": None if self.feed is None else positive(self.feed, "feed"),
+            "pause": not_negative(self.pause, "pause"), "exact_stop": flag(self.exact_stop, "exact_stop"),
+            "rapid": flag(self.rapid, "rapid"),
+            "tolerance": None if self.tolerance is None else not_negative(self.tolerance, "tolerance"),
+            "number": integer(self.number, "number", 0)}
+        if self.center is not _ORIGIN:
+            checked["center"] = tuple(row(self.center, "center", 3))
+        if self.controls is not _NO_CONTROLS:
+            checked["controls"] = tuple(tuple(point) for point in rows(self.controls, "controls", (2, 3)).tolist())
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        if len(self.start) != len(self.end):
+            raise Error(f"end: has {len(self.end)} numbers where start has {len(self.start)}", "malformed", "end",
+                        len(self.end), len(self.start))
+        if self.kind != "line" and len(self.start) < 3:
+            raise Error(f"start: {'a curve' if self.kind == 'spline' else 'an arc'} has X, Y and Z at least", "malformed",
+                        "start", len(self.start), 3)
+        _core.check_block(self._tuple())
 
     def _tuple(self) -> tuple[Any, ...]:
         return (_KINDS[self.kind], list(self.start), list(self.end), list(self.center), self.radius, self.clockwise,
@@ -46,21 +75,6 @@ def _place(value: Any, name: str) -> tuple[float, ...]:
     if not 1 <= len(array) <= 9:
         raise Error(f"{name}: has {len(array)} numbers, and not 1 to 9", "above_limit", name, len(array), 9)
     return tuple(array.tolist())
-
-
-def _made(kind_of: str, start: Any, end: Any, *, feed: Any, pause: Any, exact_stop: Any, tolerance: Any,
-          number: Any, rapid: Any = False, **more: Any) -> Block:
-    first, last = _place(start, "start"), _place(end, "end")
-    if len(first) != len(last):
-        raise Error(f"end: has {len(last)} numbers where start has {len(first)}", "malformed", "end", len(last),
-                    len(first))
-    block = Block(kind_of, first, last, feed=None if feed is None else positive(feed, "feed"),
-                  pause=not_negative(pause, "pause"), exact_stop=flag(exact_stop, "exact_stop"),
-                  rapid=flag(rapid, "rapid"),
-                  tolerance=None if tolerance is None else not_negative(tolerance, "tolerance"),
-                  number=integer(number, "number", 0), **more)
-    _core.check_block(block._tuple())
-    return block
 
 
 def line(start: Sequence[float], end: Sequence[float], *, feed: float | None = None, rapid: bool = False,
@@ -84,8 +98,8 @@ def line(start: Sequence[float], end: Sequence[float], *, feed: float | None = N
     number : int
         What samples have as `line`.
     """
-    return _made("line", start, end, feed=feed, rapid=rapid, pause=pause, exact_stop=exact_stop,
-                 tolerance=tolerance, number=number)
+    return Block("line", start, end, feed=feed, rapid=rapid, pause=pause, exact_stop=exact_stop, tolerance=tolerance,
+                 number=number)
 
 
 def arc(start: Sequence[float], end: Sequence[float], *, center: Sequence[float] | None = None,
@@ -113,16 +127,12 @@ def arc(start: Sequence[float], end: Sequence[float], *, center: Sequence[float]
     """
     if (center is None) == (radius is None):
         raise Error("an arc has either a center or a radius", "conflicting_words", "center")
-    if len(_place(start, "start")) < 3:
-        raise Error("start: an arc has X, Y and Z at least", "malformed", "start")
-    more: dict[str, Any] = {"clockwise": flag(clockwise, "clockwise"), "plane": choice(plane, "plane", _PLANES),
-                            "extra_turns": integer(extra_turns, "extra_turns", 0)}
-    if center is not None:
-        more["center"] = tuple(rows(center, "center", (3,)).tolist())
-    else:
-        more["radius"] = finite(radius, "radius")
-    return _made("arc_radius" if center is None else "arc_center", start, end, feed=feed, pause=pause,
-                 exact_stop=exact_stop, tolerance=tolerance, number=number, **more)
+    more: dict[str, Any] = {"clockwise": clockwise, "plane": plane, "extra_turns": extra_turns, "feed": feed,
+                            "pause": pause, "exact_stop": exact_stop, "tolerance": tolerance, "number": number}
+    if center is None:
+        more["radius"] = radius
+        return Block("arc_radius", start, end, **more)
+    return Block("arc_center", start, end, **more, center=center)
 
 
 def curve(points: Sequence[Sequence[float]], *, feed: float | None = None, pause: float = 0.0,
@@ -145,11 +155,10 @@ def curve(points: Sequence[Sequence[float]], *, feed: float | None = None, pause
     array = rows(points, "points", (None, 3))
     pieces = _core.spline_through(array)
     blocks = []
-    for i, piece in enumerate(pieces):
-        second, third = (tuple(control) for control in piece[1:3].tolist())
-        blocks.append(_made("spline", piece[0], piece[3], feed=feed, pause=0.0, exact_stop=False,
-                            tolerance=tolerance, number=number, controls=(second, third)))
-    blocks[-1] = replace(blocks[-1], pause=not_negative(pause, "pause"), exact_stop=flag(exact_stop, "exact_stop"))
+    for piece in pieces:
+        blocks.append(Block("spline", piece[0], piece[3], controls=piece[1:3], feed=feed, tolerance=tolerance,
+                            number=number))
+    blocks[-1] = replace(blocks[-1], pause=pause, exact_stop=exact_stop)
     return blocks
 
 

@@ -1,5 +1,6 @@
 """Blocks made by hand, motions of axes, profiles, programs."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -76,6 +77,31 @@ def test_errors_of_blocks(make, code):
     with pytest.raises(cncplan.Error) as caught:
         make()
     assert caught.value.code == code
+
+
+@pytest.mark.parametrize("block", [cncplan.line([0, 0, 0], [5, 0, 0]), cncplan.arc([0, 0, 0], [10, 0, 0], radius=6),
+                                   cncplan.curve([[0, 0, 0], [1, 1, 1], [3, 2, 0]])[0]], ids=lambda block: block.kind)
+def test_a_block_is_checked_however_it_is_made(mill, block):
+    quick = dataclasses.replace(block, feed=20, end=np.array([6.0, 0, 0]))
+    assert (quick.feed, quick.end) == (20, (6, 0, 0)) and cncplan.plan_blocks([quick], mill, level="fast").duration > 0
+    junk = [None, True, 0, -1, math.nan, math.inf, 1e308, "x", b"y", (), (1,), (1, 2), (math.nan, 0, 0), [0] * 10, 2**40,
+            -2**70, object(), {}, "spline", "arc_center", "yz", np.zeros((2, 2))]
+    for field in dataclasses.fields(block):
+        for value in junk:
+            try:
+                changed = dataclasses.replace(block, **{field.name: value})
+            except (cncplan.Error, TypeError) as error:
+                assert str(error)
+            else:  # whatever is taken can be planned, or says why not
+                try:
+                    assert math.isfinite(cncplan.plan_blocks([changed], mill, level="fast").duration)
+                except cncplan.Error:
+                    pass
+    for wrong in ({"feed": -1}, {"kind": "circle"}, {"plane": "xz"}, {"number": -1}, {"end": (1, 2)}, {"tolerance": math.nan}):
+        with pytest.raises(cncplan.Error):
+            dataclasses.replace(block, **wrong)
+    with pytest.raises(TypeError, match="feed: expected a number, got str"):
+        dataclasses.replace(block, feed="fast")
 
 
 def test_errors_of_plans_of_blocks(mill):

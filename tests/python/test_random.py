@@ -3,6 +3,7 @@
 More calls: CNCPLAN_CALLS=100000 tools/python -m pytest tests/python/test_random.py
 """
 
+import dataclasses
 import math
 import os
 
@@ -19,6 +20,8 @@ quick = settings(max_examples=CALLS // 4, deadline=None, database=None, derandom
                  suppress_health_check=list(HealthCheck))
 
 coordinate = st.floats(-50, 50).map(lambda x: round(x, 3))
+ARC = cncplan.arc([0, 0, 0], [10, 0, 0], radius=6)
+FIELDS = [field.name for field in dataclasses.fields(ARC)]
 junk = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.binary(max_size=8),
                  st.lists(st.floats(), max_size=4), st.complex_numbers(), st.just(object()), st.just({}),
                  st.just(np.zeros((2, 2))), st.just(np.array("x")))
@@ -88,6 +91,7 @@ def test_any_arguments(data):
         lambda: cncplan.arc([0, 0, 0], d(st.lists(coordinate, min_size=3, max_size=4)),
                             center=d(st.lists(st.floats(), min_size=3, max_size=3)), extra_turns=d(junk)),
         lambda: cncplan.plan_blocks(d(junk), MILL),
+        lambda: cncplan.plan_blocks([dataclasses.replace(ARC, **{d(st.sampled_from(FIELDS)): d(junk)})], MILL),
         lambda: cncplan.plan_blocks(cncplan.curve(d(st.lists(st.tuples(st.floats(), coordinate, coordinate), max_size=5))), MILL),
         lambda: cncplan.profile(d(st.floats()), d(st.floats()), d(st.floats()), velocity=d(st.floats()),
                                 acceleration=d(st.floats()), jerk=d(st.floats())).at(d(st.floats())),
@@ -130,7 +134,7 @@ def test_any_requests(requests, place, level):
 
 
 @quick
-@given(st.lists(coordinate, min_size=9, max_size=9), st.floats(0, 5))
+@given(st.lists(coordinate, min_size=9, max_size=9), st.floats(0, 5, allow_subnormal=False))
 def test_random_moves(numbers, least):
     start = cncplan.State(numbers[:3], [x / 2 for x in numbers[3:6]])
     move = tried(cncplan.move_to, start, numbers[6:], BENCH, minimum_duration=least)
