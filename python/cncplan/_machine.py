@@ -148,14 +148,21 @@ class Machine:
         limits = [number(limits_only[key], key) if key in limits_only else math.inf
                   for key in ("velocity", "acceleration", "jerk")]
         try:
-            self._core = _core.Machine(text, name, *limits)
+            self.__setstate__((text, name, *limits))
         except Error as error:
             if name != "machine" or error.line is None:
                 raise
             # places in the text that was made of the keywords mean nothing to the caller
             raise Error("machine: " + str(error).partition(": error: ")[2], error.code, error.field, error.value,
                         error.bound) from None
-        self._limits = tuple(limits)
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        """Copies, and other processes, make it anew of its text."""
+        return self._made
+
+    def __setstate__(self, made: tuple[Any, ...]) -> None:
+        self._made = made
+        self._core = _core.Machine(*made)
 
     @property
     def letters(self) -> str:
@@ -176,7 +183,7 @@ class Machine:
         return len(self.letters)
 
     def __repr__(self) -> str:
-        velocity, acceleration, jerk = self._limits
+        velocity, acceleration, jerk = self._made[2:]
         return f"<cncplan.Machine {self.letters}, {velocity:g} mm/s, {acceleration:g} mm/s^2, {jerk:g} mm/s^3>"
 
 

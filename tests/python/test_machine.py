@@ -1,6 +1,8 @@
 """Machines from keywords, dicts and files."""
 
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -25,6 +27,16 @@ def test_forms_are_equal(tmp_path):
         with pytest.raises(cncplan.Error) as caught:
             cncplan.plan_text("G1\nX150", machine)
         assert (caught.value.code, caught.value.field, caught.value.value, caught.value.bound) == ("above_limit", "axis X", 150, 100)
+
+
+def test_machines_go_to_other_processes(tmp_path):
+    file = tmp_path / "mill.toml"
+    file.write_text('[[axis]]\nletter = "X"\nvelocity = 20\n[[axis]]\nletter = "Y"\n')
+    machine = Machine(file, **LIMITS)
+    file.unlink()
+    for again in (pickle.loads(pickle.dumps(machine)), copy.deepcopy(machine), copy.copy(machine)):
+        assert repr(again) == repr(machine) and again.letters == "XY"
+        assert cncplan.plan_text("G1 X50 Y3", again).duration == cncplan.plan_text("G1 X50 Y3", machine).duration
 
 
 def test_rotary_axes_are_degrees():
