@@ -76,7 +76,7 @@ class Executor:
     def tick(self, period: float) -> SetPoint:
         """Moves on by `period` seconds, > 0, and gives the set point there."""
         *point, words = self._core.tick(positive(period, "period"))
-        return SetPoint(*point, words=tuple(words))
+        return SetPoint(*point, words=tuple(words))  # type: ignore[misc]  # all but the words
 
     @property
     def finished(self) -> bool:

@@ -160,7 +160,6 @@ def profile(length: float, start: float = 0.0, end: float = 0.0, *, velocity: fl
     """
     if integer(phases, "phases") not in (5, 7):
         raise Error(f"phases: {phases} is neither 5 nor 7", "not_supported", "phases", phases)
-    numbers = [number(value, name) for value, name in (
-        (length, "length"), (start, "start"), (end, "end"), (velocity, "velocity"), (acceleration, "acceleration"),
-        (jerk, "jerk"))]
-    return Profile(_core.profile(*numbers, phases == 5))
+    return Profile(_core.profile(number(length, "length"), number(start, "start"), number(end, "end"),
+                                 number(velocity, "velocity"), number(acceleration, "acceleration"),
+                                 number(jerk, "jerk"), phases == 5))

@@ -68,6 +68,9 @@ class Program:
         return np.array(self._core.words(), dtype=[("letter", "U1"), ("number", "f8"), ("line", "i8"),
                                                    ("arguments", "O")])
 
+    def __repr__(self) -> str:
+        return f"<cncplan.Program {self.lines} lines, {len(self.problems)} problems>"
+
 
 def read_program(path: str | os.PathLike[str] | None = None, machine: Machine | None = None, *,
                  text: str | None = None, tolerance: float = 0.01, most_problems: int = 100) -> Program:

@@ -76,10 +76,10 @@ class Peaks:
 
 def _named(rows: np.ndarray, dtype: np.dtype) -> np.ndarray:
     """Rows of the extension module, which has numbers for the level and the reason."""
-    numbers = np.dtype([(name, "i8" if name in ("level", "reason") else dtype[name]) for name in dtype.names])
+    numbers = np.dtype([(name, "i8" if name in ("level", "reason") else dtype[name]) for name in dtype.names or ()])
     rows = np.asarray(rows).view(numbers)
     made = np.empty(len(rows), dtype)
-    for name in dtype.names:
+    for name in dtype.names or ():
         made[name] = rows[name]
     made["level"] = np.array(LEVELS)[rows["level"]]
     made["reason"] = _REASONS[rows["reason"]]

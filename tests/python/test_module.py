@@ -1,5 +1,6 @@
 """The module as a guest of Python: errors, types, threads, signals."""
 
+import ast
 import copy
 import inspect
 import json
@@ -237,6 +238,32 @@ def test_everything_public_is_explained():
         if inspect.isfunction(thing):
             assert all(p.annotation is not p.empty for p in signature.parameters.values()), name
             assert signature.return_annotation is not signature.empty, name
+
+
+def test_stubs_have_what_the_module_has():
+    module = cncplan._core
+    stubs = ast.parse((ROOT / "python/cncplan/_core.pyi").read_text())
+
+    def told(body):
+        names = {node.name for node in body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+        return names | {node.target.id for node in body if isinstance(node, ast.AnnAssign)}
+
+    def public(thing):
+        return {name for name in vars(thing) if not name.startswith("_")}
+
+    assert told(stubs.body) == public(module)
+    for node in stubs.body:
+        if isinstance(node, ast.ClassDef):
+            made = getattr(module, node.name)
+            assert told(node.body) - {"__init__"} == public(made), node.name
+            for function in node.body:
+                if isinstance(function, ast.FunctionDef) and not function.decorator_list:
+                    # pybind11 writes them as "name(self: ..., arg0: ...) -> ..."
+                    written = getattr(made, function.name).__doc__.partition(" -> ")[0]
+                    assert len(re.findall(r"[(,] ?(?:self|arg\d+): ", written)) == len(function.args.args), function.name
+        elif isinstance(node, ast.FunctionDef):
+            written = getattr(module, node.name).__doc__.partition(" -> ")[0]
+            assert len(re.findall(r"[(,] ?arg\d+: ", written)) == len(node.args.args), node.name
 
 
 def test_memory_gives_out(mill):
