@@ -5,6 +5,8 @@
 #include <limits>
 #include <span>
 
+#include "cncplan/gcode/language/program_lines.hpp"
+#include "cncplan/gcode/read_program.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "fault.hpp"
 #include "memory.hpp"
