@@ -1,6 +1,8 @@
 """Machines whose axes are not the program's coordinates, by name."""
 
+import json
 import math
+import subprocess
 
 import numpy as np
 import pytest
@@ -64,6 +66,20 @@ def test_what_there_is_not():
     assert [(problem.code, problem.line) for problem in problems][:1] == [("unreachable", 1)]
     with pytest.raises(cncplan.Error, match="lengths"):
         Machine(**LIMITS, kinematics="scara", axes=[Axis("A"), Axis("B"), Axis("Z")])
+
+
+@pytest.mark.parametrize("level", ["fast", "best"])
+def test_five_axes_equal_simulate(simulate, tmp_path, level):
+    """The tip stays on the work while the table tilts; the program cncplan_simulate plans by the same library."""
+    program = tmp_path / "part.ngc"
+    program.write_text("G21 G90 F1200\nG43.4\nG1 X10 A20\nY8 C30\nX0 Y0 A0 C0\nG49\n")
+    machine_file = ROOT / "examples/machines/table_table_ac.toml"
+    done = subprocess.run([simulate, program, "--machine", machine_file, "--json", "--quiet", "--smooth", level], check=True,
+                          capture_output=True, text=True)
+    trajectory = cncplan.plan_file(program, Machine(machine_file, **LIMITS), level=level)
+    assert trajectory.duration == json.loads(done.stdout)["time_s"]
+    assert trajectory.at(trajectory.duration).tool == pytest.approx([0, 0, 0], abs=1e-9)
+    assert trajectory.sample(0.01).position.shape[1] == 5
 
 
 def test_machine_files():
