@@ -30,6 +30,7 @@ template <int N>
 /// The options that read a program for a machine.
 [[nodiscard]] inline PlanOptions with_dialect(PlanOptions options, const AnyMachine& machine) {
   options.dialect = machine.dialect;
+  options.orientation = machine.file.map.orientation;
   return options;
 }
 
