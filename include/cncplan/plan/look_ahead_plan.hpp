@@ -113,7 +113,9 @@ template <MachineModel M, BlockModel B>
   Expected<BasicCells<S>, BlockFault> cells = tl::unexpected(BlockFault{});
   const auto other = without_smoothing<M, B>();
   if constexpr (MappedModel<M>) {
-    constexpr S rounding = S(1e-12);  // mm: as of paths that meet without a corner
+    // mm and rad: derivatives that differ by rounding cost nothing, and at a corner no axis jumps by more
+    // than some 1e-8 of a unit a second.
+    constexpr S rounding = S(1e-18);
     const JointRules<S, junction::BasicStopAtCorners<S>> at_rest{{}, rounding, rounding};
     if (asked != SmoothLevel::exact && !other) {
       cells = make_cells(given, machine, at_rest, smoothing, memory, progress.part(0.0, cut_up));
