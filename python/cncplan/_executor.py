@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 from . import _core
 from ._blocks import Block, tuple_of
-from ._errors import Error, finite, flag, integer, kind, not_negative, positive, row
+from ._errors import Error, finite, flag, integer, kind, not_negative, number, positive, row
 from ._machine import Machine, core_of
 from ._trajectory import SetPoint, options_of
 
@@ -75,8 +76,8 @@ class Executor:
 
     def tick(self, period: float) -> SetPoint:
         """Moves on by `period` seconds, > 0, and gives the set point there."""
-        *point, words = self._core.tick(positive(period, "period"))
-        return SetPoint(*point, words=tuple(words))  # type: ignore[misc]  # all but the words
+        *point, words, feed = self._core.tick(positive(period, "period"))
+        return SetPoint(*point, words=tuple(words), feed=feed)  # type: ignore[misc]  # all but the words
 
     @property
     def finished(self) -> bool:
@@ -171,9 +172,22 @@ class Executor:
         request or the end of their travel. Error: a program moves them; velocities beyond the limits."""
         self._core.jog(row(velocities, "velocities", len(self.machine)))
 
-    def jog_to(self, positions: Sequence[float]) -> None:
-        """While no program moves the axes, they go to positions (mm, rad)."""
-        self._core.jog_to(row(positions, "positions", len(self.machine)))
+    def jog_to(self, positions: Sequence[float], speeds: Sequence[float] | None = None, *,
+               tool_speed: float = math.inf) -> None:
+        """While no program moves the axes, they go to positions (mm, rad): each no faster than its own of `speeds`
+        (mm/s, rad/s; > 0), and X Y Z together no faster than `tool_speed` (mm/s, > 0)."""
+        self._core.jog_to(row(positions, "positions", len(self.machine)), self._speeds(speeds),
+                          number(tool_speed, "tool_speed"))
+
+    def jog_by(self, increments: Sequence[float], speeds: Sequence[float] | None = None, *,
+               tool_speed: float = math.inf) -> None:
+        """The axes go so much further (mm, rad): from where a jog to positions goes, or else from where they are
+        now. Speeds as of `jog_to`."""
+        self._core.jog_by(row(increments, "increments", len(self.machine)), self._speeds(speeds),
+                          number(tool_speed, "tool_speed"))
+
+    def _speeds(self, speeds: Sequence[float] | None) -> list[float]:
+        return [] if speeds is None else row(speeds, "speeds", len(self.machine))
 
     def return_to_path(self) -> None:
         """The axes go back to where the program was left; `resume` does this too."""

@@ -59,8 +59,10 @@ class SetPoint:
     v: Any
     a: Any
     j: Any
-    #: of an executor, words that were reached: letter, number, line, and the words that belong to it as pairs
-    words: tuple[tuple[str, float, int, tuple[tuple[str, float], ...]], ...] = ()
+    #: of an executor, words that were reached: letter, number, s from the start of the tick to the instant at which
+    #: it was reached, line, and the words that belong to it as pairs
+    words: tuple[tuple[str, float, float, int, tuple[tuple[str, float], ...]], ...] = ()
+    feed: float | None = None  #: of an executor, mm/s that the program asks for; infinite for as fast as may be
 
 
 @dataclass(frozen=True)

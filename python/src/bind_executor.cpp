@@ -9,6 +9,11 @@ namespace cncplan::python {
 
 void bind_executor(py::module_& module) {
   using E = AnyExecutor;
+  const auto speed_of = [](const std::vector<double>& axes, double tool) {
+    JogSpeed<9> speed{.tool = tool};
+    for (std::size_t i = 0; i < axes.size(); ++i) speed.axes[static_cast<Eigen::Index>(i)] = axes[i];
+    return speed;
+  };
   py::class_<AnyExecutor>(module, "Executor")
       .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
                        double quick_stop_share, double reserve) {
@@ -31,11 +36,11 @@ void bind_executor(py::module_& module) {
            [](E& e, double period) {
              const AnySetPoint p = e.tick(period);
              py::list words;
-             for (const auto& word : p.words) words.append(word_tuple(word));
+             for (const auto& word : p.words) words.append(word_tuple(word, word.in_tick));
              Numbers tool(3, p.tool.data());
              return py::make_tuple(p.time, p.block, p.line, array_of(p.position), array_of(p.velocity),
                                    array_of(p.acceleration), array_of(p.jerk), tool, p.along.position,
-                                   p.along.velocity, p.along.acceleration, p.along.jerk, words);
+                                   p.along.velocity, p.along.acceleration, p.along.jerk, words, p.feed);
            })
       .def("warnings", &E::warnings)
       .def("finished", &E::finished)
@@ -62,7 +67,10 @@ void bind_executor(py::module_& module) {
       .def("program_stop", &E::program_stop)
       .def("pause_at", &E::pause_at)
       .def("jog", [](E& e, const std::vector<double>& v) { e.jog(places_of(v)); })
-      .def("jog_to", [](E& e, const std::vector<double>& p) { e.jog_to(places_of(p)); })
+      .def("jog_to", [speed_of](E& e, const std::vector<double>& p, const std::vector<double>& axes,
+                                double tool) { e.jog_to(places_of(p), speed_of(axes, tool)); })
+      .def("jog_by", [speed_of](E& e, const std::vector<double>& p, const std::vector<double>& axes,
+                                double tool) { e.jog_by(places_of(p), speed_of(axes, tool)); })
       .def("return_to_path", &E::return_to_path)
       .def("restart",
            [](E& e, int line, const std::vector<double>& p) { return e.restart(line, places_of(p)); });

@@ -30,6 +30,7 @@ struct AnySetPoint {
   std::vector<double> position, velocity, acceleration, jerk;
   Vector3 tool = Vector3::Zero();
   State along;
+  double feed{};
   ReachedWords words;
 };
 
@@ -68,7 +69,8 @@ class AnyExecutor {
   virtual void program_stop(bool wanted) = 0;
   virtual void pause_at(int line) = 0;
   virtual void jog(const Places& velocities) = 0;
-  virtual void jog_to(const Places& positions) = 0;
+  virtual void jog_to(const Places& positions, const JogSpeed<9>& speed) = 0;
+  virtual void jog_by(const Places& increments, const JogSpeed<9>& speed) = 0;
   virtual void return_to_path() = 0;
   virtual bool restart(int line, const Places& position) = 0;
 };

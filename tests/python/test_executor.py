@@ -280,3 +280,36 @@ def test_a_block_that_cannot_be_planned_is_told(mill):
     for _ in range(5000):
         executor.tick(0.001)
     assert executor.finished and executor.error.code == "discontinuous"
+
+
+def test_jog_at_a_speed_and_by_increments(mill):
+    executor = cncplan.Executor(mill)
+    executor.jog_to([3, 4, 0], tool_speed=5)
+    points = [executor.tick(0.001) for _ in range(2000)]
+    assert max(np.linalg.norm(point.velocity) for point in points) == pytest.approx(5)
+    assert points[-1].position.tolist() == [3, 4, 0]
+    executor.jog_to([0, 0, 0], [2, 1, 1])
+    points = [executor.tick(0.001) for _ in range(6000)]
+    assert np.abs([point.velocity for point in points]).max(axis=0)[1] == pytest.approx(1)
+    for _ in range(3):  # faster than it moves
+        executor.jog_by([1, 0, 0])
+        executor.tick(0.001)
+    assert [executor.tick(0.001) for _ in range(2000)][-1].position == pytest.approx([3, 0, 0])
+    with pytest.raises(cncplan.Error, match="speed of a jog"):
+        executor.jog_by([1, 0, 0], tool_speed=0)
+
+
+def test_a_word_has_its_instant_and_a_set_point_the_feed(mill):
+    told = {}
+    for period in (0.05, 0.0001):
+        executor = cncplan.Executor(mill)
+        for line in ("F600", "G1 X5", "M8", "X10"):
+            assert executor.push(line)
+        executor.end_of_program()
+        told[period] = []
+        while not executor.finished:
+            point = executor.tick(period)
+            told[period] += [point.t - period + in_tick for _, _, in_tick, *_ in point.words]
+            if point.v > 0:
+                assert point.feed == pytest.approx(10)
+    assert told[0.05] == pytest.approx(told[0.0001], abs=2e-4)

@@ -79,7 +79,7 @@ class ExecutorOfSize final : public AnyExecutor {
     return {point.time,           point.block,          point.line,
             list(point.position), list(point.velocity), list(point.acceleration),
             list(point.jerk),     point.tool,           point.along,
-            point.words};
+            point.feed,           point.words};
   }
   [[nodiscard]] std::vector<std::string> warnings() const override {
     std::vector<std::string> texts;
@@ -113,7 +113,12 @@ class ExecutorOfSize final : public AnyExecutor {
   void program_stop(bool wanted) override { executor_.program_stop(wanted); }
   void pause_at(int line) override { executor_.pause_at(line); }
   void jog(const Places& velocities) override { value_of(executor_.jog(vector_of(velocities))); }
-  void jog_to(const Places& positions) override { value_of(executor_.jog_to(vector_of(positions))); }
+  void jog_to(const Places& positions, const JogSpeed<9>& speed) override {
+    value_of(executor_.jog_to(vector_of(positions), speed_of(speed)));
+  }
+  void jog_by(const Places& increments, const JogSpeed<9>& speed) override {
+    value_of(executor_.jog_by(vector_of(increments), speed_of(speed)));
+  }
   void return_to_path() override { value_of(executor_.return_to_path()); }
   bool restart(int line, const Places& position) override {
     if (!executor_.restart(line, vector_of(position))) return false;
@@ -124,6 +129,10 @@ class ExecutorOfSize final : public AnyExecutor {
   }
 
  private:
+  [[nodiscard]] static auto speed_of(const JogSpeed<9>& speed) {
+    return JogSpeed<Vector::RowsAtCompileTime>{.axes = speed.axes.head<Vector::RowsAtCompileTime>(),
+                                               .tool = speed.tool};
+  }
   [[nodiscard]] bool pending() const { return pending_ && !pending_->empty(); }
   // Whether the blocks of the last line have all found room.
   bool push_pending() {
