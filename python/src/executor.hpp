@@ -12,6 +12,7 @@
 #include "cncplan/plan/executor_options.hpp"
 #include "cncplan/plan/executor_state.hpp"
 #include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan/player/jog.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/set_point.hpp"
 #include "machine.hpp"
