@@ -129,9 +129,8 @@ class ExecutorOfSize final : public AnyExecutor {
   }
 
  private:
-  [[nodiscard]] static auto speed_of(const JogSpeed<9>& speed) {
-    return JogSpeed<Vector::RowsAtCompileTime>{.axes = speed.axes.head<Vector::RowsAtCompileTime>(),
-                                               .tool = speed.tool};
+  [[nodiscard]] static Runner::JogSpeed speed_of(const JogSpeed<9>& speed) {
+    return {.axes = speed.axes.head<Vector::RowsAtCompileTime>(), .tool = speed.tool};
   }
   [[nodiscard]] bool pending() const { return pending_ && !pending_->empty(); }
   // Whether the blocks of the last line have all found room.
