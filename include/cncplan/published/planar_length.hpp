@@ -2,9 +2,7 @@
 #pragma once
 
 #include <concepts>
-#include <optional>
 #include <span>
-#include <utility>
 
 #include "cncplan/core/limits.hpp"
 #include "cncplan/path/arc.hpp"
@@ -27,19 +25,22 @@ class ToolLimits {
 
   template <class Driven>
   void begin(const B&, const Driven&, Scalar from, Scalar to, Scalar speed, Scalar) {
-    part_ = Part{from, to, limits_};
-    part_->limits.velocity = speed;
+    part_ = {from, to, limits_};
+    part_.limits.velocity = speed;
+    done_ = false;
   }
 
-  [[nodiscard]] bool done() const { return !part_; }
+  [[nodiscard]] bool done() const { return done_; }
   template <class Driven>
-  [[nodiscard]] Part next(const Driven&) {
-    return *std::exchange(part_, std::nullopt);
+  [[nodiscard]] const Part* step(const Driven&) {
+    done_ = true;
+    return &part_;
   }
 
  private:
   BasicLimits<Scalar> limits_;
-  std::optional<Part> part_;
+  Part part_;
+  bool done_ = true;
 };
 
 /// Length in space over length in the plane: above 1 on a helix, 1 on lines and flat arcs. Of an arc whose
