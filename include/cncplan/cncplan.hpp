@@ -214,6 +214,7 @@
 #include "cncplan/plan/player/running_profile.hpp"
 #include "cncplan/plan/player/shared_count.hpp"
 #include "cncplan/plan/player/smoothing_ahead.hpp"
+#include "cncplan/plan/player/told_words.hpp"
 #include "cncplan/plan/program.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/plan/program_record.hpp"

@@ -23,6 +23,7 @@
 #include "cncplan/plan/player/jog.hpp"
 #include "cncplan/plan/player/player.hpp"
 #include "cncplan/plan/player/shared_count.hpp"
+#include "cncplan/plan/player/told_words.hpp"
 #include "cncplan/plan/run_error.hpp"
 #include "cncplan/plan/set_point.hpp"
 
@@ -264,7 +265,7 @@ class ExecutorCore {
   // The axes are to go to a path that is not there yet: no block moves, or those that do are held back.
   void wait_for_path(Scalar period, std::int64_t ready) {
     if (level_ != nullptr) return;
-    tell_words(ready - 1, Scalar(0));
+    words_.tell(feed_, ready - 1, Scalar(0), last_.words);
     waited_ += period;
     if (waited_ >= longest_wait_) feed_.let_go();
   }
@@ -284,8 +285,6 @@ class ExecutorCore {
   SetPoint tick_of_jog(Scalar period, const Tell* tell);
   void evaluate(const Cell& cell, const BasicPlayed<Scalar>& now);
   void release();
-  void tell_words(std::int64_t reached, Scalar in_tick);
-  [[nodiscard]] bool word_ahead();
 
   M machine_;
   Expected<void> options_;  // nothing, or why nothing runs with them
@@ -309,13 +308,7 @@ class ExecutorCore {
   Scalar quiet_{};                      // s for which no block has come, though there was room
   std::int64_t seen_ = 0;               // blocks pushed before the last tick
   SetPoint last_{};
-  std::int64_t told_ = 0;      // blocks whose words have been told
-  std::int64_t wordless_ = 0;  // blocks that have been told, or have no word to tell
-  // Of the last tick, if there was a word ahead; s of it.
-  struct {
-    std::int64_t block = -1;
-    Scalar start{}, end{};
-  } last_part_;
+  ToldWords<Scalar> words_;
   Scalar last_period_{};  // s
   Error fault_{};         // of a period
   std::atomic<bool> failed_{false};
@@ -359,7 +352,7 @@ bool ExecutorCore<M, B>::finished() const {
   if (feed_.failed()) return true;
   if (!ended_.load(std::memory_order_acquire)) return false;
   const std::int64_t end = end_.load();
-  return told_ >= end && feed_.ready() >= end;
+  return words_.blocks() >= end && feed_.ready() >= end;
 }
 
 template <MachineModel M, BlockModel B>
@@ -426,7 +419,8 @@ bool ExecutorCore<M, B>::restart(int line, const Vector& position) {
   has_run_ = false;
   placed_ = true;
   waited_ = quiet_ = Scalar(0);
-  seen_ = told_ = wordless_ = 0;
+  seen_ = 0;
+  words_.restart();
   failed_ = ended_ = false;
   stand_at(position);
   last_.along = {};
@@ -495,8 +489,7 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
     evaluate(cell, now);
   }
   if (player_.finished()) reached = std::max(reached, ready - 1);
-  tell_words(std::min(last_part_.block, reached), last_part_.start);
-  tell_words(reached, player_.stands() && last_part_.end > Scalar(0) ? last_part_.end : period);
+  words_.end_tick(feed_, reached, player_.stands(), period, last_.words);
   release();
   return last_;
 }
@@ -520,14 +513,10 @@ bool ExecutorCore<M, B>::find_path() {
 
 template <MachineModel M, BlockModel B>
 BasicPlayed<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Tell* tell) {
-  last_part_ = {};
-  if (tell == nullptr && !word_ahead()) return player_.tick(period);
+  if (!words_.begin_tick(feed_) && tell == nullptr) return player_.tick(period);
   return player_.tick(period, [&](const BasicPlayedPart<Scalar>& part) {
     const Cell& cell = player_[part.block];
-    // Before a rest the last part may lie in a block behind it, by rounding.
-    if (part.phase.time - last_part_.end < Scalar(1e-6) * period)
-      tell_words(last_part_.block, last_part_.start);
-    last_part_ = {cell.block, part.phase.time, part.phase.time + part.phase.duration};
+    words_.pass(feed_, cell.block, part.phase, period, last_.words);
     if (tell == nullptr) return;
     (*tell)(Part(feed_.path(cell.block), part.phase, cell.from + part.along, part.direction));
   });
@@ -591,29 +580,11 @@ void ExecutorCore<M, B>::evaluate(const Cell& cell, const BasicPlayed<Scalar>& n
 // without a cell lie between.
 template <MachineModel M, BlockModel B>
 void ExecutorCore<M, B>::release() {
-  const std::int64_t furthest = std::max(static_cast<std::int64_t>(last_.block), told_ - 1) - capacity_;
+  const std::int64_t furthest =
+      std::max(static_cast<std::int64_t>(last_.block), words_.blocks() - 1) - capacity_;
   while (oldest_kept() < furthest && player_.forget_oldest()) {
   }
-  feed_.release(std::min(told_, oldest_kept()));
-}
-
-// Words of blocks up to one, which is come to so many seconds into the tick; what the set point has no room
-// for comes with the next one.
-template <MachineModel M, BlockModel B>
-void ExecutorCore<M, B>::tell_words(std::int64_t reached, Scalar in_tick) {
-  for (; told_ <= reached; ++told_) {
-    const gcode::Word& word = feed_[told_].word;
-    if (word.letter != '\0' && !last_.words.push_back({word, in_tick})) return;
-  }
-}
-
-// Whether one of the blocks that wait has a word.
-template <MachineModel M, BlockModel B>
-bool ExecutorCore<M, B>::word_ahead() {
-  const std::int64_t ready = feed_.ready();
-  wordless_ = std::max(wordless_, told_);
-  while (wordless_ < ready && feed_[wordless_].word.letter == '\0') ++wordless_;
-  return wordless_ < ready;
+  feed_.release(std::min(words_.blocks(), oldest_kept()));
 }
 
 }  // namespace plan
