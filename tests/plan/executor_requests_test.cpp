@@ -309,6 +309,9 @@ TEST_CASE("behind a map set points show the start of a program, and its tool", "
   const auto point = executor.tick(period);
   CHECK((point.position - Vector3(50, std::atan2(4, 3), 0)).norm() < 1e-12);
   CHECK((point.tool - Vector3(30, 40, 0)).norm() < 1e-12);
+  const auto refused = executor.jog_to({45, 0, 0}, {.tool = 4});  // it would bound no joint
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::not_supported);
 }
 
 TEST_CASE("a program that begins nowhere shows no such place", "[executor]") {

@@ -54,10 +54,13 @@ class Jog {
   Expected<void> to_velocities(const Vector& place, const Vector& velocities, const M& machine) {
     return follow(reach_velocity(now(place), row(velocities), machine));
   }
-  /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`.
+  /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`; not_supported
+  /// for a speed of the tool under a map, where joints move.
   Expected<void> to_positions(const Vector& place, const Vector& positions, const M& machine,
                               const Speed& speed = {}) {
     if (auto ok = validate(speed); !ok) return ok;
+    if (MappedModel<M> && std::isfinite(speed.tool))
+      return refusal(ErrorCode::not_supported, "speed of the tool in a jog of joints", speed.tool);
     const States from = now(place);
     const auto together = std::isfinite(speed.tool) ? Synchronization::phase : Synchronization::time;
     if (auto ok =
