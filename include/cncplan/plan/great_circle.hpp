@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <variant>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/jet.hpp"
