@@ -22,6 +22,15 @@ concept EnclosedPath = requires(const P& path, typename P::Scalar s) {
 
 namespace detail {
 
+/// Whether all axes keep the first derivative that is known exactly: straight lines, and their images under
+/// maps that are affine.
+template <class Enclosure>
+[[nodiscard]] bool goes_straight(const Enclosure& axes) {
+  return std::all_of(axes.begin(), axes.end(), [](const auto& axis) {
+    return axis.first.low == axis.first.high && axis.second.largest() == 0 && axis.third.largest() == 0;
+  });
+}
+
 /// Calls visit(enclosure, point in the middle, half the width) for equal parts of [from, to].
 template <EnclosedPath P, class Visit>
 void for_each_part(const P& path, typename P::Scalar from, typename P::Scalar to, int parts, Visit&& visit) {
@@ -51,6 +60,11 @@ template <int parts = 4, EnclosedPath P>
   using S = typename P::Scalar;
   constexpr int n = P::Vector::RowsAtCompileTime;
   BasicPathBounds<S, n> result;
+  if (const auto whole = path.enclosure(from, to); detail::goes_straight(whole)) {
+    for (int axis = 0; axis < n; ++axis)
+      result.first[axis] = whole[static_cast<std::size_t>(axis)].first.largest();
+    return result;
+  }
   detail::for_each_part(path, from, to, parts, [&](const auto& enclosed, const auto& middle, S half) {
     for (int axis = 0; axis < n; ++axis) {
       const auto& jet = enclosed[static_cast<std::size_t>(axis)];
@@ -76,6 +90,7 @@ template <EnclosedPath P>
   constexpr S infinity = std::numeric_limits<S>::infinity();
   const auto start = path.point_at(S(0)).position, end = path.point_at(path.length()).position;
   BasicBox<S, n> box{start.cwiseMin(end), start.cwiseMax(end)};
+  if (detail::goes_straight(path.enclosure(S(0), path.length()))) return box;
   // How far a position goes from that in the middle of a part.
   const auto reach = [](const auto& jet, S rate, S half) {
     // On a part that goes one way, its ends are the extremes.
