@@ -121,7 +121,7 @@ class BasicBand {
   /// Brings the curve inside the tolerance by proof, where it leaves it between samples, by going back
   /// towards the start. Returns the largest share of the tolerance that is left, below 1 unless the start
   /// itself is not inside.
-  S settle();
+  S settle(const Progress& progress = {});
 
   /// Where the curve may be cut before a cell.
   [[nodiscard]] Cut cut_before(std::size_t cell) const {
@@ -543,11 +543,13 @@ int BasicBand<S, N>::improve(std::span<const S> speeds_sq, std::span<const S> sk
 }
 
 template <std::floating_point S, int N>
-S BasicBand<S, N>::settle() {
+S BasicBand<S, N>::settle(const Progress& progress) {
+  constexpr std::size_t seldom = 64;  // a cell of a curve that is far from its path takes long
   S worst = S(0);
   for (int round = 0; round < 40; ++round) {
     worst = S(0);
     for (std::size_t cell = 0; cell < cell_count(); ++cell) {
+      if (cell % seldom == 0) progress.reach(0);
       const S share = deviation(cell);
       worst = std::max(worst, share);
       if (share <= S(1)) continue;

@@ -135,7 +135,7 @@ class SmoothRun {
 
   // The time that the curve takes, about.
   S coarse_time() {
-    deviation_ = band_.settle();
+    deviation_ = band_.settle(work_.so_far());
     speed_.take(band_, false, ends_, approach_);
     return speed_.plan(options_.coarse_gap, false, true, work_.next(Work::coarse_speed)).duration;
   }
@@ -149,7 +149,7 @@ class SmoothRun {
     if (options_.joint_rounds > 0)
       time = coarse_time();
     else
-      deviation_ = band_.settle();
+      deviation_ = band_.settle(work_.so_far());
     const S at_feeds = time_at_feeds();
     for (int round = 0; round < options_.joint_rounds; ++round) {
       points_.assign(band_.points().begin(), band_.points().end());
@@ -270,6 +270,8 @@ class SmoothRun {
       done_ = std::min(done_ + amount, all_);
       return progress_.part(from / all_, done_ / all_);
     }
+    /// For work whose time nobody knows.
+    [[nodiscard]] Progress so_far() const { return progress_.part(done_ / all_, done_ / all_); }
 
    private:
     Progress progress_;
@@ -368,7 +370,7 @@ auto SmoothRun<S, N, Seen>::plan(const Progress& progress) -> Plan {
   if (deviation_ <= S(1) && std::isfinite(fastest.duration)) return fastest;
   // Where a run is cut neither curve nor speed can give way: then on the curve of which it was known.
   band_.reset();
-  deviation_ = band_.settle();
+  deviation_ = band_.settle(work_.so_far());
   fastest = make_plan(true);
   if (!std::isfinite(fastest.duration)) fastest = make_plan(false);
   return fastest;
@@ -378,7 +380,7 @@ template <std::floating_point S, int N, class Seen>
 auto SmoothRun<S, N, Seen>::slow_plan() -> Plan {
   let_go_beyond_end();
   band_.reset();
-  deviation_ = band_.settle();
+  deviation_ = band_.settle(work_.so_far());
   return make_plan(false);
 }
 
