@@ -36,4 +36,5 @@ accelerations.set(xlim=(-0.15, 0.15), xlabel="time from the corner, s", ylabel="
 accelerations.legend(fontsize="small")
 paths.set(xlim=(19.6, 20.3), ylim=(-0.05, 0.5), xlabel="X, mm", ylabel="Y, mm")
 paths.legend()
+arguments.out.mkdir(parents=True, exist_ok=True)
 figure.savefig(arguments.out / "python_corner.png", dpi=90)

@@ -33,4 +33,5 @@ for k, tolerance in enumerate(tolerances):
 axes.set(xlabel="jerk limit, mm/s$^3$", ylabel="time, s")
 axes.legend(title="tolerance")
 axes.grid(which="both", linewidth=0.3)
+arguments.out.mkdir(parents=True, exist_ok=True)
 figure.savefig(arguments.out / "python_jerk_and_tolerance.png", dpi=90)

@@ -51,4 +51,5 @@ for level in ("exact", "best"):
     arcs.plot(samples.t, np.linalg.norm(samples.velocity, axis=1), "--", linewidth=1, label=f"with the line, {level}")
 arcs.set(xlabel="t, s", ylabel="speed, mm/s", title="Fig. 7: five arcs")
 arcs.legend(fontsize="x-small", loc="lower center")
+arguments.out.mkdir(parents=True, exist_ok=True)
 figure.savefig(arguments.out / "python_kk22.png", dpi=90)

@@ -25,9 +25,9 @@ def test_code_of_the_page(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["cycle_time", "corner", "kk22", "jerk_and_tolerance", "controller"])
 def test_examples(tmp_path, name):
     pytest.importorskip("matplotlib")
-    done = subprocess.run([sys.executable, ROOT / "python/examples" / f"{name}.py", "--out", tmp_path], check=True,
+    done = subprocess.run([sys.executable, ROOT / "python/examples" / f"{name}.py", "--out", tmp_path / "new"], check=True,
                           capture_output=True, text=True, env={**os.environ, "MPLCONFIGDIR": str(tmp_path)})
-    assert (tmp_path / f"python_{name}.png").stat().st_size > 5000
+    assert (tmp_path / "new" / f"python_{name}.png").stat().st_size > 5000
     if name == "kk22":  # the figures of docs/kk22.md
         for figure in ("47.124 mm", "1.835 s", "1.758 s", "1.680 s"):
             assert figure in done.stdout
