@@ -154,6 +154,7 @@
 #include "cncplan/plan/cell_maker.hpp"
 #include "cncplan/plan/cells.hpp"
 #include "cncplan/plan/clock_proof.hpp"
+#include "cncplan/plan/clock_ramp.hpp"
 #include "cncplan/plan/curve_limits.hpp"
 #include "cncplan/plan/driven_path.hpp"
 #include "cncplan/plan/executor.hpp"

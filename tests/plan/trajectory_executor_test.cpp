@@ -364,6 +364,70 @@ TEST_CASE(
   CHECK(hold(reserved, 1) < 0.5);
 }
 
+namespace {
+
+// s to rest on a straight line, from a speed and an acceleration, in closed form. On a bend, where jerk
+// across the path turns into some along it, it may be a little less.
+double least_time(double v, double a, double most, double jerk) {
+  const double settled = v + std::max(a, 0.0) * std::abs(a) / (2 * jerk);
+  const double push = std::max(-a, 0.0), lead = std::max(a, 0.0) / jerk;
+  const double peak = std::sqrt(jerk * settled + push * push / 2);
+  if (peak < push) return push / jerk;  // it brakes too hard already
+  if (peak <= most) return lead + (2 * peak - push) / jerk;
+  const double rises = (most * most - push * push) / (2 * jerk), falls = most * most / (2 * jerk);
+  return lead + (2 * most - push) / jerk + (settled - rises - falls) / most;
+}
+
+}  // namespace
+
+TEST_CASE("trajectory executor: holds on a wave of short lines come soon, within the limits",
+          "[trajectory-executor]") {
+  CHECK(least_time(30, 0, 1000, 10000) == Approx(2 * std::sqrt(30.0 / 10000)));
+  CHECK(least_time(300, 0, 1000, 10000) == Approx(0.3 + 0.1));
+  std::string wave = "F1800\n";
+  for (int i = 1; i <= 400; ++i)
+    wave += "G1 X" + std::to_string(0.25 * i) + " Y" + std::to_string(3 * std::sin(0.17 * i)) + " Z" +
+            std::to_string(std::sin(0.4 * i)) + "\n";
+  for (const auto level : {SmoothLevel::good, SmoothLevel::best})
+    for (const double reserve : {0.02, 0.05}) {
+      CAPTURE(level, reserve);
+      const auto trajectory = planned(wave, with_reserve(mill, reserve), level);
+      TrajectoryExecutor executor(trajectory, mill);
+      REQUIRE_FALSE(executor.error());
+      std::vector<double> ratios;
+      double longest = 0;
+      auto before = executor.tick(period);
+      const auto tick = [&] {
+        const auto now = executor.tick(period);
+        CHECK((now.position - before.position).norm() <= 30 * period * (1 + 1e-9));
+        CHECK((now.velocity - before.velocity).norm() <= 1000 * period * (1 + 1e-9));
+        CHECK((now.acceleration - before.acceleration).norm() <= 10000 * period * (1 + 1e-6));
+        CHECK((now.position - trajectory.at(executor.clock().position).position).norm() < 1e-9);
+        before = now;
+      };
+      for (int k = 0; !executor.finished(); ++k) {
+        for (int i = 0; i < 97 + k % 23 && !executor.finished(); ++i) tick();
+        const double least = least_time(
+            before.velocity.norm(),
+            before.velocity.dot(before.acceleration) / std::max(before.velocity.norm(), 1e-9), 1000, 10000);
+        executor.feed_hold();
+        double held = 0;
+        for (; !executor.rests(); held += period) tick();
+        longest = std::max(longest, held);
+        if (least > 0.01) ratios.push_back((held - period) / least);
+        executor.resume();
+        REQUIRE(k < 1000);
+      }
+      CHECK((before.position - trajectory.at(trajectory.duration()).position).norm() < 1e-9);
+      REQUIRE(ratios.size() > 20);
+      std::ranges::sort(ratios);
+      CAPTURE(ratios.size(), ratios.back());
+      CHECK(ratios.front() > 0.95);
+      CHECK(ratios[ratios.size() / 2] < 1.5);
+      CHECK(longest < 0.4);
+    }
+}
+
 TEST_CASE("trajectory executor: what is no time ends the run within the limits", "[trajectory-executor]") {
   const auto trajectory = planned(corners, with_reserve(mill, 0.05));
   for (const double bad : {std::nan(""), -1.0, -1e-3, std::numeric_limits<double>::infinity()})

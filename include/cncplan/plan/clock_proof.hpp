@@ -4,16 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <limits>
+#include <optional>
+#include <type_traits>
 
 #include "cncplan/core/in_space.hpp"
+#include "cncplan/core/interval.hpp"
 #include "cncplan/path/mapped.hpp"
 #include "cncplan/path/segment.hpp"
+#include "cncplan/plan/clock_ramp.hpp"
 #include "cncplan/plan/limits_along.hpp"
 #include "cncplan/plan/tool.hpp"
-#include "cncplan/plan/trajectory_chain.hpp"
 #include "cncplan/smooth/cubic.hpp"
-#include "cncplan/state/motion.hpp"
 
 namespace cncplan::plan {
 
@@ -52,9 +56,9 @@ inline constexpr bool third_of_tool_is_constant<path::Mapped<M, path::BasicLine<
 }  // namespace detail
 
 /// Whether a trajectory keeps the limits of a machine while the rate of its clock changes: those of
-/// acceleration and jerk, of the tool's vector and of each axis. (Velocities are no higher than planned, as
-/// the rate is 1 at most.) With the state s, v, a, j along the path by the clock, an interval of time is
-/// proven by what the axes do in its middle,
+/// acceleration and jerk, of the tool's vector and of each axis. Velocities are no higher than planned, as
+/// the rate is 1 at most: of a ramp along the path, that is proven too. With the state s, v, a, j along the
+/// path by the clock, an interval of time is proven by what the axes do in its middle,
 ///
 ///     q' a + q'' v^2     and     q' j + 3 q'' v a + q''' v^3,
 ///
@@ -64,6 +68,7 @@ class ClockProof {
  public:
   using S = typename M::Scalar;
   using Chain = TrajectoryChain<M, B>;
+  using Motion = state::BasicMotion<S>;
   static constexpr int n = M::axis_count;
 
   explicit ClockProof(const M& machine) : limits_(machine_limits(machine)), tool_(tool_axes(machine)) {}
@@ -72,32 +77,17 @@ class ClockProof {
 
   /// From the start of the motion of a clock to its end, or to where it shows `until`. It goes one way. Every
   /// interval that is looked at takes one from `work`: false too where nothing is left of it.
-  [[nodiscard]] bool holds(const Chain& chain, const state::BasicMotion<S>& clock, bool backwards, S until,
+  [[nodiscard]] bool holds(const Chain& chain, const Motion& clock, bool backwards, S until,
                            int& work) const {
-    const S sense = backwards ? S(-1) : S(1);
-    std::size_t now = chain.phase_at(clock.start().position);
-    BasicAxisState<S> from = clock.start();
-    for (const BasicJerkPhase<S>& part : clock.phases()) {
-      const BasicPhase<S> way{S(0),
-                              part.duration,
-                              S(0),
-                              std::max(S(0), sense * from.velocity),
-                              sense * part.acceleration,
-                              sense * part.jerk};
-      for (S t = S(0); t < part.duration;) {
-        const Interval in{chain.phase(now), chain.path(now), from, part};
-        const BasicPhase<S>& phase = in.phase;
-        const S end = backwards ? std::max(phase.time, until) : std::min(phase.time + phase.duration, until);
-        const S to = std::clamp(way.tau_at(sense * (end - from.position)), t, part.duration);
-        if (to > t && !keeps(in, t, to, 0, work)) return false;
-        t = to;
-        if (t >= part.duration) break;
-        if (end == until || (backwards ? now == chain.first_phase() : now == chain.last_phase())) return true;
-        backwards ? --now : ++now;
-      }
-      from = part.after(from, part.duration);
-    }
-    return true;
+    const std::size_t last = backwards ? chain.first_phase() : chain.last_phase();
+    return holds(chain, chain, chain.phase_at(clock.start().position), last, clock, backwards, until, work);
+  }
+  /// A brake along the path, from so many mm behind the start of a phase, to rest before the end of the phase
+  /// `last`.
+  [[nodiscard]] bool brakes(const Chain& chain, const Motion& brake, std::size_t phase, std::size_t last,
+                            int& work) const {
+    constexpr S nowhere = std::numeric_limits<S>::infinity();
+    return holds(chain, PhasesByLength<M, B>(chain, phase, S(0)), phase, last, brake, false, nowhere, work);
   }
 
  private:
@@ -107,9 +97,42 @@ class ClockProof {
 
   enum class Answer { yes, no, unknown };
 
-  // One phase of a trajectory under one part of a clock's motion.
+  // Phases by time, or by length: then what comes to the end of the last one does not brake in time.
+  template <class Phases>
+  [[nodiscard]] bool holds(const Chain& chain, Phases&& phases, std::size_t now, std::size_t last,
+                           const Motion& clock, bool backwards, S until, int& work) const {
+    constexpr bool by_time = std::same_as<std::remove_cvref_t<Phases>, Chain>;
+    const S sense = backwards ? S(-1) : S(1);
+    BasicAxisState<S> from = clock.start();
+    for (const BasicJerkPhase<S>& part : clock.phases()) {
+      const BasicPhase<S> way{S(0),
+                              part.duration,
+                              S(0),
+                              std::max(S(0), sense * from.velocity),
+                              sense * part.acceleration,
+                              sense * part.jerk};
+      for (S t = S(0); t < part.duration;) {
+        std::optional<BasicPhase<S>> planned;
+        if (!by_time) planned = chain.phase(now);
+        const Interval in{phases.phase(now), planned, chain.path(now), from, part};
+        const BasicPhase<S>& phase = in.phase;
+        const S end = backwards ? std::max(phase.time, until) : std::min(phase.time + phase.duration, until);
+        const S to = std::clamp(way.tau_at(sense * (end - from.position)), t, part.duration);
+        if (to > t && !keeps(in, t, to, 0, work)) return false;
+        t = to;
+        if (t >= part.duration) break;
+        if (end == until || now == last) return by_time;
+        backwards ? --now : ++now;
+      }
+      from = part.after(from, part.duration);
+    }
+    return true;
+  }
+
+  // One phase of a trajectory under one part of a clock's motion; `planned` where that is one along the path.
   struct Interval {
     BasicPhase<S> phase;
+    std::optional<BasicPhase<S>> planned;
     typename Chain::DrivenPath path;
     const BasicAxisState<S>& from;
     const BasicJerkPhase<S>& part;
@@ -117,12 +140,48 @@ class ClockProof {
 
   [[nodiscard]] bool keeps(const Interval& in, S low, S high, int depth, int& work) const {
     if (--work < 0) return false;
-    const Answer answer =
+    Answer answer =
         in.path.visit([&](const auto& path) { return look(path, in.phase, in.from, in.part, low, high); });
+    if (answer == Answer::yes && in.planned && !no_faster(in, *in.planned, low, high))
+      answer = Answer::unknown;
     if (answer != Answer::unknown) return answer == Answer::yes;
     if (depth == deepest) return false;
     const S middle = low + (high - low) / S(2);
     return keeps(in, low, middle, depth + 1, work) && keeps(in, middle, high, depth + 1, work);
+  }
+
+  // Whether a motion along the path is nowhere faster than planned: whether the rate of a clock that shows
+  // the planned time is 1 at most, by its Taylor series with a bound of the second derivative.
+  [[nodiscard]] bool no_faster(const Interval& in, const BasicPhase<S>& planned, S low, S high) const {
+    using Range = BasicInterval<S>;
+    const BasicAxisState<S> first = in.part.after(in.from, low), last = in.part.after(in.from, high);
+    const auto tau_at = [&](S place) {
+      return std::clamp(planned.tau_at(planned.position + (place - in.phase.time)), S(0), planned.duration);
+    };
+    const S from = tau_at(first.position), to = std::max(tau_at(last.position), from);
+    const BasicState<S> before = planned.at(from), behind = planned.at(to);
+    const Range speed = speeds(before.velocity, before.acceleration, planned.jerk, to - from);
+    if (!(speed.low > S(0))) return false;
+    const Range own = speeds(first.velocity, first.acceleration, in.part.jerk, high - low);
+    const Range rate(std::max(own.low, S(0)) / speed.high, own.high / speed.low);
+    if (rate.high <= S(1)) return true;
+    const Range acceleration = Range::hull(before.acceleration, behind.acceleration);
+    const Range change =
+        (Range::hull(first.acceleration, last.acceleration) - acceleration * rate * rate) / speed;
+    const Range second = (Range(in.part.jerk) - Range(planned.jerk) * rate * rate * rate -
+                          Range(3) * acceleration * rate * change) /
+                         speed;
+    const BasicState<S> clock = ClockRamp<M, B>::clock_of(
+        {first.position, first.velocity, first.acceleration, in.part.jerk}, before, S(0));
+    return speeds(clock.velocity, clock.acceleration, second.high, high - low).high <= rounding;
+  }
+  // Those that are passed in a time, at a constant jerk.
+  [[nodiscard]] static BasicInterval<S> speeds(S velocity, S acceleration, S jerk, S time) {
+    const auto at = [&](S t) { return velocity + t * (acceleration + t * jerk / S(2)); };
+    BasicInterval<S> range = BasicInterval<S>::hull(velocity, at(time));
+    const S turn = jerk != S(0) ? -acceleration / jerk : S(0);
+    if (turn > S(0) && turn < time) range = BasicInterval<S>::hull(range.low, range.high, at(turn));
+    return range;
   }
 
   // One interval of time, within one phase.

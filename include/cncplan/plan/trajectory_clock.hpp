@@ -10,6 +10,7 @@
 
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/plan/clock_proof.hpp"
+#include "cncplan/plan/clock_ramp.hpp"
 #include "cncplan/plan/trajectory_chain.hpp"
 #include "cncplan/state/velocity_change.hpp"
 
@@ -20,7 +21,8 @@ namespace cncplan::plan {
 ///
 /// A change of the rate is begun only once it is proven over all of its way (`ClockProof`). Each step looks
 /// for such a change, fast ones first, and for a faster one while one goes on. Where none is proven, the
-/// clock goes on as it does, which keeps the limits because the trajectories do.
+/// clock goes on as it does, which keeps the limits because the trajectories do. To rest it also looks for
+/// brakes along the path, which begin as hard as the place allows: what is planned there no longer counts.
 template <MachineModel M, BlockModel B>
 class TrajectoryClock {
  public:
@@ -28,6 +30,7 @@ class TrajectoryClock {
   using Chain = TrajectoryChain<M, B>;
   using Rest = BasicRest<S>;
   using Motion = state::BasicMotion<S>;
+  using Ramp = ClockRamp<M, B>;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
 
@@ -42,7 +45,7 @@ class TrajectoryClock {
 
   /// Whether the axes stand; at a rest of the trajectories, or by the rate.
   [[nodiscard]] bool rests() const {
-    return standing_ || (ramp_.end().velocity == S(0) && ramp_.duration() <= elapsed_);
+    return standing_ || (ramp_.ends_at_rest() && ramp_.duration() <= elapsed_);
   }
   /// Whether they stand at a rest of the trajectories.
   [[nodiscard]] bool standing() const { return standing_; }
@@ -53,34 +56,16 @@ class TrajectoryClock {
   /// When it comes to the next rest of the trajectories, forwards.
   [[nodiscard]] S next_rest() const { return standing_ ? rest_.from : high_.from; }
   /// Whether it runs back.
-  [[nodiscard]] bool heads_back() const {
-    return !standing_ && (ramp_.start().velocity < S(0) || ramp_.end().velocity < S(0));
-  }
-  /// How far a change of the rate leads that goes on; no farther than now where there is none.
-  [[nodiscard]] S reach() const {
-    return standing_ || elapsed_ >= ramp_.duration() ? state().position : ramp_.end().position;
-  }
-
+  [[nodiscard]] bool heads_back() const { return !standing_ && ramp_.runs_back(); }
   /// What it shows, s, and how it runs: its rate, 1/s and 1/s^2.
   [[nodiscard]] BasicState<S> state() const { return state_after(S(0)); }
   /// The same in some seconds, if nothing is asked for and no rest is come to.
   [[nodiscard]] BasicState<S> state_after(S seconds) const {
     if (standing_) return {shown_, S(0), S(0), S(0)};
-    return state_of(ramp_, elapsed_ + seconds);
-  }
-  /// By a change of the rate, some seconds after it began.
-  [[nodiscard]] static BasicState<S> state_of(const Motion& ramp, S elapsed) {
-    const BasicAxisState<S> now = ramp.at(elapsed);
-    S second{}, left = elapsed;
-    for (const auto& phase : ramp.phases()) {
-      second = left < phase.duration ? phase.jerk : S(0);
-      if (left < phase.duration) break;
-      left -= phase.duration;
-    }
-    return {now.position, now.velocity, now.acceleration, second};
+    return ramp_.at(chain_, elapsed_ + seconds);
   }
   /// The change that goes on, and for how long it has.
-  [[nodiscard]] const Motion& ramp() const { return ramp_; }
+  [[nodiscard]] const Ramp& ramp() const { return ramp_; }
   [[nodiscard]] S elapsed() const { return elapsed_; }
 
   /// The axes stand at a time of the chain's where it begins or ends at rest.
@@ -117,42 +102,42 @@ class TrajectoryClock {
 
   /// One step: dwells, leaves a rest, or drives on to the next one, at most for `left` seconds; whether more
   /// may happen in what is left of them. `wanted()` is the rate that is asked for, `may_leave()` is asked at
-  /// rests, and `may_change(ramp)` before a change of the rate begins.
+  /// rests, and `may_change(end)` before a change of the rate begins that ends where the clock shows that.
   template <class Wanted, class MayLeave, class MayChange>
   bool step(S& left, Wanted&& wanted, MayLeave&& may_leave, MayChange&& may_change) {
     return standing_ ? leave(left, wanted, may_leave) : move(left, wanted(), may_change);
   }
 
-  /// s that a hold takes which is asked for where the clock shows a time behind a rest: that of a change that
-  /// is proven at once, or by what steps do.
+  /// s, no less than a hold takes which is asked for where the clock shows a time behind a rest: that of a
+  /// change that is proven at once, or where that is above half the longest, by what steps do.
   S time_to_hold(const Rest& rest, S shown, S longest) {
     run_at({shown, S(1), S(0)});
     low_ = rest;
     high_ = chain_.rest_after(shown).value_or(rest);
     asked_ = S(0);
     int work = levels * work_in_tick;
-    if (const auto motion = find_change(ramp_.start(), S(0), false, infinity, work))
-      return std::min(motion->duration(), high_.from - shown);
+    if (const auto ramp = find_change(state(), S(0), false, infinity, work))
+      if (const S time = std::min(ramp->duration(), high_.from - shown); time <= longest / S(2)) return time;
     search_from(S(1));
     S time{};
     while (!rests()) {
       const S tick = time < longest ? S(1e-3) : longest / S(100);
       S left = tick;
-      move(left, S(0), [](const Motion&) { return true; });
+      move(left, S(0), [](S) { return true; });
       time += tick - left;
     }
     return time;
   }
 
-  /// A change to rest that is proven and may begin now, fast ones first.
-  [[nodiscard]] std::optional<Motion> brake() {
+  /// What it shows where a change to rest ends that is proven and may begin now, fast ones first.
+  [[nodiscard]] std::optional<S> brake() {
     const int level = level_;
     level_ = 0;
     int work = work_in_tick;
-    const BasicAxisState<S> now = ramp_.at(elapsed_);
-    const auto motion = find_change(now, S(0), heads_back(), infinity, work);
+    const auto ramp = find_change(state(), S(0), heads_back(), infinity, work);
     level_ = level;
-    return motion;
+    if (!ramp) return std::nullopt;
+    return shown_at_end(*ramp);
   }
 
   /// The way ahead has changed: what is driven to is looked for anew.
@@ -167,7 +152,8 @@ class TrajectoryClock {
   using AxisState = BasicAxisState<S>;
 
   static constexpr int work_in_tick = 1000;  // intervals of proofs
-  static constexpr int levels = 32;          // of changes of the rate, each slower than the one before
+  // Of changes of the rate, each slower than the one before; ramps along the path come first.
+  static constexpr int shapes = 3, levels_along_path = 12 * shapes, levels = levels_along_path + 32;
   static constexpr int no_level = levels + 1;
   static constexpr S growth = S(1.2599210498948732);  // 2^(1/3)
   static constexpr S least_portion = S(0.1);
@@ -209,6 +195,7 @@ class TrajectoryClock {
   // Drives on to the next rest, or to the end of the time.
   template <class MayChange>
   bool move(S& left, S wanted, MayChange&& may_change) {
+    ramp_.go_on(chain_, elapsed_);
     change_rate(wanted, may_change);
     const bool back = heads_back();
     const S end = back ? low_.to : high_.from;
@@ -226,26 +213,21 @@ class TrajectoryClock {
 
   void run_at(const AxisState& state) {
     standing_ = false;
-    ramp_ = Motion(state, state);
+    ramp_ = Ramp(Motion(state, state));
     elapsed_ = S(0);
     goal_ = state.velocity;
     search_from(S(1));
   }
 
   // When the clock shows a time, from the ramp's start.
-  [[nodiscard]] S time_to(S shown) const {
-    const AxisState& end = ramp_.end();
-    if (heads_back() ? shown >= end.position : shown <= end.position)
-      if (const auto at = ramp_.time_at(shown)) return *at;
-    if (end.velocity == S(0)) return infinity;
-    return ramp_.duration() + (shown - end.position) / end.velocity;
-  }
+  [[nodiscard]] S time_to(S shown) const { return ramp_.time_to(chain_, shown).value_or(infinity); }
+  [[nodiscard]] S shown_at_end(const Ramp& ramp) const { return ramp.at(chain_, ramp.duration()).position; }
 
   // Looks for a change to the rate that is wanted, or for a faster one than the one that goes on. Where there
   // is none, for one that goes a part of the way: a slower clock leaves more of the limits.
   template <class MayChange>
   void change_rate(S wanted, MayChange&& may_change) {
-    const AxisState now = ramp_.at(elapsed_);
+    const BasicState<S> now = state();
     S goal = wanted;
     if (goal * now.velocity < S(0)) goal = S(0);
     const bool changes = elapsed_ < ramp_.duration();
@@ -256,14 +238,14 @@ class TrajectoryClock {
     const S sooner = goal == goal_ ? S(0.99) * (ramp_.duration() - elapsed_) : infinity;
     const S to = now.velocity + portion_ * (goal - now.velocity);
     int work = work_in_tick;
-    const auto motion = find_change(now, to, back, sooner, work);
-    if (motion && !may_change(*motion)) return search_from(S(1));
-    if (motion) {
-      ramp_ = *motion;
+    const auto ramp = find_change(now, to, back, sooner, work);
+    if (ramp && !may_change(shown_at_end(*ramp))) return search_from(S(1));
+    if (ramp) {
+      ramp_ = *ramp;
       elapsed_ = S(0);
       goal_ = to;
     }
-    if (motion || level_ == no_level) return search_from(S(1));
+    if (ramp || level_ == no_level) return search_from(S(1));
     if (level_ < levels) return;  // more in the next tick
     search_from(changes || portion_ < least_portion ? S(1) : portion_ / S(2));
   }
@@ -271,30 +253,85 @@ class TrajectoryClock {
   // The next change of the rate that is proven, from where the search stands: fast ones first. Nothing where
   // there is none, where all that are left take as long as `sooner` (the level is `no_level` then), or where
   // there is no work left: what is too much for all of it is passed over.
-  [[nodiscard]] std::optional<Motion> find_change(const AxisState& now, S to, bool back, S sooner,
-                                                  int& work) {
-    const S until = back ? low_.to : high_.from;
+  [[nodiscard]] std::optional<Ramp> find_change(const BasicState<S>& now, S to, bool back, S sooner,
+                                                int& work) {
+    const bool brakes = to == S(0) && !back && now.velocity > S(0);
+    const AlongPath along = brakes ? along_path(now) : AlongPath{};
+    if (!brakes && level_ < levels_along_path) level_ = levels_along_path;
     const BasicAxisLimits<S> fastest = fastest_change(now.position);
     const int all_work = work;
     for (; level_ < levels; ++level_) {
-      const S slower = std::pow(growth, static_cast<S>(level_));
-      BasicAxisLimits<S> limits = fastest;
-      limits.acceleration_up = limits.acceleration_down = fastest.acceleration_up / slower;
-      limits.jerk /= slower;
-      const Motion motion = Change(now, to, limits).fastest();
-      if (!(motion.duration() < sooner)) {
-        level_ = no_level;
-        return std::nullopt;
-      }
-      if (!one_way(motion, back)) continue;
       const bool whole = work == all_work;
-      if (proof().holds(chain_, motion, back, until, work)) return motion;
+      std::optional<Ramp> ramp;
+      if (level_ < levels_along_path) {
+        const Motion motion = Change(along.now, S(0), brake_limits(along.limits)).fastest();
+        if (motion.duration() < sooner && one_way(motion, false, infinity) &&
+            proof().brakes(chain_, motion, along.phase, along.last_phase, work))
+          ramp = Ramp(motion, along.phase);
+      } else {
+        const Motion motion = Change({now.position, now.velocity, now.acceleration}, to,
+                                     slower(fastest, level_ - levels_along_path, level_ - levels_along_path))
+                                  .fastest();
+        if (!(motion.duration() < sooner)) {
+          level_ = no_level;
+          return std::nullopt;
+        }
+        if (one_way(motion, back, S(1)) &&
+            proof().holds(chain_, motion, back, back ? low_.to : high_.from, work))
+          ramp = Ramp(motion);
+      }
+      if (ramp) return ramp;
       if (work < 0) {
         level_ += whole ? 1 : 0;
         return std::nullopt;
       }
     }
     return std::nullopt;
+  }
+
+  // The axes on their path, from the start of a phase; the last phase before the next rest; and the limits of
+  // a brake, if the path were straight.
+  struct AlongPath {
+    AxisState now{};
+    std::size_t phase{}, last_phase{};
+    BasicAxisLimits<S> limits;
+  };
+  [[nodiscard]] AlongPath along_path(const BasicState<S>& clock) const {
+    AlongPath result;
+    result.phase = chain_.phase_at(clock.position);
+    result.last_phase = chain_.phase_at(high_.from);
+    if (result.last_phase > result.phase && !(chain_.phase(result.last_phase).time < high_.from))
+      --result.last_phase;
+    const BasicPhase<S> planned = chain_.phase(result.phase);
+    const S tau = std::clamp(clock.position - planned.time, S(0), planned.duration);
+    const BasicState<S> now = by_clock(planned.at(tau), clock);
+    result.now = {now.position - planned.position, now.velocity, now.acceleration};
+    S acceleration = result.limits.acceleration_up, jerk = result.limits.jerk;
+    const auto lower = [&](S share, const BasicLimits<S>& own) {
+      acceleration = std::min(acceleration, own.acceleration / share);
+      jerk = std::min(jerk, own.jerk / share);
+    };
+    lower(S(1), proof().limits().tool);
+    if (now.velocity > S(0)) {
+      const auto velocity = chain_.at(clock).velocity;
+      for (const auto& [i, own] : proof().limits().axes) lower(std::abs(velocity[i]) / now.velocity, own);
+    }
+    result.limits.acceleration_up = result.limits.acceleration_down = acceleration;
+    result.limits.jerk = jerk;
+    return result;
+  }
+  // At a level of the search: less of both, of the jerk, or more of the jerk than of the acceleration.
+  [[nodiscard]] BasicAxisLimits<S> brake_limits(const BasicAxisLimits<S>& limits) const {
+    const int level = level_ / shapes;
+    constexpr std::array<int, shapes> halves{0, 2, 1};
+    return slower(limits, level, halves[static_cast<std::size_t>(level_ % shapes)] * level / 2);
+  }
+  [[nodiscard]] static BasicAxisLimits<S> slower(BasicAxisLimits<S> limits, int of_jerk,
+                                                 int of_acceleration) {
+    limits.acceleration_up /= std::pow(growth, static_cast<S>(of_acceleration));
+    limits.acceleration_down = limits.acceleration_up;
+    limits.jerk /= std::pow(growth, static_cast<S>(of_jerk));
+    return limits;
   }
   void search_from(S portion) {
     portion_ = portion;
@@ -320,11 +357,11 @@ class TrajectoryClock {
     return limits;
   }
 
-  // Whether the rate stays between 0 and the planned speed, in its direction.
-  [[nodiscard]] static bool one_way(const Motion& motion, bool back) {
+  // Whether the rate, or the speed, stays between 0 and the most, in its direction.
+  [[nodiscard]] static bool one_way(const Motion& motion, bool back, S most) {
     constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
     const auto within = [&](S rate) {
-      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= S(1) + rounding;
+      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= most + rounding;
     };
     AxisState state = motion.start();
     for (const auto& phase : motion.phases()) {
@@ -346,7 +383,7 @@ class TrajectoryClock {
   Rest rest_{}, low_{}, high_{};
   S shown_{};
   S dwell_{};
-  Motion ramp_;
+  Ramp ramp_;
   S elapsed_{};
   S goal_{};          // the ramp's
   S asked_{};         // the one that is looked for

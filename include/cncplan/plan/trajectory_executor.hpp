@@ -69,7 +69,7 @@ class TrajectoryExecutor {
 
   /// Why the trajectory does not run, or why it was stopped; nothing where all is well.
   [[nodiscard]] std::optional<RunError> error() const { return error_; }
-  /// s: the longest of the holds that were tried when this was made.
+  /// s: none of the holds that were tried when this was made takes longer.
   [[nodiscard]] Scalar worst_hold() const { return worst_hold_; }
 
   // Requests. They act at the next tick.

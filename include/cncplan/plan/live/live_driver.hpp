@@ -104,7 +104,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (dwells()) return clock_.dwell();
     if (clock_.rests()) return std::numeric_limits<S>::infinity();
     S left = clock_.elapsed();
-    for (const auto& phase : clock_.ramp().phases()) {
+    for (const auto& phase : clock_.ramp().motion().phases()) {
       if (left < phase.duration) return phase.duration - left;
       left -= phase.duration;
     }
@@ -165,7 +165,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     while (i + 1 < parts_.size() && seconds > parts_[i].start + parts_[i].duration) ++i;
     const Driven& part = parts_[i];
     const S within = std::clamp(seconds - part.start, S(0), part.duration);
-    const Point point = clock_.chain().at(Clock::state_of(part.ramp, part.elapsed + within));
+    const Point point = clock_.chain().at(part.ramp.at(clock_.chain(), part.elapsed + within));
     return {point.position, point.velocity, point.acceleration, point.jerk};
   }
 
@@ -183,7 +183,6 @@ class LiveDriver final : public LevelDriver<M, B> {
 
  private:
   using Clock = TrajectoryClock<M, B>;
-  using Motion = typename Clock::Motion;
   using Planner = PartPlanner<M, B>;
   using Clocked = typename Planner::Clocked;
   using Shares = BasicFeedShares<S>;
@@ -196,7 +195,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   // A part of a tick.
   struct Driven {
     S start{}, duration{};
-    Motion ramp;
+    typename Clock::Ramp ramp;
     S elapsed{};
   };
   // A part that is in the chain.
@@ -317,7 +316,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     const bool stood = clock_.standing();
     const bool goes_on = clock_.step(
         left, [this] { return wanted(); }, [&] { return may_leave(period - left); },
-        [this](const Motion& ramp) { return may_change(ramp); });
+        [this](S end) { return may_change(end); });
     tell_words(period - left);
     const S used = before - left;
     if (!stood && used > S(0) &&
@@ -328,7 +327,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
 
   // A change of the rate that leads beyond a cut is one along the tail.
-  bool may_change(const Motion& ramp) { return !tail_ahead_ || !(ramp.end().position > cut_) || take_tail(); }
+  bool may_change(S end) { return !tail_ahead_ || !(end > cut_) || take_tail(); }
   bool may_leave(S in_tick) {
     if (!tell_words(in_tick)) return false;
     if (!held_ && pauses())
@@ -349,7 +348,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     const auto pause = next_pause();
     if (!pause || clock_.next_rest() <= *pause + same_time) return;
     const auto brake = clock_.brake();
-    if (brake && brake->end().position + S(1.5) * period * clock_.state().velocity >= *pause) hold_at(*pause);
+    if (brake && *brake + S(1.5) * period * clock_.state().velocity >= *pause) hold_at(*pause);
   }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
