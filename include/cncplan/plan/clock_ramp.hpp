@@ -128,13 +128,7 @@ class ClockRamp {
  private:
   [[nodiscard]] BasicState<S> motion_at(S elapsed) const {
     const BasicAxisState<S> now = motion_.at(elapsed);
-    S third{}, left = elapsed;
-    for (const auto& phase : motion_.phases()) {
-      third = left < phase.duration ? phase.jerk : S(0);
-      if (left < phase.duration) break;
-      left -= phase.duration;
-    }
-    return {now.position, now.velocity, now.acceleration, third};
+    return {now.position, now.velocity, now.acceleration, motion_.jerk_at(elapsed)};
   }
 
   Motion motion_;

@@ -53,6 +53,7 @@ class ExecutorCore {
   /// The axes over a part of a tick, by time.
   using Part = AxisPart<M, B>;
   using JogSpeed = BasicJogSpeed<Scalar, M::axis_count>;
+  using Coordinates = typename Jog<M>::Coordinates;
   using Core = ExecutorCore;
 
   /// A machine or options that `validate` refuses are told by `error`.
@@ -163,6 +164,23 @@ class ExecutorCore {
   /// The axes go so much further: from where a jog to positions goes, or else from where they are now.
   /// Errors as for `jog_to`.
   [[nodiscard]] Expected<void> jog_by(const Vector& increments, const JogSpeed& speed = {});
+  /// Behind a map with an inverse: the tool goes straight to a point in the program's coordinates, mm and
+  /// rad, within the limits of the tool's vector and of every joint. Coordinates are those of the block where
+  /// the program stands: of a map that is switched off, the axes'; so they are before anything has moved.
+  /// Increments are from where such a jog goes, or else from where the tool is now. While it moves, a point
+  /// straight on is gone to without a stop where limits allow; else the tool, or joints that move, come to
+  /// rest first. Errors: those of `validate` for the speed, and of `plan::ToolJog::line`; as for `jog`.
+  [[nodiscard]] Expected<void> jog_tool_to(const Coordinates& point,
+                                           const JogSpeed& speed = {}) requires ToolJogModel<M> {
+    if (auto ok = begin_jog(); !ok) return ok;
+    return jogged(jog_.tool_to(last_.position, point, machine_, speed), false);
+  }
+  [[nodiscard]] Expected<void> jog_tool_by(const Coordinates& increments,
+                                           const JogSpeed& speed = {}) requires ToolJogModel<M> {
+    if (auto ok = begin_jog(); !ok) return ok;  // says where the axes stand
+    const auto from = jog_.tool().target();
+    return jog_tool_to((from ? *from : jog_.tool().coordinates(last_.position)) + increments, speed);
+  }
   /// The axes go back to where the program was left. `resume` does this too. Errors as for `jog_to`.
   [[nodiscard]] Expected<void> return_to_path();
 
@@ -237,26 +255,16 @@ class ExecutorCore {
     last_.tool = feed_.start().tool;
   }
 
-  void tell_tool_of_axes() { last_.tool = tool_of_axes(machine_, last_.position, tool_); }
+  void tell_tool_of_axes() { last_.tool = jog_.tool().tool(machine_, last_.position, tool_); }
 
-  Expected<void> begin_jog() {
-    if (auto ok = validate(machine_); !ok) return ok;
-    if (!placed_) stand_at_start();
-    if (away_ || (drive([](auto& driver) { return driver.rests(); }) && !begins())) return {};
-    return refusal(ErrorCode::unfinished, "line", static_cast<Scalar>(last_.line));
-  }
+  Expected<void> begin_jog();
   // Whether a program is there whose first blocks ticks, or `plan`, have yet to cut.
   [[nodiscard]] bool begins() const {
     if (level_ != nullptr) return level_->begins();
     return ended_.load(std::memory_order_acquire) && feed_.ready() < end_.load() && !feed_.failed() &&
            !player_.held() && !player_.stopped();
   }
-  Expected<void> jogged(const Expected<void>& done, bool returns) {
-    away_ = away_ || done.has_value();
-    placed_ = placed_ || away_;
-    if (done) returns_ = returns, goes_back_ = false;
-    return done;
-  }
+  Expected<void> jogged(const Expected<void>& done, bool returns);
   void end_jog(Scalar share) {
     jog_.to_rest(machine_, share);
     goes_back_ = false;
@@ -328,7 +336,8 @@ ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& ma
       feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
             {options.tolerance, options.rotary_tolerance, options.exact_between_rapids_and_feeds},
             memory.feed),
-      player_(memory.player, capacity_) {
+      player_(memory.player, capacity_),
+      jog_(machine) {
   player_.program_stop(true);
 }
 
@@ -376,32 +385,6 @@ std::optional<RunError> ExecutorCore<M, B>::error() const {
   if (feed_.failed()) return RunError{feed_.fault()};
   if (failed_.load(std::memory_order_acquire)) return RunError{{fault_, 0, 0, {}}};
   return std::nullopt;
-}
-
-template <MachineModel M, BlockModel B>
-Expected<void> ExecutorCore<M, B>::jog(const Vector& velocities) {
-  if (auto ok = begin_jog(); !ok) return ok;
-  return jogged(jog_.to_velocities(last_.position, velocities, machine_), false);
-}
-
-template <MachineModel M, BlockModel B>
-Expected<void> ExecutorCore<M, B>::jog_to(const Vector& positions, const JogSpeed& speed) {
-  if (auto ok = begin_jog(); !ok) return ok;
-  return jogged(jog_.to_positions(last_.position, positions, machine_, speed), false);
-}
-
-template <MachineModel M, BlockModel B>
-Expected<void> ExecutorCore<M, B>::jog_by(const Vector& increments, const JogSpeed& speed) {
-  if (auto ok = begin_jog(); !ok) return ok;  // says where the axes stand
-  return jog_to(jog_.target().value_or(last_.position) + increments, speed);
-}
-
-template <MachineModel M, BlockModel B>
-Expected<void> ExecutorCore<M, B>::return_to_path() {
-  if (!away_ || !find_path()) return {};
-  const auto done = jogged(jog_.to_positions(last_.position, path_place_, machine_), returns_);
-  goes_back_ = done.has_value();
-  return done;
 }
 
 template <MachineModel M, BlockModel B>
@@ -494,23 +477,6 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
   return last_;
 }
 
-// Where the program goes on: on the blocks that it has, or where it was left if those have been let go. False
-// while it has none and has not run.
-template <MachineModel M, BlockModel B>
-bool ExecutorCore<M, B>::find_path() {
-  if (level_ != nullptr) {
-    const auto place = level_->place();
-    if (place) path_place_ = *place;
-    return place.has_value();
-  }
-  const BasicPlayed<Scalar> now = player_.place();
-  if (now.block < 0) return has_run_;
-  const Cell& cell = player_[now.block];
-  const auto path = feed_.path(cell.block);
-  path_place_ = path.position_at(std::clamp(cell.from + now.along, Scalar(0), path.length()));
-  return true;
-}
-
 template <MachineModel M, BlockModel B>
 BasicPlayed<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Tell* tell) {
   if (!words_.begin_tick(feed_) && tell == nullptr) return player_.tick(period);
@@ -526,33 +492,11 @@ template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::tick_of_level(Scalar period, const Tell* tell) -> SetPoint {
   level_->advance(period, last_);
   if (const auto place = level_->place()) path_place_ = *place;
+  if constexpr (ToolJogModel<M>)
+    if (const B* block = level_->block()) jog_.tool().stand_on(block->path);
   has_run_ = has_run_ || !level_->stands();
   if (tell == nullptr) return last_;
   for (std::size_t i = 0; i < level_->part_count(); ++i) (*tell)(Part(*level_, level_->part(i)));
-  return last_;
-}
-
-template <MachineModel M, BlockModel B>
-auto ExecutorCore<M, B>::tick_of_jog(Scalar period, const Tell* tell) -> SetPoint {
-  const bool goes_on =
-      returns_ && drive([](const auto& driver) { return !driver.held() && !driver.stopped(); });
-  if (goes_on && !(jog_.moves() && goes_back_) && !return_to_path()) returns_ = false;
-  if (jog_.moves()) {
-    const bool rests = jog_.advance(period);
-    const AxisMotion<Vector> axes = jog_.at(Scalar(0));
-    last_.position = axes.position;
-    last_.velocity = axes.velocity;
-    last_.acceleration = axes.acceleration;
-    last_.jerk = axes.jerk;
-    tell_tool_of_axes();
-    if (tell != nullptr) (*tell)(Part(jog_, period));
-    if (rests) stand_at(axes.position);
-  }
-  constexpr Scalar rounding = std::max(Scalar(1e-9), 64 * std::numeric_limits<Scalar>::epsilon());
-  if (!jog_.moves() && find_path() &&
-      (last_.position - path_place_).cwiseAbs().maxCoeff() <=
-          rounding * (1 + path_place_.cwiseAbs().maxCoeff()))
-    away_ = returns_ = false;
   return last_;
 }
 
@@ -573,6 +517,7 @@ void ExecutorCore<M, B>::evaluate(const Cell& cell, const BasicPlayed<Scalar>& n
   last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
   last_.feed = programmed_feed(block);
   path_place_ = axes.position;
+  if constexpr (ToolJogModel<M>) jog_.tool().stand_on(block.path);
   has_run_ = true;
 }
 
@@ -590,3 +535,5 @@ void ExecutorCore<M, B>::release() {
 }  // namespace plan
 
 }  // namespace cncplan
+
+#include "cncplan/plan/executor_jogs-inl.hpp"

@@ -15,6 +15,7 @@
 #include "cncplan/path/switched.hpp"
 #include "cncplan/plan/follow_turns.hpp"
 #include "cncplan/plan/machine.hpp"
+#include "cncplan/plan/tool.hpp"
 
 namespace cncplan::plan {
 
@@ -50,15 +51,24 @@ template <std::floating_point S>
   return std::isfinite(more) ? angle + more : angle;
 }
 
-/// A feed move of the tool, from where the joints stand. Errors: those of `follow_turns`.
-template <MappedModel M, Path P, class Start>
+/// A feed move of the tool behind the map of a block; `axes`: where the joints stand, if that is known.
+/// Errors: those of `follow_turns`.
+template <MappedModel M, Path P>
 [[nodiscard]] Expected<path::Mapped<path::BlockMap<MapOf<M>>, P>> mapped_path(
-    const M& machine, const P& programmed, const std::optional<double>& tool_point, const Start& start) {
+    const M& machine, const path::BlockMap<MapOf<M>>& map, const P& programmed,
+    const std::optional<VectorN<typename M::Scalar, M::axis_count>>& axes) {
   using Mapped = path::Mapped<path::BlockMap<MapOf<M>>, P>;
-  const Mapped path(block_map(machine, tool_point), programmed);
-  if (path::switchable<MapOf<M>> && !tool_point) return path;
-  return follow_turns(path, machine, free_joints(machine, programmed.start()), start.axes)
-      .map([&](const auto& turns) { return Mapped(path.map(), programmed, turns); });
+  const Mapped path(map, programmed);
+  if (is_direct(path)) return path;
+  return follow_turns(path, machine, free_joints(machine, programmed.start()), axes)
+      .map([&](const auto& turns) { return Mapped(map, programmed, turns); });
+}
+
+/// The same where a motion begins.
+template <MappedModel M, Path P, class Start>
+[[nodiscard]] auto mapped_path(const M& machine, const P& programmed, const std::optional<double>& tool_point,
+                               const Start& start) {
+  return mapped_path(machine, block_map(machine, tool_point), programmed, start.axes);
 }
 
 /// No motion, where a motion begins.

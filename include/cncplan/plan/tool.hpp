@@ -39,6 +39,17 @@ template <Path P>
   }
 }
 
+/// The coordinates at which joints stand, by the inverse of a map.
+template <path::InvertibleMap Map>
+[[nodiscard]] VectorN<typename Map::Scalar, path::coordinate_count<Map>> coordinates_at(
+    const Map& map, const VectorN<typename Map::Scalar, static_cast<int>(Map::axis_count)>& position) {
+  using S = typename Map::Scalar;
+  path::MapJoints<Map, S> joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = position[static_cast<Eigen::Index>(i)];
+  const auto point = map.point(joints);
+  return Eigen::Map<const VectorN<S, path::coordinate_count<Map>>>(point.data());
+}
+
 /// Where the tool is while the axes stand at a place, whatever path they are on: the axes X Y Z, or of a map
 /// what its inverse says. Not numbers where the map has none.
 template <MachineModel M>
@@ -46,19 +57,12 @@ template <MachineModel M>
     const M& machine, const VectorN<typename M::Scalar, M::axis_count>& position,
     const std::array<int, 3>& tool) {
   using S = typename M::Scalar;
-  if constexpr (!MappedModel<M>) {
+  if constexpr (!MappedModel<M>)
     return in_space(position, tool);
-  } else if constexpr (path::InvertibleMap<MapOf<M>>) {
-    using Map = MapOf<M>;
-    path::MapJoints<Map, S> joints;
-    for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = position[static_cast<Eigen::Index>(i)];
-    const auto point = machine.map.point(joints);
-    return in_space(VectorN<S, path::coordinate_count<Map>>(
-                        Eigen::Map<const VectorN<S, path::coordinate_count<Map>>>(point.data())),
-                    path::coordinates_in_space<Map>);
-  } else {
+  else if constexpr (path::InvertibleMap<MapOf<M>>)
+    return in_space(coordinates_at(machine.map, position), path::coordinates_in_space<MapOf<M>>);
+  else
     return BasicVector3<S>::Constant(std::numeric_limits<S>::quiet_NaN());
-  }
 }
 
 /// Whether the coordinates of a path are those of the axes though the machine has a map: the program has

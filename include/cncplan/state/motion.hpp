@@ -84,6 +84,15 @@ class BasicMotion {
     return end_;
   }
 
+  /// From t on; none before the start is asked for, and behind the end there is none.
+  [[nodiscard]] constexpr S jerk_at(S t) const {
+    for (const Phase& phase : phases()) {
+      if (t < phase.duration) return phase.jerk;
+      t -= phase.duration;
+    }
+    return S(0);
+  }
+
   struct Extrema {
     S lowest{};
     S highest{};

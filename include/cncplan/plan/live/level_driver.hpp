@@ -74,6 +74,8 @@ class LevelDriver {
   [[nodiscard]] virtual gcode::Diagnostic fault() const = 0;
   /// Where the program goes on; nothing while it has no block.
   [[nodiscard]] virtual std::optional<Vector> place() const = 0;
+  /// The block that it is at; none while none is planned.
+  [[nodiscard]] virtual const B* block() const = 0;
 
   /// Blocks that wait go on without those that do not come; without a thread of its own, plans.
   virtual void look(S period) = 0;

@@ -129,6 +129,9 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (planner_.pushed() == 0) return std::nullopt;
     return planner_.start();
   }
+  [[nodiscard]] const B* block() const override {
+    return clock_.chain().empty() ? nullptr : &clock_.chain().block_at(clock_.state().position);
+  }
 
   void look(S period) override {
     take_parts();

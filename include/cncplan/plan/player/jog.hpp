@@ -4,43 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <optional>
 
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/plan/move_to.hpp"
+#include "cncplan/plan/player/jog_speed.hpp"
+#include "cncplan/plan/player/tool_jog.hpp"
 #include "cncplan/plan/tool.hpp"
 
 namespace cncplan {
 
-/// How fast a jog to a place may be, where that is slower than the machine's limits.
-template <std::floating_point S, int N>
-struct BasicJogSpeed {
-  static constexpr S infinity = std::numeric_limits<S>::infinity();
-
-  VectorN<S, N> axes = VectorN<S, N>::Constant(infinity);  ///< of each, mm/s and rad/s; > 0
-  S tool = infinity;  ///< mm/s, of X, Y and Z together; > 0. From rest they go straight then
-};
-
-template <int N>
-using JogSpeed = BasicJogSpeed<double, N>;
-
-/// Nothing, or the first speed that is none.
-template <std::floating_point S, int N>
-[[nodiscard]] Expected<void> validate(const BasicJogSpeed<S, N>& speed) {
-  for (int i = 0; i <= N; ++i) {
-    const S own = i < N ? speed.axes[i] : speed.tool;
-    if (std::isnan(own)) return refusal(ErrorCode::not_finite, "speed of a jog", own);
-    if (!(own > S(0))) return refusal(ErrorCode::not_positive, "speed of a jog", own);
-  }
-  return {};
-}
-
 namespace plan {
 
-/// A machine's axes in a motion of their own, each within its limits, from one request to the next.
+/// A machine's axes in a motion of their own, each within its limits, from one request to the next; behind a
+/// map also the tool's.
 template <MachineModel M>
 class Jog {
  public:
@@ -48,6 +27,9 @@ class Jog {
   using States = BasicAxisStates<Scalar, M::axis_count>;
   using Vector = VectorN<Scalar, M::axis_count>;
   using Speed = BasicJogSpeed<Scalar, M::axis_count>;
+  using Coordinates = VectorN<Scalar, program_coordinates<M>>;
+
+  explicit Jog(const M& machine) : tool_(machine) {}
 
   /// Begins to come to velocities, from where the axes are and as they move; from rest at `place` where they
   /// are at rest. Errors: those of `reach_velocity`.
@@ -71,11 +53,32 @@ class Jog {
     target_ = positions;
     return {};
   }
+  /// The tool begins to go straight to a point in the program's coordinates, or comes to rest first and goes
+  /// then; joints that move come to rest. Errors: those of `validate` for the speed, and of `ToolJog::line`.
+  Expected<void> tool_to(const Vector& place, const Coordinates& point, const M& machine,
+                         const Speed& speed) requires ToolJogModel<M> {
+    if (auto ok = validate(speed); !ok) return ok;
+    if (!moves_) return tool_.to(machine, place, point, speed);
+    const Expected<Moved> rest =
+        brakes_ > Scalar(0) ? move_ : reach_velocity(move_.state(), typename States::Row{}, machine);
+    if (!rest) return tl::unexpected(rest.error());
+    const auto line = tool_.line(machine, vector(rest->at(rest->duration()).position), point, speed);
+    if (!line) return tl::unexpected(line.error());
+    const Scalar share = std::max(brakes_, Scalar(1));
+    follow(rest);
+    brakes_ = share;
+    tool_.wait_with(*line);
+    return {};
+  }
+  /// What is behind it: where the tool is and goes, and which block the axes are on.
+  [[nodiscard]] ToolJog<M>& tool() { return tool_; }
+  [[nodiscard]] const ToolJog<M>& tool() const { return tool_; }
   /// Where it goes, while it goes to positions.
   [[nodiscard]] std::optional<Vector> target() const { return moves_ ? target_ : std::nullopt; }
   /// Begins to come to rest with so many times the limits of acceleration and jerk, where it does not brake
   /// as hard already.
   void to_rest(const M& machine, Scalar share) {
+    tool_.to_rest(share);
     if (!moves_ || share <= brakes_) return;
     Axes stronger{machine.axes};
     for (auto& axis : stronger.axes) {
@@ -86,34 +89,32 @@ class Jog {
     if (follow(reach_velocity(move_.state(), typename States::Row{}, stronger))) brakes_ = share;
   }
 
-  [[nodiscard]] bool moves() const { return moves_; }
+  [[nodiscard]] bool moves() const { return moves_ || tool_.moves() || tool_.waits(); }
 
   /// The axes `seconds` from now, only while they move. Jerks are those from then on.
   [[nodiscard]] AxisMotion<Vector> at(Scalar seconds) const {
+    if (tool_.drives()) return tool_.at(seconds);
     const Scalar time = move_.time() + seconds;
     const States states = move_.at(time);
     AxisMotion<Vector> result{vector(states.position), vector(states.velocity), vector(states.acceleration),
                               Vector::Zero()};
-    for (std::size_t i = 0; i < states.position.size(); ++i) {
-      Scalar left = time;
-      for (const auto& phase : move_.axis(i).phases()) {
-        if (left < phase.duration) {
-          result.jerk[static_cast<Eigen::Index>(i)] = phase.jerk;
-          break;
-        }
-        left -= phase.duration;
-      }
-    }
+    for (std::size_t i = 0; i < states.position.size(); ++i)
+      result.jerk[static_cast<Eigen::Index>(i)] = move_.axis(i).jerk_at(time);
     return result;
   }
 
   /// Moves on; whether the axes have come to rest.
   bool advance(Scalar seconds) {
+    if (!moves_ && !tool_.moves()) tool_.begin_next();
+    if (tool_.drives()) {
+      tool_.advance(seconds);
+      return !moves();
+    }
     move_.advance(seconds);
     const States states = move_.state();
     moves_ = !move_.finished() || states.velocity != typename States::Row{} ||
              states.acceleration != typename States::Row{};
-    return !moves_;
+    return !moves();
   }
 
  private:
@@ -150,6 +151,10 @@ class Jog {
   static Vector vector(const typename States::Row& row) { return Eigen::Map<const Vector>(row.data()); }
 
   [[nodiscard]] States now(const Vector& place) const {
+    if (tool_.moves()) {
+      const AxisMotion<Vector> axes = tool_.at(Scalar(0));
+      return {row(axes.position), row(axes.velocity), row(axes.acceleration)};
+    }
     return moves_ ? move_.state() : States{.position = row(place)};
   }
 
@@ -157,11 +162,13 @@ class Jog {
     if (!move) return tl::unexpected(move.error());
     move_ = *move;
     moves_ = true;
+    tool_.clear();
     target_.reset();
     brakes_ = Scalar(0);
     return {};
   }
 
+  [[no_unique_address]] ToolJog<M> tool_;
   Moved move_{};
   bool moves_ = false;
   std::optional<Vector> target_;
