@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cncplan/plan/block_reader.hpp"
@@ -238,6 +239,102 @@ void jog_amid_program(Runner& runner) {
   for (int i = 0; i < 100'000 && !runner.finished(); ++i) jog.tick();
   CHECK(runner.finished());
   CHECK_FALSE(runner.error());
+  CHECK((jog.joints() - blocks.back().path.end()).norm() < 1e-9);
+  jog.check();
+}
+
+/// Joints jogged in the same place: at velocities, to positions, by increments that add up, and back.
+template <class Case, class Runner>
+void jog_joints_amid_program(Runner& runner) {
+  const auto blocks = blocks_from(Case::text(), Case::machine(), Case::options());
+  ToolJogRun<Case, Runner> jog(runner);
+  using Joints = typename ToolJogRun<Case, Runner>::Joints;
+  for (const auto& block : blocks) REQUIRE(runner.push(block));
+  runner.end_of_program();
+  jog.run(Case::hold_after);
+  CHECK(runner.jog_to(jog.joints()).error().code == ErrorCode::unfinished);
+  runner.feed_hold();
+  jog.run(1.0);
+  const Joints held = jog.joints();
+  const auto machine = Case::machine();
+  Joints step, fast;
+  for (int i = 0; i < step.size(); ++i) {
+    step[i] = 0.04 * machine.axes[static_cast<std::size_t>(i)].velocity * (i % 2 == 0 ? 1 : -1);
+    fast[i] = 0.3 * machine.axes[static_cast<std::size_t>(i)].velocity;
+  }
+  REQUIRE(runner.jog(fast));
+  jog.run(0.2);
+  Joints before = jog.joints();
+  jog.run(0.1);
+  CHECK((jog.joints() - before - 0.1 * fast).norm() < 1e-9 * (1 + fast.norm()));
+  REQUIRE(runner.jog_to(held + 5 * step));
+  jog.run_to_rest();
+  CHECK((jog.joints() - held - 5 * step).norm() < 1e-12 * (1 + held.norm()));
+  before = jog.joints();
+  for (int i = 0; i < 4; ++i) {
+    REQUIRE(runner.jog_by(-step));
+    jog.run(0.02);
+  }
+  jog.run_to_rest();
+  CHECK((jog.joints() - held - step).norm() < 1e-12 * (1 + held.norm()));
+  runner.resume();
+  for (int i = 0; i < 100'000 && !runner.finished(); ++i) jog.tick();
+  CHECK(runner.finished());
+  CHECK((jog.joints() - blocks.back().path.end()).norm() < 1e-9);
+  jog.check();
+}
+
+/// Requests of all kinds at any time: nothing jumps, targets that nothing comes after are come to, and the
+/// program ends where it does without them.
+template <class Case, class Runner>
+void jog_at_random(Runner& runner, Random& random, int requests) {
+  const auto blocks = blocks_from(Case::text(), Case::machine(), Case::options());
+  ToolJogRun<Case, Runner> jog(runner);
+  using Coordinates = typename ToolJogRun<Case, Runner>::Coordinates;
+  for (const auto& block : blocks) REQUIRE(runner.push(block));
+  runner.end_of_program();
+  jog.run(Case::hold_after);
+  runner.feed_hold();
+  jog.run(1.0);
+  const auto held = jog.joints();
+  const Coordinates from = jog.at(), one = Case::away(from) - from, other = Case::beside(from) - from;
+  bool of_tool = false;
+  for (int request = 0; request < requests; ++request) {
+    const Coordinates point = from + random.uniform(-1, 1) * one + random.uniform(-1, 1) * other;
+    const Coordinates click = random.log_uniform(0.001, 0.2) * (random.coin() ? one : -other);
+    typename Runner::JogSpeed speed;
+    if (random.coin()) speed.tool = random.log_uniform(5, 200);
+    if (random.coin()) speed.axes[0] = random.log_uniform(0.1, 1.2) * Case::machine().axes[0].velocity;
+    const int what = random.integer(0, 9);
+    INFO("request " << request << " of kind " << what << " to " << point.transpose());
+    if (what < 5) {
+      REQUIRE(jog.to(point, speed));
+      of_tool = true;
+    } else if (what < 7) {
+      // where increments lead out of the machine's reach they are refused, and change nothing
+      if (jog.by(click, speed)) of_tool = true;
+    } else if (what == 7) {
+      jog.hold(), of_tool = false;
+    } else {
+      jog.leave(), of_tool = false;
+      if (random.coin())
+        REQUIRE(runner.jog_to(held));
+      else
+        runner.resume(), runner.feed_hold();
+    }
+    if (random.integer(0, 4) == 0) {
+      jog.run_to_rest();
+      if (of_tool) CHECK((jog.at() - jog.target()).norm() < 1e-7);
+    } else {
+      jog.run(random.log_uniform(0.002, 0.5));
+    }
+    REQUIRE(jog.off < 1e-6);
+    REQUIRE(jog.jerk <= 1 + 1e-3);
+  }
+  jog.leave();
+  runner.resume();
+  for (int i = 0; i < 200'000 && !runner.finished(); ++i) jog.tick();
+  CHECK(runner.finished());
   CHECK((jog.joints() - blocks.back().path.end()).norm() < 1e-9);
   jog.check();
 }

@@ -13,6 +13,7 @@
 #include "cncplan/plan/executor_levels.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
+#include "kinematics/tool_jog_run.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -225,6 +226,41 @@ void live(SmoothLevel level, bool disturbed) {
   watch.check(blocks);
 }
 
+// Jogs amid lines; the tool goes to points in all coordinates.
+struct PolarJogs : Polar {
+  static constexpr double hold_after = 0.5;
+  static Vector3 coordinates(const Vector3& q) { return tip(q); }
+  static std::string text() { return "F3000\nG1 X50 Y40 Z5\nG1 X0 Y60 Z0\n"; }
+  static PlanOptions options() { return {.start = {60, 0, 0}}; }
+  static Vector3 away(const Vector3& from) { return from + Vector3(-15, 20, 6); }
+  static Vector3 beside(const Vector3& from) { return from + Vector3(12, -15, -3); }
+};
+struct FiveAxesJogs : FiveAxes {
+  using Coordinates = VectorN<double, 5>;
+  static constexpr double hold_after = 1.7;
+  static Coordinates coordinates(const Coordinates& q) {
+    Coordinates result;
+    result << tip(q), q[3], q[4];
+    return result;
+  }
+  static std::string text() { return "F3000 G43.4\nG1 X30 A40 C60\nG1 Y30 Z5 A30 C90\nG1 X0 Y40 A20\n"; }
+  static PlanOptions options() { return {}; }
+  static Coordinates away(const Coordinates& from) { return from + step(-15, 20, 6, -0.3, 0.6); }
+  static Coordinates beside(const Coordinates& from) { return from + step(12, -15, -3, 0.2, 0.1); }
+  static Coordinates step(double x, double y, double z, double a, double c) {
+    Coordinates result;
+    result << x, y, z, a, c;
+    return result;
+  }
+};
+
+template <class Case>
+auto leveled(SmoothLevel level) {
+  using Runner = Executor<typename Case::Machine, 64>;
+  return std::make_unique<Runner>(Case::machine(),
+                                  typename Runner::LevelOptions{.tolerance = tolerance, .level = level});
+}
+
 }  // namespace
 
 TEST_CASE("under a map: a long run in parts is cut at a speed", "[mapped-live]") {
@@ -244,4 +280,19 @@ TEST_CASE("under a map: an executor at the level good under random requests", "[
     live<Polar>(SmoothLevel::good, true);
     live<FiveAxes>(SmoothLevel::good, true);
   }
+}
+
+TEST_CASE("under a map: the tool and joints are jogged amid a program at every level", "[mapped-live]") {
+  const auto level = GENERATE(SmoothLevel::exact, SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best);
+  CAPTURE(level);
+  jog_amid_program<PolarJogs>(*leveled<PolarJogs>(level));
+  jog_joints_amid_program<PolarJogs>(*leveled<PolarJogs>(level));
+  jog_amid_program<FiveAxesJogs>(*leveled<FiveAxesJogs>(level));
+  jog_joints_amid_program<FiveAxesJogs>(*leveled<FiveAxesJogs>(level));
+}
+
+TEST_CASE("under a map: random jogs amid a five-axis program keep all limits", "[mapped-live]") {
+  test::Random random;
+  INFO("CNCPLAN_SEED=" << test::seed());
+  jog_at_random<FiveAxesJogs>(*leveled<FiveAxesJogs>(SmoothLevel::good), random, 150);
 }
