@@ -226,24 +226,24 @@ void live(SmoothLevel level, bool disturbed) {
   watch.check(blocks);
 }
 
-// Jogs amid lines; the tool goes to points in all coordinates.
+// Jogs amid a line, without a corner that an exact path jumps at; to points in all coordinates.
 struct PolarJogs : Polar {
   static constexpr double hold_after = 0.5;
   static Vector3 coordinates(const Vector3& q) { return tip(q); }
-  static std::string text() { return "F3000\nG1 X50 Y40 Z5\nG1 X0 Y60 Z0\n"; }
+  static std::string text() { return "F3000\nG1 X30 Y60 Z5\n"; }
   static PlanOptions options() { return {.start = {60, 0, 0}}; }
   static Vector3 away(const Vector3& from) { return from + Vector3(-15, 20, 6); }
   static Vector3 beside(const Vector3& from) { return from + Vector3(12, -15, -3); }
 };
 struct FiveAxesJogs : FiveAxes {
   using Coordinates = VectorN<double, 5>;
-  static constexpr double hold_after = 1.7;
+  static constexpr double hold_after = 0.6;
   static Coordinates coordinates(const Coordinates& q) {
     Coordinates result;
     result << tip(q), q[3], q[4];
     return result;
   }
-  static std::string text() { return "F3000 G43.4\nG1 X30 A40 C60\nG1 Y30 Z5 A30 C90\nG1 X0 Y40 A20\n"; }
+  static std::string text() { return "F3000 G43.4\nG1 X30 Y40 Z5 A30 C90\n"; }
   static PlanOptions options() { return {}; }
   static Coordinates away(const Coordinates& from) { return from + step(-15, 20, 6, -0.3, 0.6); }
   static Coordinates beside(const Coordinates& from) { return from + step(12, -15, -3, 0.2, 0.1); }
