@@ -10,6 +10,7 @@
 
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/table_table.hpp"
+#include "cncplan/plan/block_reader.hpp"
 #include "cncplan/plan/executor_levels.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
@@ -295,4 +296,50 @@ TEST_CASE("under a map: random jogs amid a five-axis program keep all limits", "
   test::Random random;
   INFO("CNCPLAN_SEED=" << test::seed());
   jog_at_random<FiveAxesJogs>(*leveled<FiveAxesJogs>(SmoothLevel::good), random, 150);
+}
+
+TEST_CASE("under a map: jogs of the tool are in the coordinates of the block", "[mapped-live]") {
+  const auto machine = FiveAxes::machine();
+  gcode::Dialect dialect;
+  dialect.tools = {{.number = 1, .length = 50}};
+  BlockReader reader(machine, PlanOptions{}, dialect);
+  const bool on = GENERATE(true, false);
+  const auto runner = leveled<FiveAxesJogs>(GENERATE(SmoothLevel::fast, SmoothLevel::good));
+  CAPTURE(on);
+  for (const std::string line : {on ? "F3000 G43.4 H1" : "F3000", "G1 X20 Z5 A30 C20"}) {
+    const auto blocks = reader.read_line(line);
+    REQUIRE(blocks);
+    for (const auto& block : *blocks) REQUIRE(runner->push(block));
+  }
+  runner->end_of_program();
+  const auto tip_of = [&](VectorN<double, 5> q) {
+    if (on) q[2] -= 50;
+    return FiveAxes::tip(q);
+  };
+  SetPoint<5> point;
+  double off = 0, beside = 0;
+  const auto run = [&] {
+    for (int i = 0; i < 5000; ++i) {
+      point = runner->tick(1e-3);
+      off = std::max(off, (tip_of(point.position) - point.tool).norm());
+    }
+  };
+  run();
+  CHECK(runner->finished());
+  const auto from = point;
+  VectorN<double, 5> step = FiveAxesJogs::step(3, -4, 2, 0.1, 0.2);
+  REQUIRE(runner->jog_tool_by(step));
+  for (int i = 0; i < 3000; ++i) {
+    point = runner->tick(1e-3);
+    off = std::max(off, (tip_of(point.position) - point.tool).norm());
+    const Vector3 now = on ? Vector3(point.tool) : Vector3(point.position.head<3>());
+    const Vector3 start = on ? Vector3(from.tool) : Vector3(from.position.head<3>());
+    beside = std::max(beside, off_line(now, start, start + step.head<3>()));
+  }
+  CHECK(beside < 1e-9);
+  CHECK(off < 1e-9);
+  if (on)
+    CHECK((point.tool - from.tool - step.head<3>()).norm() < 1e-9);
+  else
+    CHECK((point.position - from.position - step).norm() < 1e-9);
 }

@@ -74,7 +74,7 @@ class ToolJog<M> {
   template <class P>
   void stand_on(const P& path) {
     if constexpr (requires { path.visit([](const auto&) {}); })
-      path.visit([this](const auto& inside) { stand_on(inside); });
+      path.visit([this](const auto& inside) { this->stand_on(inside); });
     else if constexpr (requires(Map & map) { map = path.map(); })
       map_ = path.map();
   }
