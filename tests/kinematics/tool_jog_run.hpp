@@ -209,6 +209,12 @@ void jog_amid_program(Runner& runner) {
   REQUIRE(jog.to(Case::beside(from)));
   jog.run(0.01);
   REQUIRE(jog.to(from));
+  double nearest = (jog.at() - away).norm();
+  for (int i = 0; i < 200; ++i) {
+    jog.tick();
+    nearest = std::min(nearest, (jog.at() - away).norm());
+  }
+  CHECK(nearest > 0.3 * (from - away).norm());  // it has turned back before
   jog.run_to_rest();
   CHECK((jog.at() - from).norm() < 1e-7);
   // A hold on the way rests on the line, and there it stays.

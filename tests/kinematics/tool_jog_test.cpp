@@ -24,15 +24,16 @@ constexpr double pi = std::numbers::pi;
 using Arms = MappedMachine<kinematics::ThreeJoints>;
 using ArmRunner = Executor<Arms, 16>;
 
-// Joints that turn have a share of these, in rad.
+// Joints that turn have a share of these, in rad. What lines bend in the joints takes a good part of the
+// limits.
 void set_limits(Arms& machine, std::array<bool, 3> turns, double share) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double scale = turns[i] ? share : 1;
     machine.axes[i] = {.letter = "RSZ"[i],
                        .kind = turns[i] ? AxisKind::rotary : AxisKind::linear,
                        .velocity = 100 * scale,
-                       .acceleration = 1000 * scale,
-                       .jerk = 20000 * scale};
+                       .acceleration = 150 * scale,
+                       .jerk = 1500 * scale};
   }
   machine.limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000};
 }

@@ -300,9 +300,9 @@ TEST_CASE("under a map: random jogs amid a five-axis program keep all limits", "
 
 TEST_CASE("under a map: jogs of the tool are in the coordinates of the block", "[mapped-live]") {
   const auto machine = FiveAxes::machine();
-  gcode::Dialect dialect;
+  gcode::Dialect dialect = dialect_of(machine);
   dialect.tools = {{.number = 1, .length = 50}};
-  BlockReader reader(machine, PlanOptions{}, dialect);
+  BlockReader reader(machine, PlanOptions{.dialect = dialect});
   const bool on = GENERATE(true, false);
   const auto runner = leveled<FiveAxesJogs>(GENERATE(SmoothLevel::fast, SmoothLevel::good));
   CAPTURE(on);
