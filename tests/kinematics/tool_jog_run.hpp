@@ -210,7 +210,7 @@ void jog_amid_program(Runner& runner) {
   jog.run(0.01);
   REQUIRE(jog.to(from));
   double nearest = (jog.at() - away).norm();
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     jog.tick();
     nearest = std::min(nearest, (jog.at() - away).norm());
   }
