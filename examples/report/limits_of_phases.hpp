@@ -49,12 +49,17 @@ template <class T>
   return path.second.norm() > 0.0 ? LimitedBy::curvature : LimitedBy::look_ahead;
 }
 
-// The largest share that the tool's or an axis' acceleration or jerk takes of its limit.
-template <class M, class V>
-[[nodiscard]] double share_of_limits(const M& machine, const cncplan::AxisMotion<V>& axes) {
-  const auto tool = cncplan::tool_axes(machine);
-  double share = std::max(cncplan::in_space(axes.acceleration, tool).norm() / machine.limits.acceleration,
-                          cncplan::in_space(axes.jerk, tool).norm() / machine.limits.jerk);
+// The largest share that the tool's or an axis' acceleration or jerk takes of its limit, where a path has
+// been travelled so far.
+template <class M, class P>
+[[nodiscard]] double share_of_limits(const M& machine, const P& path, const cncplan::State& along) {
+  const auto axes = cncplan::motion(path.point_at(along.position), along);
+  const auto point = path.visit([&](const auto& inside) {
+    return cncplan::tool_point(inside, along.position, cncplan::tool_axes(machine));
+  });
+  const auto tool = cncplan::motion(point, along);
+  double share = std::max(tool.acceleration.norm() / machine.limits.acceleration,
+                          tool.jerk.norm() / machine.limits.jerk);
   for (int i = 0; i < axes.acceleration.size(); ++i) {
     const auto& axis = machine.axes[static_cast<std::size_t>(i)];
     share = std::max({share, std::abs(axes.acceleration[i]) / cncplan::least_acceleration(axis),
@@ -68,9 +73,8 @@ template <class T>
 [[nodiscard]] bool limited_by_tolerance(const T& trajectory, const typename T::Phase& at) {
   if (trajectory.path(at.piece).exact()) return false;
   const auto half = at.phase.at(at.phase.duration / 2);
-  const auto bend = cncplan::motion(trajectory.path(at.piece).point_at(half.position),
-                                    cncplan::State{half.position, half.velocity, 0.0, 0.0});
-  return share_of_limits(trajectory.machine(), bend) > 0.5;
+  return share_of_limits(trajectory.machine(), trajectory.path(at.piece),
+                         cncplan::State{half.position, half.velocity, 0.0, 0.0}) > 0.5;
 }
 
 }  // namespace detail

@@ -29,11 +29,12 @@ double largest_deviation(const ProgramText& program, const Plan& plan, const Mot
     const double length = motion.piece_length(piece);
     const double start = std::clamp(phase.position, 0.0, length);
     const double end = std::clamp(phase.at(phase.duration).position, 0.0, length);
-    if (!(end > start) || motion.as_programmed(piece)) continue;
-    const auto at = [&, piece = piece, block = motion.block_of(piece)](double s) {
+    const std::size_t block = motion.block_of(piece);
+    const Origin& origin = program.motions[plan.motion_of[block]];
+    if (!(end > start) || motion.as_programmed(piece) || !origin.followed) continue;
+    const auto at = [&, piece = piece](double s) {
       const double along = motion.piece_start(piece) + s;
-      const double gap = distance(
-          {&program.motions[plan.motion_of[block]], motion.tool(piece, s), places.within(block, along)});
+      const double gap = distance({&origin, motion.tool(piece, s), places.within(block, along)});
       largest = std::max(largest, gap);
       return gap;
     };

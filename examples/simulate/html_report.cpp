@@ -36,9 +36,11 @@ report::Deviation deviation_of(const Options& options, const ProgramText& progra
     const auto [piece, along] = motion.at(k * result.period);
     const std::size_t block = motion.block_of(piece);
     const double within = along.position - motion.piece_start(piece);
-    const PlaceBeside place{&program.motions[plan.motion_of[block]], motion.tool(piece, within),
-                            places.within(block, along.position)};
-    for (const double gap : distance.gap(place)) result.vectors.push_back(static_cast<float>(gap));
+    const Origin& origin = program.motions[plan.motion_of[block]];
+    cncplan::Vector3 gap = cncplan::Vector3::Zero();
+    if (origin.followed)
+      gap = distance.gap({&origin, motion.tool(piece, within), places.within(block, along.position)});
+    for (const double part : gap) result.vectors.push_back(static_cast<float>(part));
   }
   return result;
 }

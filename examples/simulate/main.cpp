@@ -36,6 +36,8 @@ void settle(Options& options, const support::Machine& machine) {
   if (options.serve && (writes || options.events || options.json || options.count_steps))
     refuse("--serve runs the program as it is: it goes without outputs and events");
   if (options.compare && !options.report) refuse("--compare goes with --report");
+  if (options.orientation && !machine.map.has_tool_point_control())
+    refuse("--orientation is for the five-axis machines that kinematics names");
   if (options.tool_length && machine.kinematics != Kinematics::tire_mold)
     refuse("--tool-length is for machines with a tilting axis");
   const bool as_planned = options.law == Law::seven && options.planning == Planning::span &&
@@ -66,12 +68,12 @@ int run(Options options) {
   support::Machine file;
   if (options.machine) file = support::read_machine(*options.machine);
   settle(options, file);
+  if (options.report || options.serve) report::check_libraries();
   if (file.kinematics == Kinematics::polar && options.tolerance > 0.0) {
     file.map = support::table_map(file);
     return run_mapped(options, file);
   }
   if (file.kinematics == Kinematics::mapped) return run_mapped(options, file);
-  if (options.report || options.serve) report::check_libraries();
   if (options.serve) serve::check_libraries();
   if (file.kinematics == Kinematics::tire_mold) {
     auto machine = machine_of<Rows>(file, options.limits);

@@ -3,26 +3,37 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <iostream>
+#include <iterator>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 
+#include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/path/map.hpp"
 #include "support/failure.hpp"
 
 namespace simulate {
 
 template <cncplan::path::Map Map>
-int run_on_map(const Options& options, const support::Machine& file, const Map& map);
+int run_on_map(const Options& options, const support::Machine& file, const std::string& text, const Map& map);
+
+namespace {
+
+// All of a program, of standard input where it is that.
+std::string program_text(const std::string& file) {
+  if (file == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  auto text = cncplan::gcode::text_of(file);
+  if (!text) throw support::Failure(support::Exit::bad_input, fmt::format("{}: cannot be read", file));
+  return std::move(*text);
+}
+
+}  // namespace
 
 int run_mapped(const Options& options, const support::Machine& file) {
-  const std::array<std::pair<bool, std::string_view>, 12> others{
+  const std::array<std::pair<bool, std::string_view>, 7> others{
       {{options.motions.has_value(), "--motions"},
-       {options.blocks.has_value(), "--blocks"},
-       {options.steps.has_value(), "--steps"},
-       {options.count_steps, "--count-steps"},
-       {options.plot.has_value(), "--plot"},
-       {options.report.has_value(), "--report"},
        {options.events.has_value(), "--events"},
        {options.serve.has_value(), "--serve"},
        {options.from_line.has_value(), "--from-line"},
@@ -35,7 +46,8 @@ int run_mapped(const Options& options, const support::Machine& file) {
           support::Exit::bad_input,
           fmt::format("{} does not go with machines behind a map: {}", name, file.map.name));
 
-  return std::visit([&](const auto& map) { return run_on_map(options, file, map); }, file.map.map);
+  const std::string text = program_text(options.program);
+  return std::visit([&](const auto& map) { return run_on_map(options, file, text, map); }, file.map.map);
 }
 
 }  // namespace simulate

@@ -2,6 +2,7 @@
 
 namespace simulate {
 
-template int run_on_map(const Options&, const support::Machine&, const cncplan::kinematics::ThreeJoints&);
+template int run_on_map(const Options&, const support::Machine&, const std::string&,
+                        const cncplan::kinematics::ThreeJoints&);
 
 }  // namespace simulate

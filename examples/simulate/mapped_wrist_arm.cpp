@@ -2,6 +2,7 @@
 
 namespace simulate {
 
-template int run_on_map(const Options&, const support::Machine&, const cncplan::kinematics::WristArm&);
+template int run_on_map(const Options&, const support::Machine&, const std::string&,
+                        const cncplan::kinematics::WristArm&);
 
 }  // namespace simulate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -58,7 +59,7 @@ struct Measures {
   double end_error = 0.0;      ///< of the last sample from the program's end
   double contour_error = 0.0;  ///< of samples from the programmed path, where that is driven
   double deviation = 0.0;      ///< of smoothed paths from the programmed ones
-  std::size_t junctions_limited = 0;
+  std::optional<std::size_t> junctions_limited{};
   std::vector<OtherLevel> other_levels;
   std::vector<cncplan::step::AxisReport> steps;  ///< none where no steps are made
   double plan_seconds = 0.0;

@@ -97,6 +97,16 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--tool-length", options.tool_length,
                  "with a tilting axis: from there to the tool's tip, mm; 0 if not given")
       ->check(support::not_negative());
+  app.add_option_function<std::string>(
+         "--orientation",
+         [&options](const std::string& way) {
+           options.orientation =
+               way == "joints" ? cncplan::Orientation::joints : cncplan::Orientation::great_circle;
+         },
+         "with tool-point control, how the tool turns along a line: its axes in proportion to the way, or "
+         "its "
+         "direction on a great circle; that of the machine file if not given")
+      ->check(CLI::IsMember({"joints", "great-circle"}));
   app.add_option("--events", options.events, "holds, overrides and stops on the way, CSV");
   app.add_option("--from-line", options.from_line, "begin at the first motion of this line or behind it")
       ->check(CLI::Range(1, std::numeric_limits<int>::max()));

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cncplan/core/limits.hpp"
+#include "cncplan/plan/orientation.hpp"
 #include "cncplan/plan/smooth_level.hpp"
 #include "junction_choice.hpp"
 #include "serve/address.hpp"
@@ -30,6 +31,7 @@ struct Options : support::RunOptions {
   double corner_tolerance = -1.0;     ///< mm, of exact corners that count as rounded; negative: none do
   double rotary_tolerance = 0.05;     ///< degrees
   std::optional<double> tool_length;  ///< mm
+  std::optional<cncplan::Orientation> orientation;  ///< along lines of tool-point control
   std::optional<std::string> events;
   std::optional<double> compare;  ///< mm: a second plan's tolerance, for the report
   std::optional<serve::Address> serve;

@@ -37,6 +37,7 @@ cncplan::Vector3 PathDistance::gap(const PlaceBeside& place) {
   const double reach = 2.0 * (place.position - own.path.position_at(within)).norm();
   const auto look = [&](const Origin& motion, double start) {
     if (!(motion.length > 0.0) || motion.turns) return 0.0;
+    if (!motion.followed) return motion.length;
     const cncplan::Vector3 gap = gap_of(motion, place.position, start);
     if (gap.squaredNorm() < nearest.squaredNorm()) nearest = gap;
     return motion.length;

@@ -90,10 +90,8 @@ template <class M>
   if (!planned) refuse(planned.error(), program.file);
   Plan result;
   result.motion_of = program.motion_of;
-  const auto blocks = planned->program();
-  for (const cncplan::Fallback& part : planned->fallbacks())
-    result.other_levels.push_back(
-        {blocks[part.first].line, blocks[part.last].line, to_text(part.level), to_text(part.reason)});
+  result.junctions_limited = 0;
+  result.other_levels = other_levels(*planned);
   result.motion = std::make_unique<PlannedOn<M, BlockOf<M>>>(file, std::move(*planned));
   return result;
 }

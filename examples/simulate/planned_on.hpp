@@ -1,6 +1,7 @@
 // A trajectory of one kind of machine and of blocks as a planned program.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -8,6 +9,8 @@
 #include <vector>
 
 #include "channels_of.hpp"
+#include "cncplan/core/jet.hpp"
+#include "cncplan/path/map.hpp"
 #include "cncplan/plan/follow_steps.hpp"
 #include "cncplan/plan/joint_jumps.hpp"
 #include "cncplan/plan/peaks.hpp"
@@ -20,6 +23,28 @@
 #include "taylor_follower.hpp"
 
 namespace simulate {
+
+/// Where the tip is and goes while the axes of a map are driven directly.
+template <class Map, class V>
+[[nodiscard]] cncplan::PathPoint<cncplan::Vector3> tip_of_axes(const Map& map,
+                                                               const cncplan::PathPoint<V>& axes) {
+  cncplan::path::MapJoints<Map, cncplan::Jet> joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    joints[i] = {axes.position[k], axes.first[k], axes.second[k], axes.third[k]};
+  }
+  const auto point = map.point(joints);
+  cncplan::PathPoint<cncplan::Vector3> tip;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& x = point[static_cast<std::size_t>(cncplan::path::coordinates_in_space<Map>[k])];
+    const auto i = static_cast<Eigen::Index>(k);
+    tip.position[i] = x.value;
+    tip.first[i] = x.first;
+    tip.second[i] = x.second;
+    tip.third[i] = x.third;
+  }
+  return tip;
+}
 
 /// `file` outlives it. `taylor`: samples are those of Taylor steps.
 template <class M, class B>
@@ -111,11 +136,16 @@ class PlannedOn final : public report::DrivenTrajectory<cncplan::Trajectory<M, B
                                                                 const cncplan::PathPoint<V>& axes,
                                                                 double s) const {
     const M& machine = trajectory_.machine();
-    if constexpr (std::is_same_v<M, Rows>)
+    if constexpr (std::is_same_v<M, Rows>) {
       return report::tip_point(machine.tool_length, axes);
-    else
+    } else {
+      if constexpr (cncplan::MappedModel<M>)
+        if constexpr (cncplan::path::switchable<cncplan::MapOf<M>>)
+          if (path.visit([](const auto& inside) { return cncplan::is_direct(inside); }))
+            return tip_of_axes(machine.map, axes);
       return path.visit(
           [&](const auto& inside) { return cncplan::tool_point(inside, s, cncplan::tool_axes(machine)); });
+    }
   }
 
   const support::Machine& file_;

@@ -23,10 +23,11 @@ struct Origin {
   cncplan::junction::Kind kind{};
   cncplan::Plane plane{};
   cncplan::Vector3 offset = cncplan::Vector3::Zero();  ///< machine = work + offset
-  ToolPath path{};                                     ///< of the tool; of a row, straight between its ends
-  double feed{};                                       ///< mm/s as programmed; of a rapid the rapid rate
-  double length{};                                     ///< mm along the path
-  bool turns{};  ///< no axis but rotary ones moves: length and feed are in rad
+  ToolPath path{};       ///< of the tool; where it follows none, straight between its ends
+  double feed{};         ///< mm/s as programmed; of a rapid the rapid rate
+  double length{};       ///< mm along the path
+  bool turns{};          ///< no axis but rotary ones moves: length and feed are in rad
+  bool followed = true;  ///< the tool is to go along the path, not just from its start to its end
 };
 
 struct ProgramText {
@@ -39,6 +40,16 @@ struct ProgramText {
   /// mm that motions may leave the path by, where the program says so: the least and the most.
   double least_tolerance = std::numeric_limits<double>::infinity(), most_tolerance = 0.0;
   bool takes_tolerance = false;  ///< there are motions for which the program says nothing of it
+
+  /// Notes what a motion says of it, or that it leaves it to the options; one that is driven exactly does
+  /// not.
+  void take_tolerance(const std::optional<double>& tolerance, bool exact) {
+    if (tolerance) {
+      least_tolerance = std::min(least_tolerance, *tolerance);
+      most_tolerance = std::max(most_tolerance, *tolerance);
+    }
+    takes_tolerance = takes_tolerance || !(tolerance || exact);
+  }
 
   /// The least and the most that is in force, where the options have `given`.
   [[nodiscard]] std::pair<double, double> tolerances(double given) const {

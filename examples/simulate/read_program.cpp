@@ -39,7 +39,10 @@ class Builder {
     Origin origin{.line = 1, .column = 1};
     cncplan::Vector3 at(start[0], start[1], start[2]);
     if constexpr (std::is_same_v<M, Table>) origin.offset = at;
-    if constexpr (std::is_same_v<M, Rows>) at = tip({.tool_length = machine_.tool_length}, 0.0);
+    if constexpr (std::is_same_v<M, Rows>) {
+      at = tip({.tool_length = machine_.tool_length}, 0.0);
+      origin.followed = false;
+    }
     origin.path = cncplan::path::Line<3>(at, at);
     program_.motions.push_back(origin);
   }
@@ -134,6 +137,7 @@ class Builder {
       auto row =
           cncplan::kinematics::tire_mold_row(machine_.tool_length, block.path.start(), block.path.end());
       origin.path = Line<3>(tip(row, 0.0), tip(row, 1.0));
+      origin.followed = false;
       auto placed = copy(block, typename BlockOf<M>::Path(*block.path.line()));
       origin.length = 0.0;
       if (!(row.way.cwiseAbs().maxCoeff() > 0.0)) return add(placed);
@@ -159,24 +163,9 @@ class Builder {
       return followed && within;
     } else {
       origin.turns = cncplan::length_of(block.path, machine_) == cncplan::LengthOf::rotary_axes;
-      if constexpr (coordinates == 3)
-        origin.path = block.path;
-      else if (const auto* arc = block.path.arc())
-        origin.path = arc->arc();
-      else if (const auto* spline = block.path.template as<cncplan::path::Spline<coordinates>>())
-        origin.path = in_space(*spline);
-      else
-        origin.path = Line<3>(block.path.start().template head<3>(), block.path.end().template head<3>());
+      origin.path = tool_path<coordinates>(block.path);
       return add(block);
     }
-  }
-
-  static cncplan::path::Spline<3> in_space(const cncplan::path::Spline<coordinates>& spline) {
-    cncplan::path::RationalCubic<3>::Controls controls;
-    for (std::size_t i = 0; i < controls.size(); ++i)
-      controls[i] = spline.curve().controls()[i].template head<3>();
-    const auto [second, third] = spline.curve().weights();
-    return cncplan::path::Spline<3>(cncplan::path::RationalCubic<3>(controls, second, third));
   }
 
   bool add(const BlockOf<M>& block) {
@@ -190,11 +179,7 @@ class Builder {
       problems_.add(cncplan::gcode::Diagnostic{limited.error(), block.line, block.column, {}});
       return false;
     }
-    if (block.tolerance) {
-      program_.least_tolerance = std::min(program_.least_tolerance, *block.tolerance);
-      program_.most_tolerance = std::max(program_.most_tolerance, *block.tolerance);
-    }
-    program_.takes_tolerance = program_.takes_tolerance || !(block.tolerance || block.exact_path);
+    program_.take_tolerance(block.tolerance, block.exact_path);
     program_.blocks.push_back(block);
     program_.motion_of.push_back(program_.motions.size() - 1);
     return true;

@@ -21,7 +21,7 @@ std::size_t count_motions(const ProgramText& program) {
 std::size_t count_arcs(const ProgramText& program) {
   return static_cast<std::size_t>(
       std::count_if(program.motions.begin(), program.motions.end(),
-                    [](const Origin& motion) { return motion.path.arc() != nullptr; }));
+                    [](const Origin& motion) { return motion.kind == cncplan::junction::Kind::arc; }));
 }
 
 // An object with one member per axis.
@@ -89,6 +89,7 @@ double velocity_limit(const ProgramText& program, const Options& options, const 
 std::string json_summary(const ProgramText& program, const Options& options, const support::Machine& machine,
                          const Measures& m) {
   Json json;
+  if (!machine.map.name.empty()) json["kinematics"] = machine.map.name;
   json["lines"] = program.lines;
   json["motions"] = count_motions(program);
   json["arcs"] = count_arcs(program);
@@ -127,7 +128,7 @@ std::string json_summary(const ProgramText& program, const Options& options, con
     json["end_error_mm"] = m.end_error;
     json["contour_error_mm"] = m.contour_error;
   }
-  json["junctions_limited"] = m.junctions_limited;
+  if (m.junctions_limited) json["junctions_limited"] = *m.junctions_limited;
   if (options.makes_steps()) {
     const auto steps = [&](std::size_t i) -> const auto& { return m.steps[i]; };
     json["steps"] = per_axis(machine, [&](std::size_t i) { return steps(i).total_steps; });
@@ -189,7 +190,7 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
     row("another level",
         fmt::format("lines {} to {}: {}, as {}", part.first_line, part.last_line, part.level, part.reason));
   row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
-  row("junctions below their feed", fmt::format("{}", m.junctions_limited));
+  if (m.junctions_limited) row("junctions below their feed", fmt::format("{}", *m.junctions_limited));
   if (options.makes_samples())
     row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
   std::string stages = "plan, measure",

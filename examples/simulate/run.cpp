@@ -44,8 +44,6 @@ Run::Run(const Options& options, const support::Machine& file, const ProgramText
 }
 
 void Run::sample(const std::function<void(const Sample&)>& take) {
-  // A row is what the axes do: there is no other path to follow.
-  const bool follows_path = file_.kinematics != support::Kinematics::tire_mold;
   PathDistance distance(program_);
   Sample row;
   double elsewhere = 0.0;
@@ -57,8 +55,8 @@ void Run::sample(const std::function<void(const Sample&)>& take) {
       row = {point.time,     &motion,
              point.tool,     point.position,
              point.velocity, point.acceleration,
-             point.along,    follows_path ? places_.within(point.block, point.along.position) : 0.0};
-      if (follows_path) {
+             point.along,    places_.within(point.block, point.along.position)};
+      if (motion.followed) {
         const bool exact = plan_.motion->as_programmed(point.piece);
         double& largest = exact ? measures_.contour_error : measures_.deviation;
         largest = std::max(largest, distance({&motion, row.position, row.within}));

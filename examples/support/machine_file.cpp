@@ -346,7 +346,7 @@ void read_start(const Section& top, const toml::node& kinematics, Machine& machi
 void read_orientation(const Section& top, const kinematics::ReadyMade& made, Machine& machine) {
   const toml::node* const node = top.find("orientation");
   if (node == nullptr) return;
-  if (!std::holds_alternative<kinematics::FiveAxes>(machine.map.map))
+  if (!machine.map.has_tool_point_control())
     top.refuse(*node, fmt::format("orientation is for five-axis machines, {} is none", made.name));
   const std::string way = top.text(*node, "orientation");
   if (way != "joints" && way != "great-circle")

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cncplan/core/joint_limits.hpp"
@@ -58,6 +59,11 @@ struct MapEntry {
   cncplan::kinematics::ReadyMadeMap map;
   std::vector<double> start;           ///< of each joint, mm or rad
   cncplan::Orientation orientation{};  ///< along lines of tool-point control
+
+  /// Whether its programs can name the tip and the tool's angles.
+  [[nodiscard]] bool has_tool_point_control() const {
+    return std::holds_alternative<cncplan::kinematics::FiveAxes>(map);
+  }
 };
 
 struct Machine {
