@@ -6,8 +6,8 @@
 
 namespace simulate {
 
-/// Runs a program on the machine that a file names. Of the options, those for the plan, the samples and the
-/// summary go; another one is refused by name. Throws `Failure`.
+/// Runs a program on the machine that a file names. Options that do not go with
+/// maps are refused by name. Throws `Failure`.
 int run_mapped(const Options& options, const support::Machine& file);
 
 }  // namespace simulate

@@ -490,6 +490,36 @@ def table():
             check(math.hypot(seen["X"] - x, seen["Y"] - y) < NEAR, f"t={row['t']!r}: the tool is shown at {seen}")
 
 
+def five_axes():
+    """A tip and its joints: directly, straight in the joints, and with tool-point control; each joint against the map written out."""
+    program = (b"F3000\nG54\nG10 L2 P1 X5 Y-3 Z0\nG0 X5 A-10 C5\nG1 X10 Y5 A-20\nG43.4\nG1 X40\nY30 A-30 C45\nX0 Y40 A-45 C120\n"
+               b"G2 X20 Y20 I20 J0\nG0 X10 Y10\nG49\nG1 X20 A0\nM30\n")
+    machine = os.path.join(EXAMPLES, "machines", "table_table_ac.toml")
+    with Run(program, "--machine", machine, "--tolerance", "0.02", "--compare", "0") as run:
+        check_page(run, program)
+        check_joints(run, ["X", "Y", "Z", "A", "C"])
+        run.check_whole()
+        limits = run.value("[1, 2, 3].map(k => cncplan.charts.charts[k].series.slice(0, 5).map(one => one.limit))")
+        text = text_of(machine).decode()
+        for order, name in enumerate(("velocity", "acceleration", "jerk")):
+            said = [float(x) for x in re.findall(rf"^{name} *= *([0-9.]+)", text, re.M)]
+            check(limits[order] == said, f"limits of {name} are {limits[order]}, not {said}")
+        for row in run.some_samples(40):
+            run.value(f"cncplan.setTime({row['t']!r})")
+            seen = run.cells()
+            a, c = math.radians(seen["axis A"]), math.radians(seen["axis C"])
+            x, y, z = seen["X"] + 5, seen["Y"] - 3, seen["Z"] + 60  # from the point of C's axis at the height of A's
+            u, v = math.cos(c) * x - math.sin(c) * y, math.sin(c) * x + math.cos(c) * y
+            joints = u, math.cos(a) * v - math.sin(a) * z, math.sin(a) * v + math.cos(a) * z - 60
+            for name, place in zip("XYZ", joints):
+                check(abs(seen[f"axis {name}"] - place) < NEAR, f"t={row['t']!r}: {name} is at {seen[f'axis {name}']}, not {place}")
+        largest = run.value("""Math.max(...Array.from({length: 20000}, (_, k) => k * cncplan.motions[0].duration / 19999)
+            .map(t => cncplan.motions[0].deviation({time: t})))""")
+        check(0.9 * run.summary["deviation_mm"] <= largest <= 1.001 * run.summary["deviation_mm"],
+              f"the largest deviation is {largest}, not {run.summary['deviation_mm']}")
+        check(largest <= 0.02 * (1 + 1e-6), f"the tip is {largest} mm off its path")
+
+
 def mold():
     """Text on a curved wall: each axis as --samples has it, and the tip where these axes put it."""
     folder, length = os.path.join(EXAMPLES, "tire_mold"), 20.0
@@ -513,7 +543,7 @@ def mold():
 
 CASES = {"pocket": lambda: example("pocket"), "figure 7": lambda: example("kk22_figure7"),
          "short lines": lambda: example("short_lines"), "nothing": nothing, "one motion": one_motion,
-         "levels": levels, "ball": ball, "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "first screen": first_screen, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
+         "levels": levels, "ball": ball, "hostile text": hostile_text, "many lines": many_lines, "rotary": rotary, "table": table, "five axes": five_axes, "first screen": first_screen, "mold": mold, "two plans": two_plans, "paper": paper, "long program": long_program}
 
 for case in sys.argv[4:]:
     name, _, browser = case.partition(" in ")
