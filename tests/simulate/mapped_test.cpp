@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -104,6 +106,37 @@ TEST_CASE("edges on a machine behind a map are where the joints of its tip are")
   CHECK(seconds == Approx(json["time_s"].get<double>()));
   CHECK(json["deviation_mm"].get<double>() > 0.001);
   CHECK(json["deviation_mm"].get<double>() <= 0.02 * (1 + 1e-6));
+}
+
+TEST_CASE("the step rate of a drive caps the speed of a joint behind a map") {
+  // 100 steps a unit: 1000 steps/s are 10 mm/s or degrees/s, at the level best and on the exact path,
+  // directly and with the map
+  const std::vector<std::string> letters{"X", "Y", "Z", "A", "C"};
+  for (const std::string& slow : letters)
+    for (const std::string rule : {"max_step_rate = 1000\n", "pulse_width = 4e-4\npulse_gap = 6e-4\n"})
+      for (const std::string tolerance : {"0", "0.02"}) {
+        const Folder folder;
+        std::string text = "kinematics = \"table-table-ac\"\n";
+        for (const std::string& letter : letters)
+          text += axis(letter, letter < "X" ? "rotary" : "linear", letter == slow ? rule : "");
+        folder.write("m.toml", text + "[lengths]\ncenter = [0, 0, -60]\n");
+        const auto run = folder.run_text(
+            "G1 X10 Y5 Z2 A-5 C9 F3000\nG43.4\nG1 X20 A-20 C45\nY20 Z10\nG0 X0 A-30\nG49\nG0 X10 Y0 Z0 A0 "
+            "C0\n",
+            "--machine m.toml --steps v --json --tolerance " + tolerance);
+        INFO(slow << ", " << rule << "tolerance " << tolerance << ": " << run.err);
+        REQUIRE(run.exit == 0);
+        const double peak = run.json()["axis_peak"]["velocity"][slow].get<double>();
+        CHECK(100 * peak <= 1000 * (1 + 1e-9));
+        CHECK(100 * peak >= 950);
+        const cncplan::test::Vcd signals(folder / "v");
+        const auto& edges = signals.axis(slow).edges;
+        CHECK(edges.size() > 500);
+        std::int64_t closest = std::numeric_limits<std::int64_t>::max();
+        for (std::size_t i = 1; i < edges.size(); ++i)
+          closest = std::min(closest, static_cast<std::int64_t>(edges[i].time - edges[i - 1].time));
+        CHECK(closest >= 1000000 - 1);
+      }
 }
 
 TEST_CASE("a program from standard input runs on a machine behind a map") {
