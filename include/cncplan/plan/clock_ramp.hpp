@@ -93,8 +93,8 @@ class ClockRamp {
     S place = shown;
     if (along_path_) {
       const std::size_t index = chain.phase_at(shown);
-      if (index < phase_) return std::nullopt;
       PhasesByLength<M, B> phases(chain, phase_, start_);
+      if (index < phase_ || index > PhasesByLength<M, B>(phases).go_to(end.position)) return std::nullopt;
       const BasicPhase<S> planned = chain.phase(index);
       const S within = std::clamp(shown - planned.time, S(0), planned.duration);
       place = phases.phase(index).time + (planned.at(within).position - planned.position);

@@ -151,7 +151,7 @@ class TrajectoryClock {
   using Change = state::BasicVelocityChange<S>;
   using AxisState = BasicAxisState<S>;
 
-  static constexpr int work_in_tick = 1000;  // intervals of proofs
+  static constexpr int work_in_tick = 400;  // intervals of proofs
   // Of changes of the rate, each slower than the one before; ramps along the path come first.
   static constexpr int shapes = 3, levels_along_path = 12 * shapes, levels = levels_along_path + 32;
   static constexpr int no_level = levels + 1;
