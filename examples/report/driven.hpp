@@ -35,6 +35,9 @@ class Driven {
   /// From the program's start to a piece's, and whether its length is counted so.
   [[nodiscard]] virtual double piece_start(std::size_t piece) const = 0;
   [[nodiscard]] virtual bool counts(std::size_t piece) const = 0;
+  /// Whether its axes are driven directly though the machine has a map: the limits of the tool are there
+  /// those of the axes X, Y and Z, not of the tip.
+  [[nodiscard]] virtual bool is_direct(std::size_t piece) const = 0;
   /// The speed that the program asks for; not finite where it asks for none.
   [[nodiscard]] virtual double wanted_speed(std::size_t piece) const = 0;
   /// What stands in the way of a higher speed, of each phase.

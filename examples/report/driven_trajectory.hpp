@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "cncplan/plan/tool.hpp"
 #include "report/driven.hpp"
 #include "report/limits_of_phases.hpp"
 #include "report/motion_data.hpp"
@@ -32,6 +33,9 @@ class DrivenTrajectory : public Base {
   [[nodiscard]] bool counts(std::size_t piece) const override {
     const std::size_t block = driven_.block_of(piece);
     return driven_.start_length(block + 1) > driven_.start_length(block);
+  }
+  [[nodiscard]] bool is_direct(std::size_t piece) const override {
+    return cncplan::is_direct(driven_.path(piece));
   }
   [[nodiscard]] double wanted_speed(std::size_t piece) const override {
     return wanted_speed_of(driven_, piece);

@@ -33,7 +33,7 @@ std::uint32_t index_in(std::vector<double>& table, const Values& values) {
   for (std::size_t i = 0; i < phases.size(); ++i) motion.add(phases[i].phase, phases[i].piece, limited[i]);
 
   PathColumns path(data.channels);
-  std::vector<std::int64_t> line, kind, offset, wanted, counted;
+  std::vector<std::int64_t> line, kind, offset, wanted, counted, direct;
   for (std::size_t i = 0; i < driven.piece_count(); ++i) {
     const Place place = place_of(i);
     line.push_back(std::max(place.line, 0));
@@ -41,6 +41,7 @@ std::uint32_t index_in(std::vector<double>& table, const Values& values) {
     offset.push_back(index_in(data.offsets, place.offset));
     wanted.push_back(index_in(data.wanted, std::array{driven.wanted_speed(i)}));
     counted.push_back(driven.counts(i) ? 1 : 0);
+    direct.push_back(driven.is_direct(i) ? 1 : 0);
     path.add(driven.piece_length(i), [&](double s) { return driven.channels(i, s); });
   }
   if (!motion.complete() || !path.complete()) return false;
@@ -48,7 +49,7 @@ std::uint32_t index_in(std::vector<double>& table, const Values& values) {
   path.put(data.columns);
   for (const auto& [name, values] :
        {std::pair("line", &line), std::pair("kind", &kind), std::pair("offset", &offset),
-        std::pair("wanted", &wanted), std::pair("counted", &counted)})
+        std::pair("wanted", &wanted), std::pair("counted", &counted), std::pair("direct", &direct)})
     data.columns.push_back({name, pack(differences(*values))});
   data.grid = motion.grid();
   data.path_error = path.error();
@@ -88,6 +89,7 @@ void add_samples(MotionData& data, const Driven& driven, const PlaceOf& place_of
     samples.line.push_back(static_cast<std::uint32_t>(std::max(place.line, 0)));
     samples.offset.push_back(index_in(data.offsets, place.offset));
     samples.kind.push_back(place.kind);
+    samples.direct.push_back(driven.is_direct(here.piece) ? 1 : 0);
     samples.limited_by.push_back(limited[phase]);
     const ChannelMotion axes = at(here);
     if (last)

@@ -32,10 +32,11 @@ struct SampleData {
   std::vector<std::uint32_t> line, offset;
   std::vector<cncplan::junction::Kind> kind;
   std::vector<LimitedBy> limited_by;
-  std::vector<float> axes;  ///< position, velocity, acceleration and jerk of the channels
+  std::vector<std::uint8_t> direct;  ///< see `Driven::is_direct`
+  std::vector<float> axes;           ///< position, velocity, acceleration and jerk of the channels
 
   /// Bytes of one instant.
-  [[nodiscard]] static std::size_t size(std::size_t channels) { return 34 + 16 * channels; }
+  [[nodiscard]] static std::size_t size(std::size_t channels) { return 35 + 16 * channels; }
 };
 
 /// Phases drive blocks, whose paths are pieces: see `PhaseColumns` and `PathColumns`.

@@ -42,6 +42,7 @@ Json to_json(const SampleData& samples) {
           {"line", column(samples.line)},
           {"offset", column(samples.offset)},
           {"kind", column(samples.kind)},
+          {"direct", column(samples.direct)},
           {"limitedBy", column(samples.limited_by)},
           {"axes", column(samples.axes)}};
 }

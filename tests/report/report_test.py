@@ -90,14 +90,18 @@ class Run:
                     check(abs(value - row[name]) <= NEAR * max(1.0, abs(row[name])),
                           f"t={row['t']!r}: {name} is {row[name]!r}, and {value!r} on the page")
 
-    def check_limits(self):
-        """The tool's jerk on the page is at no instant above the largest of the plan."""
+    def check_limits(self, direct=()):
+        """The tool's jerk on the page is at no instant above the largest of the plan; on lines that drive the axes directly, that of X, Y, Z."""
         most = self.summary["tool_peak"]["jerk"]
-        found = self.value("""(() => { const m = cncplan.motions[0], room = m.room(); let most = 0;
-            for (let i = 0; i < m.count; ++i) for (const part of [0.01, 0.3, 0.5, 0.7, 0.99])
-              most = Math.max(most, norm(m.inPhase(i, m.phase.time[i] + part * m.durationOf(i), room).jerk));
-            return most; })()""")
+        found, share = self.value("""(() => { const m = cncplan.motions[0], room = m.room(), direct = %s; let most = 0, share = 0;
+            for (let i = 0; i < m.count; ++i) for (const part of [0.01, 0.3, 0.5, 0.7, 0.99]) {
+              const {jerk, block} = m.inPhase(i, m.phase.time[i] + part * m.durationOf(i), room);
+              const tool = direct.includes(m.block.line[block]) ? [0, 1, 2].map(k => jerk[m.axes[k].channel]) : jerk;
+              most = Math.max(most, Math.hypot(tool[0], tool[1], tool[2]));
+              share = Math.max(share, m.share(room)); }
+            return [most, share]; })()""" % json.dumps(direct))
         check(found <= 1.005 * most, f"the jerk is {found} on the page, and {most} at most")
+        check(share <= 1.005, f"{share} of a limit is taken on the page")
 
     def check_samples(self):
         for row in self.some_samples():
@@ -518,6 +522,9 @@ def five_axes():
         check(0.9 * run.summary["deviation_mm"] <= largest <= 1.001 * run.summary["deviation_mm"],
               f"the largest deviation is {largest}, not {run.summary['deviation_mm']}")
         check(largest <= 0.02 * (1 + 1e-6), f"the tip is {largest} mm off its path")
+        run.check_limits(direct=[4, 5, 13])  # those before G43.4 and behind G49
+        run.value("cncplan.charts.zoom(...cncplan.charts.all)")
+        check_chart_limits(run)
 
 
 def mold():

@@ -10,7 +10,7 @@ function chartsOf(motion) {
     name: axis.name, value: valueOf(axis.channel), limit: limit(axis.limits[order])}));
   // Limits hold for the tool's vector; along the path corrections of corners move to and fro. A live run does not tell the vector.
   const tool = (vector, along, order) => (motion instanceof LiveMotion ? {name: 'along the path', value: along} :
-    {name: 'tool', value: s => norm(vector(s)), limit: limit(motion.limits[order])});
+    {name: 'tool', value: (s, m) => m.ofTool(s, vector(s)), limit: limit(motion.limits[order])});
   const unit = motion.axes.some(axis => axis.unit === 'deg') ? 'mm or degrees' : 'mm';
   return [
     {title: 'speed along the path, mm/s', series: [

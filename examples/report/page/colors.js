@@ -46,8 +46,8 @@ function colorModes(limitNames) {
   return [
     {name: 'speed', unit: 'mm/s', along: true, value: s => s.v},
     {name: 'share of limit', unit: '', value: (s, m) => m.share(s), top: () => 1},
-    {name: 'acceleration', unit: 'mm/s²', value: s => norm(s.acceleration), top: limit(1)},
-    {name: 'jerk', unit: 'mm/s³', value: s => norm(s.jerk), top: limit(2)},
+    {name: 'acceleration', unit: 'mm/s²', value: (s, m) => m.ofTool(s, s.acceleration), top: limit(1)},
+    {name: 'jerk', unit: 'mm/s³', value: (s, m) => m.ofTool(s, s.jerk), top: limit(2)},
     {name: 'curvature', unit: '1/mm', value: s => norm(s.second)},
     {name: 'speed against programmed feed', unit: '', along: true,
      value: (s, m) => { const w = m.wanted(s); return w > 0 ? s.v / w : 1; }, top: () => 1},

@@ -134,5 +134,5 @@ function readBlocks(plan) {
   }
   const of = name => sums(unpack(plan.columns[name])), wanted = plan.wantedSpeeds.map(x => x ?? Infinity);
   return {pieces, block: {start, firstPiece, counted, line: new Uint32Array(of('line')), kind: new Uint8Array(of('kind')),
-                          offset: new Uint32Array(of('offset')), wanted: of('wanted').map(k => wanted[k])}};
+                          direct: new Uint8Array(of('direct')), offset: new Uint32Array(of('offset')), wanted: of('wanted').map(k => wanted[k])}};
 }

@@ -18,6 +18,7 @@ class Motion {
     this.length = plan.length;
     this.channels = plan.channels;
     this.axes = axes;
+    this.linearChannels = axes.filter(axis => 'XYZ'.includes(axis.name)).map(axis => axis.channel);
     this.limits = limits.map(x => x ?? Infinity);
     this.offsets = plan.offsets;
     this.deviations = {period: plan.deviation.period, vectors: decode(Float32Array, plan.deviation.vectors)};
@@ -178,11 +179,17 @@ class Motion {
   // What the tool's velocity may be at most, rapids included.
   get velocityLimit() { return this.speeds.rapid > this.limits[0] ? this.speeds.rate : this.limits[0]; }
 
+  // The size of a vector that the tool's limit holds for: the tip's, or that of the axes X, Y and Z where a machine behind a
+  // map drives its axes directly.
+  ofTool(state, vector) {
+    if (!this.block.direct[state.block]) return norm(vector);
+    return Math.hypot(...this.linearChannels.map(k => vector[k]));
+  }
   // The largest share that anything takes of its limit.
   share(state) {
     const velocity = this.kindOf(state) === 0 ? this.rateOf(state.block) : this.limits[0];
-    let most = Math.max(norm(state.velocity) / velocity || 0, norm(state.acceleration) / this.limits[1] || 0,
-                        norm(state.jerk) / this.limits[2] || 0);
+    let most = Math.max(this.ofTool(state, state.velocity) / velocity || 0, this.ofTool(state, state.acceleration) / this.limits[1] || 0,
+                        this.ofTool(state, state.jerk) / this.limits[2] || 0);
     for (const axis of this.axes) {
       const k = axis.channel;
       for (const [value, limit] of [[state.velocity[k], axis.limits[0]], [state.acceleration[k], axis.limits[1]],
@@ -207,7 +214,8 @@ class SampledMotion extends Motion {
                   block: new Uint32Array(n).map((_, i) => i), limitedBy: decode(Uint8Array, samples.limitedBy)};
     this.phase.time[n - 1] = this.duration;
     this.kept = `instants ${shortNumber(this.period)} s apart`;
-    this.block = {line, wanted: f32('wanted'), kind: decode(Uint8Array, samples.kind), offset: decode(Uint32Array, samples.offset)};
+    this.block = {line, wanted: f32('wanted'), kind: decode(Uint8Array, samples.kind),
+                  direct: decode(Uint8Array, samples.direct), offset: decode(Uint32Array, samples.offset)};
   }
   forPlaces(visit) {
     for (let i = 0; i < this.count; ++i) visit(this.values, 4 * this.channels * i);
