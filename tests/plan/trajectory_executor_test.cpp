@@ -424,7 +424,7 @@ TEST_CASE("trajectory executor: holds on a wave of short lines come soon, within
       CAPTURE(ratios.size(), ratios.back());
       CHECK(ratios.front() > 0.95);
       CHECK(ratios[ratios.size() / 2] < 1.5);
-      CHECK(longest < 0.4);
+      CHECK(longest < 0.6);  // slowed by the rate alone: 2.5
     }
 }
 
