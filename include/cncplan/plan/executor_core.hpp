@@ -170,13 +170,15 @@ class ExecutorCore {
   /// Increments are from where such a jog goes, or else from where the tool is now. While it moves, a point
   /// straight on is gone to without a stop where limits allow; else the tool, or joints that move, come to
   /// rest first. Errors: those of `validate` for the speed, and of `plan::ToolJog::line`; as for `jog`.
-  [[nodiscard]] Expected<void> jog_tool_to(const Coordinates& point,
-                                           const JogSpeed& speed = {}) requires ToolJogModel<M> {
+  template <class Model = M>  // clang 14 instantiates members of a class whose constraints do not hold
+    requires ToolJogModel<Model>
+  [[nodiscard]] Expected<void> jog_tool_to(const Coordinates& point, const JogSpeed& speed = {}) {
     if (auto ok = begin_jog(); !ok) return ok;
     return jogged(jog_.tool_to(last_.position, point, machine_, speed), false);
   }
-  [[nodiscard]] Expected<void> jog_tool_by(const Coordinates& increments,
-                                           const JogSpeed& speed = {}) requires ToolJogModel<M> {
+  template <class Model = M>
+    requires ToolJogModel<Model>
+  [[nodiscard]] Expected<void> jog_tool_by(const Coordinates& increments, const JogSpeed& speed = {}) {
     if (auto ok = begin_jog(); !ok) return ok;  // says where the axes stand
     const auto from = jog_.tool().target();
     return jog_tool_to((from ? *from : jog_.tool().coordinates(last_.position)) + increments, speed);
