@@ -35,7 +35,7 @@ class DrivenTrajectory : public Base {
     return driven_.start_length(block + 1) > driven_.start_length(block);
   }
   [[nodiscard]] bool is_direct(std::size_t piece) const override {
-    return cncplan::is_direct(driven_.path(piece));
+    return cncplan::is_direct(driven_.program()[driven_.block_of(piece)].path);
   }
   [[nodiscard]] double wanted_speed(std::size_t piece) const override {
     return wanted_speed_of(driven_, piece);
