@@ -55,10 +55,9 @@ struct Most {
   double acceleration = 0, jerk = 0;  // as shares of the limits
 };
 
-// By differences of positions, a hundred thousandth of a second apart.
-template <class T>
-Most most_of(const T& trajectory, const state::Motion& clock, const Machine<3>& machine) {
-  constexpr double period = 1e-5;
+// By differences of positions, so many seconds apart.
+template <class Position>
+Most most_of(const Position& at, double duration, const Machine<3>& machine, double period) {
   Most most;
   const auto share = [&](const Vector3& value, double tool, auto of_axis) {
     double result = value.norm() / tool;
@@ -66,16 +65,22 @@ Most most_of(const T& trajectory, const state::Motion& clock, const Machine<3>& 
       result = std::max(result, std::abs(value[i]) / of_axis(machine.axes[static_cast<std::size_t>(i)]));
     return result;
   };
-  const auto at = [&](double t) -> Vector3 { return trajectory.at(clock.at(t).position).position; };
-  for (double t = 0; t + 3 * period < clock.duration(); t += period) {
-    const Vector3 a = at(t), b = at(t + period), c = at(t + 2 * period), d = at(t + 3 * period);
+  Vector3 a = at(0), b = at(period), c = at(2 * period);
+  for (double t = 0; t + 3 * period < duration; t += period) {
+    const Vector3 d = at(t + 3 * period);
     const Vector3 bend = (c - 2 * b + a) / (period * period);
     const Vector3 jerk = (d - 3 * c + 3 * b - a) / (period * period * period);
     most.acceleration = std::max(most.acceleration, share(bend, machine.limits.acceleration,
                                                           [](const Axis& x) { return x.acceleration; }));
     most.jerk = std::max(most.jerk, share(jerk, machine.limits.jerk, [](const Axis& x) { return x.jerk; }));
+    a = b, b = c, c = d;
   }
   return most;
+}
+template <class T>
+Most most_of(const T& trajectory, const state::Motion& clock, const Machine<3>& machine) {
+  return most_of([&](double t) -> Vector3 { return trajectory.at(clock.at(t).position).position; },
+                 clock.duration(), machine, 1e-5);
 }
 
 }  // namespace
@@ -173,4 +178,85 @@ TEST_CASE("clock: what is proven is within the limits, both ways, on lines, arcs
   }
   CHECK(proven > 100);
   CHECK(refused > 100);
+}
+
+namespace {
+
+// Brakes along the path of a trajectory, which do not end at its end.
+struct Brakes : Clocked {
+  using Clocked::Clocked;
+
+  // From the place and speed of a time, with so much jerk and acceleration.
+  state::Motion from(double at, double jerk, double acceleration) const {
+    const auto& all = *trajectory;
+    const auto now = all.at(at).along;
+    const double start = all.at(all.phases()[all.phase_at(at)].phase.time).along.position;
+    AxisLimits limits;
+    limits.acceleration_up = limits.acceleration_down = acceleration;
+    limits.jerk = jerk;
+    return state::BasicVelocityChange<double>({now.position - start, now.velocity, now.acceleration}, 0,
+                                              limits)
+        .fastest();
+  }
+  bool proven(double at, const state::Motion& brake) const {
+    int work = 20000;
+    return proof.brakes(chain, brake, trajectory->phase_at(at), trajectory->phases().size() - 1, work);
+  }
+
+  const Trajectory<Machine<3>, B>* trajectory{};
+};
+
+}  // namespace
+
+TEST_CASE("clock: a brake along the path is refused where the plan is slower", "[clock]") {
+  const auto trajectory = planned("F1800 G1 X20\nF300 G1 X40\n", with_reserve(mill, 0.1));
+  Brakes brakes(trajectory, mill);
+  brakes.trajectory = &trajectory;
+  double at = 0.3;  // where it begins to slow down for the second line
+  while (trajectory.at(at).along.acceleration > -100) at += 1e-3;
+  REQUIRE(trajectory.at(at).position.x() < 20);
+  const auto hard = brakes.from(at, 10000, 1000), soft = brakes.from(at, 1000, 1000);
+  CHECK(brakes.proven(at, hard));
+  CHECK_FALSE(brakes.proven(at, soft));  // it is at rest behind X20, where the feed is 5 mm/s
+  CHECK_FALSE(brakes.proven(at, brakes.from(at, 10100, 1000)));
+  // Not to rest before the end of the path.
+  const double last = trajectory.duration() - 0.05;
+  CHECK_FALSE(brakes.proven(last, brakes.from(last, 2000, 200)));
+}
+
+TEST_CASE("clock: proven brakes along the path keep the limits and the planned speed", "[clock]") {
+  Machine<3> machine = mill;
+  machine.axes[0].jerk = 8000;
+  machine.axes[1].acceleration = 400;
+  const auto trajectory = planned(
+      "F1800 G1 X8\nY5\nF900 X9 Y5.5\nG3 X14 Y0.5 R6\nF1500 G1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\n"
+      "G1 X4 Y0\n",
+      with_reserve(machine, 0.1));
+  Brakes brakes(trajectory, machine);
+  brakes.trajectory = &trajectory;
+  Random random;
+  int proven = 0, refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double at = random.uniform(0.01, trajectory.duration() - 0.01);
+    const auto brake = brakes.from(at, random.log_uniform(500, 10000), random.log_uniform(50, 1000));
+    if (!(brake.extrema().highest <= brake.end().position)) continue;  // too soft: it would come back
+    const bool ok = brakes.proven(at, brake);
+    (ok ? proven : refused)++;
+    if (!ok) continue;
+    INFO("at " << at << ", for " << brake.duration() << " s");
+    const plan::ClockRamp<Machine<3>, Clocked::B> ramp(brake, trajectory.phase_at(at));
+    double speed = 0;
+    const auto place = [&](double t) -> Vector3 {
+      const auto planned = trajectory.at(ramp.at(brakes.chain, t).position);
+      if (planned.along.velocity > 1e-3)
+        speed = std::max(speed, brake.at(t).velocity / planned.along.velocity);
+      return planned.position;
+    };
+    const Most most = most_of(place, brake.duration(), machine, 1e-5);
+    CHECK(most.acceleration < 1 + 1e-5);
+    CHECK(most.jerk < 1 + 1e-3);  // rounding of positions
+    CHECK(speed < 1 + 1e-6);
+  }
+  CHECK(proven > 30);
+  CHECK(refused > 30);
 }
