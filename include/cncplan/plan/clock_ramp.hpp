@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include "cncplan/core/phase.hpp"
@@ -72,7 +71,6 @@ class ClockRamp {
   [[nodiscard]] S duration() const { return motion_.duration(); }
   /// Whether the axes come to rest with it, and then stay.
   [[nodiscard]] bool ends_at_rest() const { return motion_.end().velocity == S(0); }
-  [[nodiscard]] bool along_path() const { return along_path_; }
   [[nodiscard]] bool runs_back() const {
     return motion_.start().velocity < S(0) || motion_.end().velocity < S(0);
   }
