@@ -293,6 +293,7 @@
 #include "cncplan/smooth/speed_law.hpp"
 #include "cncplan/smooth/speed_start.hpp"
 #include "cncplan/smooth/speed_window.hpp"
+#include "cncplan/smooth/uniform.hpp"
 #include "cncplan/state/axis_motions.hpp"
 #include "cncplan/state/mean.hpp"
 #include "cncplan/state/motion.hpp"

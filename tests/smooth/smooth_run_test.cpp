@@ -179,6 +179,41 @@ TEST_CASE("sharp corners take little more than any motion must") {
   }
 }
 
+// A circle of radius 1 with whole turns, then a line.
+Program turns(int count, bool axes) {
+  Program program;
+  program.limits.tool = {30, 1000, 1e4};
+  if (axes) program.limits.axes.fill({30, 1000, 1e4});
+  path::ArcGeometry<double> circle{
+      .start = {0, 0, 0}, .end = {0, 0, 0}, .center = {1, 0, 0}, .radial = {-1, 0, 0}};
+  circle.start_radius = circle.end_radius = 1;
+  circle.angle = 2 * std::numbers::pi * count;
+  circle.turn = Turn::clockwise;
+  program.paths.emplace_back(path::Arc(circle));
+  program.feeds.push_back(30);
+  program.line(Vector3::Zero(), Vector3(1, 0, 0), 30);
+  return program;
+}
+
+TEST_CASE("the search for the speed on a long arc is that on a short one") {
+  for (const bool axes : {false, true})
+    for (const auto& options : {BasicSmoothOptions<double>{}, good_smoothing<double>}) {
+      CAPTURE(axes, options.coarseness);
+      const Program few = turns(30, axes), many = turns(150, axes);
+      const auto short_run = smooth_run<double, 3>(few.blocks(), few.limits, options);
+      const auto long_run = smooth_run<double, 3>(many.blocks(), many.limits, options);
+      check(short_run, few);
+      check(long_run, many);
+      CHECK(long_run.speed.windows == short_run.speed.windows);
+      CHECK(long_run.speed.rounds <= 1.2 * short_run.speed.rounds);
+      // Round a circle of radius r at a constant speed all of the jerk is v^3 / r^2.
+      const double turn = (long_run.duration - short_run.duration) / 120;
+      const auto at = [](double r) { return 2 * std::numbers::pi * std::cbrt(r / 1e4); };
+      CHECK(turn >= at(1 - few.tolerance));
+      CHECK(turn <= 1.002 * at(1));
+    }
+}
+
 TEST_CASE("a long line takes few cells where the acceleration limits its ramps") {
   Program program = corner(90, {50, 150, 1e6});
   const auto run = smooth_run<double, 3>(program.blocks(), program.limits);

@@ -10,6 +10,7 @@
 #include <memory_resource>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cncplan/core/least_squares.hpp"
@@ -137,10 +138,17 @@ class BasicBand {
     start_.resize(cell + 3);
     cells_.resize(cell + 1);
     samples_.resize(cells_.back().first_sample);
+    held_.clear();
   }
 
   /// Keeps the curve as it is where a cell begins, with its tangent and its curvature there.
   void pin(std::size_t cell) { pinned_ = cell; }
+
+  /// Keeps cells [first, last) as they are, but for those at both ends.
+  void hold(std::size_t first, std::size_t last) {
+    constexpr std::size_t near = 100;
+    if (last - first > 3 * near) held_.push_back({first + near, last - near});
+  }
 
   /// Goes back to the curve that the search began with.
   void reset() { points_ = start_; }
@@ -407,6 +415,8 @@ class BasicBand {
 
   // Three control points have a weight where a cell begins.
   void keep_pinned(std::span<char> moves) const {
+    for (const auto& [from, to] : held_)
+      std::fill_n(moves.begin() + static_cast<std::ptrdiff_t>(from), to - from, char{0});
     if (pinned_) std::fill_n(moves.begin() + static_cast<std::ptrdiff_t>(*pinned_), 3, char{0});
   }
 
@@ -447,6 +457,7 @@ class BasicBand {
   std::optional<std::size_t> pinned_;
   std::pmr::memory_resource* memory_;
   std::pmr::vector<S> starts_{memory_}, knots_{memory_}, lengths_{memory_};
+  std::pmr::vector<std::pair<std::size_t, std::size_t>> held_{memory_};  // control points
   std::pmr::vector<Corner> corners_{memory_};
   std::pmr::vector<Vector> points_{memory_}, start_{memory_};
   std::pmr::vector<BasicBandCell<S, N>> cells_{memory_};

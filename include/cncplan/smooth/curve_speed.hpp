@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "cncplan/core/progress.hpp"
 #include "cncplan/smooth/band.hpp"
 #include "cncplan/smooth/plan_speed.hpp"
+#include "cncplan/smooth/uniform.hpp"
 
 namespace cncplan::smooth {
 
@@ -152,19 +154,17 @@ class CurveSpeed {
     options_.window.gap = gap;
     options_.window.proven = proven;
     options_.fastest = fastest;
-    std::copy(first_law_.begin(), first_law_.end(), law_.begin());
-    const auto plan = plan_speed<S, Seen::count>(
-        cells_, limits_, options_, {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}}, ends_,
-        progress);
+    auto plan = plan_without_middles(progress);
+    if (!plan) plan = plan_of(cells_, progress);
     const std::span<const Cell> inner(cells_.data() + 1, cells_.size() - 2);
     S at = starts_[1];
-    knots_.assign(1, {at, ends_.given > 0 ? std::sqrt(law_[0]) : plan.start.speed});
+    knots_.assign(1, {at, ends_.given > 0 ? std::sqrt(law_[0]) : plan->start.speed});
     for (std::size_t i = 0; i < inner.size(); ++i) {
       at += inner[i].length;
       const BasicSpeedProblem<S, Seen::count> problem{inner, {}, nullptr};
       knots_.push_back({at, std::sqrt(problem.speed(law(), i).end)});
     }
-    return plan;
+    return *plan;
   }
 
   /// b of the last plan in each cell of the curve.
@@ -194,6 +194,14 @@ class CurveSpeed {
     for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size(); ++i)
       if (origins_[i].second == S(0)) result[origins_[i].first] = cells_[i].skew;
     return result;
+  }
+
+  /// Calls `visit(first, last)` for long stretches of the curve's cells in which all limits see the same.
+  template <class Visit>
+  void uniform_stretches(Visit&& visit) const {
+    for_each_stretch([&](std::size_t first, std::size_t last) {
+      visit(origins_[first].first, origins_[last - 1].first + 1);
+    });
   }
 
   /// The limits of the tool and of the curve's own axes.
@@ -248,6 +256,13 @@ class CurveSpeed {
 
  private:
   static constexpr S growth = S(0.3);
+  static constexpr std::size_t least_ramp = 100;  // cells
+  static constexpr S steady = S(1e-3);            // the most change of b from cell to cell, as a share of it
+
+  // Among the short cells, a stretch and how many more cells it has.
+  struct Shortened {
+    std::size_t first{}, last{}, left_out{};
+  };
 
   // The block of a run in which a place of its curve lies, or of an approach to it.
   [[nodiscard]] static std::size_t block_of(const BasicBand<S, N>& band, S at) {
@@ -275,6 +290,83 @@ class CurveSpeed {
     curves_.push_back(curve);
     starts_.push_back(start);
     origins_.push_back(origin);
+  }
+
+  [[nodiscard]] BasicSpeedPlan<S> plan_of(std::span<const Cell> cells, const Progress& progress) {
+    std::copy(first_law_.begin(), first_law_.end(), law_.begin());
+    return plan_speed<S, Seen::count>(cells, limits_, options_,
+                                      {paces_, levels_, plateaus_, law_, {numbers_, speeds_, forces_}}, ends_,
+                                      progress);
+  }
+
+  // Long stretches of cells that are all like their first one.
+  template <class Visit>
+  void for_each_stretch(Visit&& visit) const {
+    const std::size_t end = cells_.size() - 1;
+    for (std::size_t first = 1 + ends_.given; first < end;) {
+      std::size_t last = first + 1;
+      while (last < end && alike(cells_[first], cells_[last], limits_)) ++last;
+      if (last - first > 3 * least_ramp) visit(first, last);
+      first = last;
+    }
+  }
+
+  // Where cells are alike over so long that speed comes to what it stays at, a shorter stretch is planned. In
+  // the cells that it leaves out the speed is that of the cell where it changes least. Nothing where there is
+  // no such stretch, or no such cell, or where that would not keep the limits.
+  [[nodiscard]] std::optional<BasicSpeedPlan<S>> plan_without_middles(const Progress& progress) {
+    shortened_.clear();
+    short_cells_.clear();
+    const BasicLimits<S> along = tangential_limits(std::span<const Cell>(cells_), limits_);
+    std::size_t done = 0;  // cells that are among the short ones or left out
+    const auto copy_until = [&](std::size_t end) {
+      short_cells_.insert(short_cells_.end(), cells_.begin() + static_cast<std::ptrdiff_t>(done),
+                          cells_.begin() + static_cast<std::ptrdiff_t>(end));
+      done = end;
+    };
+    for_each_stretch([&](std::size_t first, std::size_t last) {
+      const Cell& cell = cells_[first];
+      const S most = std::min(cell.feed, S(1.5) * leisurely_speed(cell, limits_, {}));
+      const S ramp = BasicGentleRamp<S>(S(0), most * most, along).length() / cell.length;
+      const S kept = S(2) * (static_cast<S>(least_ramp) + std::ceil(ramp));
+      if (!(kept < static_cast<S>(last - first - least_ramp))) return;
+      const auto half = static_cast<std::size_t>(kept) / 2;
+      copy_until(first + half);
+      shortened_.push_back({short_cells_.size() - half, short_cells_.size() + half, last - first - 2 * half});
+      done = last - half;
+    });
+    if (shortened_.empty()) return std::nullopt;
+    copy_until(cells_.size());
+    BasicSpeedPlan<S> plan = plan_of(short_cells_, progress);
+    if (!std::isfinite(plan.duration)) return std::nullopt;
+    // From the last one on, for what is longer stands behind it.
+    std::size_t end = short_cells_.size(), to = cells_.size();  // of the laws that are not moved yet
+    const auto move = [&](std::size_t from) {
+      for (; end > from; --end, --to) law_[to - 1] = law_[end - 1];
+    };
+    for (std::size_t i = shortened_.size(); i-- > 0;) {
+      const auto& [first, last, left_out] = shortened_[i];
+      std::size_t calm = first;
+      S least = std::numeric_limits<S>::infinity();
+      for (std::size_t k = first; k < last; ++k) {
+        const S change = std::max(std::abs(law_[k] - law_[k - 1]), std::abs(law_[k + 1] - law_[k])) / law_[k];
+        if (change < least) least = change, calm = k;
+      }
+      if (!(least < steady)) return std::nullopt;
+      move(calm + 1);
+      const S speed_sq = law_[end - 1];
+      for (std::size_t k = 0; k < left_out; ++k) law_[--to] = speed_sq;
+    }
+    const S slow_down = plan.slow_down;
+    plan.use = {};
+    emit_phases(std::span<const Cell>(cells_), law(), plan.start, plan.end,
+                [&](std::size_t cell, const BasicPhase<S>& phase) {
+                  if (options_.window.proven) plan.use.include(use_of(phase, cells_[cell], limits_));
+                  plan.duration = phase.time + phase.duration;
+                });
+    plan.slow_down = std::max(S(1), plan.use.slow_down());
+    if (plan.slow_down > slow_down) return std::nullopt;
+    return plan;
   }
 
   // Behind a cell without a length, as where motion begins at a speed.
@@ -332,6 +424,8 @@ class CurveSpeed {
   BasicPlanSpeedOptions<S> options_;
   std::pmr::memory_resource* memory_;
   std::pmr::vector<Cell> cells_{memory_};
+  std::pmr::vector<Cell> short_cells_{memory_};  // without the middles of long stretches
+  std::pmr::vector<Shortened> shortened_{memory_};
   std::pmr::vector<BasicCubic<S, N>> curves_{memory_};  // of the cells
   std::pmr::vector<S> starts_{memory_};
   std::pmr::vector<std::pair<std::size_t, S>> origins_{memory_};

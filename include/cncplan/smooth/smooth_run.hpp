@@ -143,6 +143,9 @@ class SmoothRun {
   void move_curve() {
     for (int pass = 0; pass < options_.passes; ++pass) {
       if (!std::isfinite(coarse_time())) return;
+      // Far within them nothing is gained.
+      if (pass == 0)
+        speed_.uniform_stretches([&](std::size_t first, std::size_t last) { band_.hold(first, last); });
       band_.smoothen(speed_.speeds_sq(band_.cell_count()), work_.next(Work::curve));
     }
     S time = S(0);
