@@ -214,6 +214,22 @@ TEST_CASE("the search for the speed on a long arc is that on a short one") {
     }
 }
 
+TEST_CASE("a longer line takes hardly more cells") {
+  const auto planned = [](double length) {
+    Program program;
+    program.limits.tool = {30, 1000, 1e4};
+    program.line(Vector3(-length, 0, 0), Vector3::Zero(), 30);
+    program.line(Vector3::Zero(), Vector3(0, 5, 0), 30);
+    const auto run = smooth_run<double, 3>(program.blocks(), program.limits);
+    INFO("a line of " << length << " mm");
+    check(run, program);
+    return run;
+  };
+  const auto few = planned(50), many = planned(500);
+  CHECK(many.pieces.size() <= few.pieces.size() + 200);
+  CHECK(many.duration - few.duration == Approx(450.0 / 30).margin(1e-3));
+}
+
 TEST_CASE("a long line takes few cells where the acceleration limits its ramps") {
   Program program = corner(90, {50, 150, 1e6});
   const auto run = smooth_run<double, 3>(program.blocks(), program.limits);

@@ -60,6 +60,7 @@ class BasicBand {
     S centring = S(0.1);
     std::size_t window = 300;  ///< control points that one window moves, at least 200
     S coarseness = S(1);       ///< how many times longer the cells are
+    bool even_lines = true;    ///< whether limits see the same all along a line: its cells may be longer
     BasicBandOptions<S> solver{};
   };
 
@@ -252,7 +253,8 @@ class BasicBand {
 
   // Cells a quarter of a corner's width near it, a thirteenth where it is a right angle, and growing with the
   // distance, all of that times the coarseness; short on narrow bends; and short where the feed changes, for
-  // from a low speed to a high one b grows by decades on a short length.
+  // from a low speed to a high one b grows by decades on a short length. Far from the ends of a line nothing
+  // happens: there they grow on.
   void make_knots() {
     S feed = S(0), tolerance = std::numeric_limits<S>::infinity();
     for (const auto& block : blocks_) {
@@ -291,10 +293,16 @@ class BasicBand {
       fine[i].size = std::min(
           fine[i].size,
           fine[i + 1].size + growth * std::max(fine[i + 1].at - fine[i].at - fine[i + 1].reach, S(0)));
+    const S far = S(40) * widest, far_growth = longer * S(0.05);
+    const auto widest_at = [&](S s) {
+      const std::size_t block = block_at(s);
+      const S inside = std::min(s - std::max(starts_[block], S(0)), starts_[block + 1] - s) - far;
+      return even_[block] != 0 && inside > S(0) ? widest + far_growth * inside : widest;
+    };
     std::size_t index = 0;
     const auto size_at = [&](S s) {
       while (index + 1 < fine.size() && fine[index + 1].at <= s) ++index;
-      S size = std::min(widest,
+      S size = std::min(widest_at(s),
                         fine[index].size + growth * std::max(s - fine[index].at - fine[index].reach, S(0)));
       if (index + 1 < fine.size())
         size = std::min(size, fine[index + 1].size +
@@ -458,6 +466,7 @@ class BasicBand {
   std::pmr::memory_resource* memory_;
   std::pmr::vector<S> starts_{memory_}, knots_{memory_}, lengths_{memory_};
   std::pmr::vector<std::pair<std::size_t, std::size_t>> held_{memory_};  // control points
+  std::pmr::vector<char> even_{memory_};  // of each block, whether it is a line along which limits are even
   std::pmr::vector<Corner> corners_{memory_};
   std::pmr::vector<Vector> points_{memory_}, start_{memory_};
   std::pmr::vector<BasicBandCell<S, N>> cells_{memory_};
@@ -476,8 +485,10 @@ BasicBand<S, N>::BasicBand(std::span<const Block> blocks, const Options& options
     for (std::size_t block = 0; block < cut_->block; ++block) at -= blocks_[block].path.length();
   }
   for (const auto& block : blocks_) {
+    const S length = block.path.length();
     starts_.push_back(at);
-    at += block.path.length();
+    even_.push_back(options_.even_lines && block.path.bounds(S(0), length).second.isZero(S(0)) ? 1 : 0);
+    at += length;
   }
   starts_.push_back(at);
   length_ = at;

@@ -123,6 +123,7 @@ class SmoothRun {
     geometry.along = along;
     geometry.window = options.band_window;
     geometry.coarseness = options.coarseness;
+    geometry.even_lines = Seen::count == N;
     return geometry;
   }
 
