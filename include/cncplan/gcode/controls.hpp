@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/dialect.hpp"
 
 namespace cncplan::gcode {
@@ -106,22 +107,10 @@ inline constexpr std::array controls{
 
 /// The dialect as the control has it. Words that the dialect passes through already stay before the
 /// control's.
-[[nodiscard]] inline Dialect with(Dialect dialect, const Control& control) {
-  dialect.dwell_unit = control.dwell_unit;
-  dialect.retract_to_r = control.retract_to_r;
-  dialect.peck_clearance = control.peck_clearance;
-  dialect.incremental_center = control.incremental_center;
-  dialect.lenient = control.lenient;
-  dialect.user_codes = control.user_codes;
-  dialect.bare_m_codes = control.bare_m_codes;
-  dialect.g70_units = control.g70_units;
-  for (const double number : control.g_words)
-    if (number != 0.0) dialect.pass_through.push_back({'G', number});
-  for (const std::int16_t number : control.m_words)
-    dialect.pass_through.push_back({'M', static_cast<double>(number), control.m_takes});
-  for (const std::int16_t number : control.m_texts)
-    dialect.pass_through.push_back({'M', static_cast<double>(number), Letters{0}, true});
-  return dialect;
-}
+[[nodiscard]] Dialect with(Dialect dialect, const Control& control);
 
 }  // namespace cncplan::gcode
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/gcode/controls-inl.hpp"
+#endif

@@ -5,6 +5,22 @@
 
 namespace cncplan::gcode {
 
+CNCPLAN_INLINE Reader::Reader(const Dialect& dialect, const Position& start)
+    : readable_(validate(dialect).map([](const Dialect&) {})),
+      dialect_(readable_ ? dialect : Dialect{}),
+      has_table_(!dialect_.tools.empty()),
+      alphabet_(dialect_),
+      place_(dialect_, start) {
+  modal_.retract_to_r = dialect_.retract_to_r;
+  modal_.assumed_rapid = dialect_.lenient;
+  if (dialect_.lenient) modal_.motion = code(0);
+  modal_.incremental_center = dialect_.incremental_center;
+  dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
+  for (std::size_t i = 0; i < axis_count(); ++i)
+    if (readable_ && !std::isfinite(start[i]))
+      readable_ = tl::unexpected(Error{ErrorCode::not_finite, "start", start[i], 0.0});
+}
+
 CNCPLAN_INLINE void Reader::recover(std::string_view text) {
   if (!readable_ || is_too_long(text)) return;
   block_.salvage(text, 0, dialect_, alphabet_);

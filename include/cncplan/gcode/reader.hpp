@@ -43,21 +43,7 @@ class Reader {
  public:
   /// With a dialect that `validate` refuses every line is in error, with what is wrong with the dialect.
   /// `start`: where the axes stand, in machine coordinates, mm and rad; not finite, it is refused alike.
-  explicit Reader(const Dialect& dialect = {}, const Position& start = {})
-      : readable_(validate(dialect).map([](const Dialect&) {})),
-        dialect_(readable_ ? dialect : Dialect{}),
-        has_table_(!dialect_.tools.empty()),
-        alphabet_(dialect_),
-        place_(dialect_, start) {
-    modal_.retract_to_r = dialect_.retract_to_r;
-    modal_.assumed_rapid = dialect_.lenient;
-    if (dialect_.lenient) modal_.motion = code(0);
-    modal_.incremental_center = dialect_.incremental_center;
-    dialect_.tools.reserve(dialect_.tools.size() + max_set_tools);
-    for (std::size_t i = 0; i < axis_count(); ++i)
-      if (readable_ && !std::isfinite(start[i]))
-        readable_ = tl::unexpected(Error{ErrorCode::not_finite, "start", start[i], 0.0});
-  }
+  explicit Reader(const Dialect& dialect = {}, const Position& start = {});
 
   /// Reads one line (without its end; carriage returns there are passed over) and writes its items in the
   /// order in which they are to be carried out (RS274/NGC Table 8). Returns the iterator behind the last. A

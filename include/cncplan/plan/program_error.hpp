@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "cncplan/core/compiled.hpp"
 #include "cncplan/core/error_text.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/plan/run_error.hpp"
@@ -25,17 +26,10 @@ inline RunError::operator ProgramError() const { return {about}; }
 
 /// "part.ngc:12:5: error: axis X: 310 is above the limit 300", or as much of that as is known; or with
 /// another word for its weight.
-[[nodiscard]] inline std::string to_text(const ProgramError& error, std::string_view weight = "error") {
-  std::string place = error.file;
-  if (error.about.line > 0) {
-    if (!place.empty()) place += ':';
-    place += std::to_string(error.about.line) + ':' + std::to_string(error.about.column);
-  } else if (error.block) {
-    place += (place.empty() ? "block " : ": block ") + std::to_string(*error.block);
-  }
-  if (!place.empty()) place += ": ";
-  const bool of_text = error.about.line > 0 && !error.block;
-  return place.append(weight) + ": " + (of_text ? gcode::to_text(error.about) : to_text(error.error()));
-}
+[[nodiscard]] std::string to_text(const ProgramError& error, std::string_view weight = "error");
 
 }  // namespace cncplan
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/plan/program_error-inl.hpp"
+#endif

@@ -1,0 +1,2 @@
+// Whole runs of a player.
+#include "cncplan/plan/player/play-inl.hpp"
