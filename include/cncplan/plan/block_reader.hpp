@@ -85,8 +85,7 @@ class BlockReader {
 
   /// Of the options: start, dialect, arcs and orientation; the tolerance tells whether P and Q of G64 have an
   /// effect.
-  explicit BlockReader(const M& machine, const PlanOptions& options = {})
-      : BlockReader(machine, options, options.dialect ? *options.dialect : dialect_of(machine)) {}
+  explicit BlockReader(const M& machine, const PlanOptions& options = {});
   BlockReader(const BlockReader&) = delete;  // ranges point to it
   BlockReader& operator=(const BlockReader&) = delete;
 
@@ -95,14 +94,10 @@ class BlockReader {
   /// above_limit and unreachable where an axis would leave its travel, unlimited and not_finite where nothing
   /// limits a motion, each with the block's number; `unfinished` while blocks of the line before are left:
   /// then the line is not counted.
-  [[nodiscard]] Expected<Blocks, ProgramError> read_line(std::string_view line) {
-    return take([&](auto check) { return lines_.read_line(line, check); });
-  }
+  [[nodiscard]] Expected<Blocks, ProgramError> read_line(std::string_view line);
   /// Nothing follows: what cutter compensation holds back. If lines follow all the same, the next motion
   /// under compensation is a first one. Errors as for `read_line`.
-  [[nodiscard]] Expected<Blocks, ProgramError> end_of_program() {
-    return take([&](auto check) { return lines_.end_of_program(check); });
-  }
+  [[nodiscard]] Expected<Blocks, ProgramError> end_of_program();
 
   /// Whether the program has ended, by M2, M30 or %: lines behind it are only counted.
   [[nodiscard]] bool finished() const { return lines_.finished(); }
@@ -112,14 +107,7 @@ class BlockReader {
   [[nodiscard]] const Warnings& warnings() const { return warnings_; }
 
  private:
-  BlockReader(const M& machine, const PlanOptions& options, const gcode::Dialect& dialect)
-      : machine_(machine),
-        machine_ok_(validate(machine)),
-        smoothed_(level_of(options) != SmoothLevel::exact),
-        builder_(machine, dialect, options.arcs, options.orientation),
-        lines_(builder_.with_tool_point(dialect), start_position(options)) {
-    builder_.start_at(start_position(options));
-  }
+  BlockReader(const M& machine, const PlanOptions& options, const gcode::Dialect& dialect);
 
   template <class Read>
   Expected<Blocks, ProgramError> take(Read&& read);
@@ -137,6 +125,30 @@ class BlockReader {
   std::size_t call_ = 0;  // number of the call whose blocks they are
   std::size_t taken_ = 0;
 };
+
+template <MachineModel M>
+BlockReader<M>::BlockReader(const M& machine, const PlanOptions& options)
+    : BlockReader(machine, options, options.dialect ? *options.dialect : dialect_of(machine)) {}
+
+template <MachineModel M>
+BlockReader<M>::BlockReader(const M& machine, const PlanOptions& options, const gcode::Dialect& dialect)
+    : machine_(machine),
+      machine_ok_(validate(machine)),
+      smoothed_(level_of(options) != SmoothLevel::exact),
+      builder_(machine, dialect, options.arcs, options.orientation),
+      lines_(builder_.with_tool_point(dialect), start_position(options)) {
+  builder_.start_at(start_position(options));
+}
+
+template <MachineModel M>
+auto BlockReader<M>::read_line(std::string_view line) -> Expected<Blocks, ProgramError> {
+  return take([&](auto check) { return lines_.read_line(line, check); });
+}
+
+template <MachineModel M>
+auto BlockReader<M>::end_of_program() -> Expected<Blocks, ProgramError> {
+  return take([&](auto check) { return lines_.end_of_program(check); });
+}
 
 template <MachineModel M>
 template <class Read>

@@ -267,10 +267,7 @@ class ExecutorCore {
            !player_.held() && !player_.stopped();
   }
   Expected<void> jogged(const Expected<void>& done, bool returns);
-  void end_jog(Scalar share) {
-    jog_.to_rest(machine_, share);
-    goes_back_ = false;
-  }
+  void end_jog(Scalar share);
 
   // The axes are to go to a path that is not there yet: no block moves, or those that do are held back.
   void wait_for_path(Scalar period, std::int64_t ready) {

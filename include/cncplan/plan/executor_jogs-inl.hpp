@@ -93,4 +93,10 @@ auto ExecutorCore<M, B>::tick_of_jog(Scalar period, const Tell* tell) -> SetPoin
   return last_;
 }
 
+template <MachineModel M, BlockModel B>
+void ExecutorCore<M, B>::end_jog(Scalar share) {
+  jog_.to_rest(machine_, share);
+  goes_back_ = false;
+}
+
 }  // namespace cncplan::plan

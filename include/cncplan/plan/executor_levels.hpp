@@ -32,18 +32,22 @@ struct ExecutorLevels {
 
   /// Nothing where the level is `fast` at most.
   [[nodiscard]] static LevelDriver<M, B>* make(const M& machine, const Options& options,
-                                               std::size_t most_blocks, std::pmr::memory_resource* memory) {
-    if (options.level <= SmoothLevel::fast || !(options.tolerance > S(0))) return nullptr;
-    PlanOptions plan;
-    plan.tolerance = static_cast<double>(options.tolerance);
-    plan.level = options.level;
-    plan.rotary_tolerance = static_cast<double>(options.rotary_tolerance);
-    plan.junction_deviation = static_cast<double>(options.junction_deviation);
-    plan.exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds;
-    return LiveDriver<M, B>::make(machine, {plan, options.reserve, options.longest_wait, options.background},
-                                  most_blocks, memory);
-  }
+                                               std::size_t most_blocks, std::pmr::memory_resource* memory);
 };
+
+template <MachineModel M, BlockModel B>
+LevelDriver<M, B>* ExecutorLevels<M, B>::make(const M& machine, const Options& options,
+                                              std::size_t most_blocks, std::pmr::memory_resource* memory) {
+  if (options.level <= SmoothLevel::fast || !(options.tolerance > S(0))) return nullptr;
+  PlanOptions plan;
+  plan.tolerance = static_cast<double>(options.tolerance);
+  plan.level = options.level;
+  plan.rotary_tolerance = static_cast<double>(options.rotary_tolerance);
+  plan.junction_deviation = static_cast<double>(options.junction_deviation);
+  plan.exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds;
+  return LiveDriver<M, B>::make(machine, {plan, options.reserve, options.longest_wait, options.background},
+                                most_blocks, memory);
+}
 
 }  // namespace cncplan::plan
 
