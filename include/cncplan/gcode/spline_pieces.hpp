@@ -28,7 +28,7 @@ struct BezierCurve {
   int degree = 3;
 
   [[nodiscard]] std::span<const SplineControl> used() const {
-    return std::span(controls).first(static_cast<std::size_t>(degree) + 1);
+    return {controls.data(), static_cast<std::size_t>(degree) + 1};
   }
   [[nodiscard]] SplineControl& at(int i) { return controls[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const SplineControl& at(int i) const { return controls[static_cast<std::size_t>(i)]; }

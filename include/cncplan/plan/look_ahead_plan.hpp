@@ -138,7 +138,8 @@ template <MachineModel M, BlockModel B>
       fallbacks.insert(fallbacks.end(), exact.begin(), exact.end());
       again = !exact.empty();
     }
-    std::ranges::sort(fallbacks, {}, &Fallback::first);
+    std::sort(fallbacks.begin(), fallbacks.end(),
+              [](const Fallback& a, const Fallback& b) { return a.first < b.first; });
   }
   if (!cells) return tl::unexpected(error_in(given, cells.error()));
   auto planned = trajectory(std::move(blocks), machine, *cells, SevenPhase{}, std::move(smoothing));

@@ -33,7 +33,7 @@ namespace plan {
 [[nodiscard]] inline Expected<void, ProgramError> plannable(const ProgramRecord& program,
                                                             const std::array<double, 9>& start) {
   if (const Problem* error = program.first_error()) return tl::unexpected(ProgramError(*error));
-  const auto [read, given] = std::ranges::mismatch(program.start(), start);
+  const auto [read, given] = std::mismatch(program.start().begin(), program.start().end(), start.begin());
   if (given == start.end()) return {};
   return tl::unexpected(ProgramError{{{ErrorCode::not_as_read, "start", *given, *read}, 0, 0, {}}});
 }

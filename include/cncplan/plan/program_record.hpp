@@ -41,20 +41,20 @@ struct ProgramWord {
 class ProgramRecord {
  public:
   /// Words and stops, in order.
-  [[nodiscard]] std::span<const ProgramWord> words() const& { return words_; }
+  [[nodiscard]] std::span<const ProgramWord> words() const& { return {words_.data(), words_.size()}; }
   void words() const&& = delete;
   /// All that is wrong and all that is without effect, in the order of the text as it runs.
-  [[nodiscard]] std::span<const Problem> problems() const& { return problems_; }
+  [[nodiscard]] std::span<const Problem> problems() const& { return {problems_.data(), problems_.size()}; }
   void problems() const&& = delete;
   /// Whether any of them is an error: then the program cannot be planned.
   [[nodiscard]] bool failed() const { return first_error() != nullptr; }
   /// The first of the errors; null where there is none.
   [[nodiscard]] const Problem* first_error() const;
   /// Numbers of the tools that T selects, each once, in order.
-  [[nodiscard]] std::span<const int> tools() const& { return tools_; }
+  [[nodiscard]] std::span<const int> tools() const& { return {tools_.data(), tools_.size()}; }
   void tools() const&& = delete;
   /// Paths of the files that it comes from; the first one is its own, empty for a text in memory.
-  [[nodiscard]] std::span<const std::string> files() const& { return files_; }
+  [[nodiscard]] std::span<const std::string> files() const& { return {files_.data(), files_.size()}; }
   void files() const&& = delete;
   /// The file that a block comes from; its line and column are in the block.
   [[nodiscard]] const std::string& file_of(std::size_t block) const&;
@@ -66,7 +66,9 @@ class ProgramRecord {
   /// Number of the last line.
   [[nodiscard]] int lines() const { return lines_; }
   /// Warnings that hold where the path is not smoothed: P and Q of G64 have no effect then.
-  [[nodiscard]] std::span<const Problem> if_not_smoothed() const& { return if_not_smoothed_; }
+  [[nodiscard]] std::span<const Problem> if_not_smoothed() const& {
+    return {if_not_smoothed_.data(), if_not_smoothed_.size()};
+  }
   void if_not_smoothed() const&& = delete;
 
   /// Makes the block of an item, if it has one, and says how many there are now.

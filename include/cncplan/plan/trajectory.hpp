@@ -173,12 +173,14 @@ class Trajectory {
   [[nodiscard]] std::vector<BasicBlockMotion<Scalar>> blocks() const;
 
   /// Words of the program that others act on, in order, each with the time at which the motion reaches it.
-  [[nodiscard]] std::span<const TimedWord> words() const& { return words_; }
+  [[nodiscard]] std::span<const TimedWord> words() const& { return {words_.data(), words_.size()}; }
   void words() const&& = delete;
   void set_words(std::vector<TimedWord> words) { words_ = std::move(words); }
 
   /// What was read and has no effect, as sentences.
-  [[nodiscard]] std::span<const std::string> warnings() const& { return warnings_; }
+  [[nodiscard]] std::span<const std::string> warnings() const& {
+    return {warnings_.data(), warnings_.size()};
+  }
   void warnings() const&& = delete;
   void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
 
@@ -187,7 +189,9 @@ class Trajectory {
   void set_level(SmoothLevel level) { level_ = level; }
   /// Where the plan has another level, in order. Blocks that need no smoothing are no fallbacks: those that
   /// are to be exact, stops, and lines straight on.
-  [[nodiscard]] std::span<const Fallback> fallbacks() const& { return fallbacks_; }
+  [[nodiscard]] std::span<const Fallback> fallbacks() const& {
+    return {fallbacks_.data(), fallbacks_.size()};
+  }
   void fallbacks() const&& = delete;
   void set_fallbacks(std::pmr::vector<Fallback> fallbacks) { fallbacks_ = std::move(fallbacks); }
 

@@ -58,7 +58,8 @@ class TrajectoryExecutor {
     for (std::size_t i = 0; i < trajectory.program().size(); ++i)
       if (const gcode::Word& word = trajectory.program()[i].word; word.letter != '\0')
         words_.push_back({word, static_cast<double>(trajectory.start_time(i))});
-    std::ranges::stable_sort(words_, {}, &TimedWord::time);
+    std::stable_sort(words_.begin(), words_.end(),
+                     [](const TimedWord& a, const TimedWord& b) { return a.time < b.time; });
     if (!trajectory.phases().empty()) clock_.chain().push_back(trajectory, rests_);
     if (const auto ok = accept(machine, options.longest_hold); !ok) fail(ok.error());
     clock_.stand_at(Scalar(0));

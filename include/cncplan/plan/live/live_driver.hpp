@@ -357,7 +357,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] std::optional<S> next_pause() const {
     const S from = std::max(clock_.state().position - same_time, passed_ + same_time);
     const auto in = [&](const Clocked& motion, S start) -> std::optional<S> {
-      auto begin = std::ranges::lower_bound(motion.begins, from - start, {}, &Clocked::Begin::time);
+      auto begin = std::lower_bound(motion.begins.begin(), motion.begins.end(), from - start,
+                                    [](const auto& one, S time) { return one.time < time; });
       for (; begin != motion.begins.end(); ++begin)
         if (single_step_ ? start + begin->time > same_time : begin->line == pause_line_)
           return start + begin->time;
