@@ -10,6 +10,8 @@ namespace cncplan::gcode {
 
 namespace detail {
 
+using Give = FunctionRef<void(const Item&)>;  // compensation is compiled once for all that take items
+
 inline void keep_first(Expected<void, Diagnostic>& done, Expected<void, Diagnostic>&& next) {
   if (done) done = std::move(next);
 }
@@ -44,16 +46,19 @@ CNCPLAN_INLINE Expected<void, Diagnostic> LineReader::read_line(std::string_view
 
 CNCPLAN_INLINE Expected<void, Diagnostic> LineReader::end_of_program(Check check) {
   drain();
+  const auto keep = [this](const Item& made) { ready_.push_back(made); };
   Expected<void, Diagnostic> done;
-  ahead_.compensation.finish([&](const Item& item) { detail::keep_first(done, check(item)); });
+  const auto ask = [&](const Item& item) { detail::keep_first(done, check(item)); };
+  ahead_.compensation.finish(detail::Give(ask));
   if (done)
-    here_.compensation.finish([this](const Item& item) { ready_.push_back(item); });
+    here_.compensation.finish(detail::Give(keep));
   else
     ahead_.compensation = here_.compensation;
   return done;
 }
 
 CNCPLAN_INLINE const Item* LineReader::next() {
+  const auto keep = [this](const Item& made) { ready_.push_back(made); };
   for (;;) {
     if (given_ < ready_.size()) return &ready_[given_++];
     ready_.clear();
@@ -62,13 +67,12 @@ CNCPLAN_INLINE const Item* LineReader::next() {
       const Item& item = *item_++;
       if (passes(here_, item)) return &item;
       // No error: it would have been met ahead.
-      if (!here_.compensation.take(item, [this](const Item& made) { ready_.push_back(made); }))
-        return nullptr;
+      if (!here_.compensation.take(item, detail::Give(keep))) return nullptr;
     } else if (here_.reader.busy()) {
       item_ = items_.data();
       end_ = here_.reader.go_on(items_.data());
     } else {
-      if (finished()) here_.compensation.finish([this](const Item& made) { ready_.push_back(made); });
+      if (finished()) here_.compensation.finish(detail::Give(keep));
       if (ready_.empty()) return nullptr;
     }
   }
@@ -83,14 +87,14 @@ CNCPLAN_INLINE Expected<void, Diagnostic> LineReader::look_ahead(std::string_vie
     for (const Item* item = items_.data(); item != last; ++item) {
       if (passes(ahead_, *item))
         give(*item);
-      else if (auto taken = ahead_.compensation.take(*item, give); !taken)
+      else if (auto taken = ahead_.compensation.take(*item, detail::Give(give)); !taken)
         detail::keep_first(done, std::move(taken));
       if (!done) return done;
     }
     if (!ahead_.reader.busy()) break;
     last = ahead_.reader.go_on(items_.data());
   }
-  if (ahead_.reader.finished()) ahead_.compensation.finish(give);
+  if (ahead_.reader.finished()) ahead_.compensation.finish(detail::Give(give));
   return done;
 }
 

@@ -109,8 +109,8 @@ class BlockReader {
  private:
   BlockReader(const M& machine, const PlanOptions& options, const gcode::Dialect& dialect);
 
-  template <class Read>
-  Expected<Blocks, ProgramError> take(Read&& read);
+  // The text of a line; without one, the end of the program.
+  Expected<Blocks, ProgramError> take(std::optional<std::string_view> text);
   [[nodiscard]] Expected<Block, gcode::Diagnostic> make(const gcode::Item& item);
   void advance();
 
@@ -142,17 +142,16 @@ BlockReader<M>::BlockReader(const M& machine, const PlanOptions& options, const 
 
 template <MachineModel M>
 auto BlockReader<M>::read_line(std::string_view line) -> Expected<Blocks, ProgramError> {
-  return take([&](auto check) { return lines_.read_line(line, check); });
+  return take(line);
 }
 
 template <MachineModel M>
 auto BlockReader<M>::end_of_program() -> Expected<Blocks, ProgramError> {
-  return take([&](auto check) { return lines_.end_of_program(check); });
+  return take({});
 }
 
 template <MachineModel M>
-template <class Read>
-auto BlockReader<M>::take(Read&& read) -> Expected<Blocks, ProgramError> {
+auto BlockReader<M>::take(std::optional<std::string_view> text) -> Expected<Blocks, ProgramError> {
   if (!machine_ok_) return tl::unexpected(ProgramError{{machine_ok_.error(), 0, 0, {}}});
   if (left_ > 0)
     return tl::unexpected(
@@ -172,7 +171,7 @@ auto BlockReader<M>::take(Read&& read) -> Expected<Blocks, ProgramError> {
     ++count;
     return {};
   };
-  const auto done = read([&](const gcode::Item& item) -> Expected<void, gcode::Diagnostic> {
+  const auto check_item = [&](const gcode::Item& item) -> Expected<void, gcode::Diagnostic> {
     if (const auto* warning = std::get_if<gcode::Warning>(&item)) {
       if (!(smoothed_ && gcode::void_if_smoothed(warning->about))) warnings_.push_back(warning->about);
       return {};
@@ -185,7 +184,8 @@ auto BlockReader<M>::take(Read&& read) -> Expected<Blocks, ProgramError> {
       if (const auto ok = check(**more); !ok) return ok;
     if (!more) return tl::unexpected(more.error());
     return {};
-  });
+  };
+  const auto done = text ? lines_.read_line(*text, check_item) : lines_.end_of_program(check_item);
   builder_.start_at(before);
   if (!done) return tl::unexpected(ProgramError{done.error(), {}, at_fault});
   ++call_;
