@@ -91,6 +91,33 @@ TEST_CASE("on a straight path the speed is that of seven phases, for any window"
     }
 }
 
+TEST_CASE("cells with a pace of their own keep to its share of the limits, and others do not") {
+  const Limits l{30, 1000, 1e4};
+  const double length = 10;
+  auto cells = straight(length, std::sqrt(std::pow(0.02 * l.velocity, 3) / (4.5 * l.jerk)), 0.1, l.velocity,
+                        Vector3(1, 0, 0));
+  MotionLimits<3> limits;
+  limits.tool = l;
+  const double pace = 0.8;
+  double at = 0;
+  for (auto& cell : cells) {
+    if (at < length / 2) cell.pace = pace;
+    at += cell.length;
+  }
+  Memory memory(cells.size());
+  const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, 400}, memory.spans());
+  CHECK(plan.use.slow_down() <= 1);
+  double slow = 0, fast = 0;  // the greatest jerk
+  emit_phases(std::span<const SpeedCell<3>>(cells), std::span<const double>(memory.law), plan.start, plan.end,
+              [&](std::size_t cell, const Phase& phase) {
+                double& most = cells[cell].pace < 1 ? slow : fast;
+                most = std::max(most, std::abs(phase.jerk));
+              });
+  CHECK(slow < pace * pace * pace * l.jerk * 1.001);
+  CHECK(slow > pace * pace * pace * l.jerk * 0.9);
+  CHECK(fast > l.jerk * 0.9);
+}
+
 TEST_CASE("next to rest cells may be of any lengths") {
   const Limits l{30, 1000, 1e4};
   const double best = seven_phases(20, l);

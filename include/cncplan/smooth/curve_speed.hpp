@@ -143,12 +143,17 @@ class CurveSpeed {
       const S before = last_speed(starts_[i], knot), after = last_speed(starts_[i] + cells_[i].length, knot);
       cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
     }
+    set_paces();
     const std::size_t n = cells_.size();
     paces_.resize(n);
     levels_.resize(n);
     law_.resize(n + 2);
     plateaus_.resize(n + 4);
   }
+
+  /// From a place to another by the band's length, plans keep to a share of the limits of acceleration, and
+  /// to its power of 3/2 of those of jerk, as if the clock ran slower there; not on an approach.
+  void slow_down(S from, S to, S share) { slow_.push_back({from, to, share}); }
 
   BasicSpeedPlan<S> plan(S gap, bool proven, bool fastest = true, const Progress& progress = {}) {
     options_.window.gap = gap;
@@ -292,6 +297,15 @@ class CurveSpeed {
     origins_.push_back(origin);
   }
 
+  void set_paces() {
+    for (const auto& [from, to, share] : slow_)
+      for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const bool has_law = i > 0 && i <= ends_.given;
+        if (!has_law && starts_[i] < to && starts_[i] + cells_[i].length > from)
+          cells_[i].pace *= std::sqrt(share);
+      }
+  }
+
   [[nodiscard]] BasicSpeedPlan<S> plan_of(std::span<const Cell> cells, const Progress& progress) {
     std::copy(first_law_.begin(), first_law_.end(), law_.begin());
     return plan_speed<S, Seen::count>(cells, limits_, options_,
@@ -417,6 +431,10 @@ class CurveSpeed {
     return length;
   }
 
+  struct Slow {
+    S from{}, to{}, share{};
+  };
+
   Limits limits_;
   Seen seen_;
   bool proven_{};  // whether the cells are those of a law that is to be
@@ -430,6 +448,7 @@ class CurveSpeed {
   std::pmr::vector<S> starts_{memory_};
   std::pmr::vector<std::pair<std::size_t, S>> origins_{memory_};
   std::pmr::vector<BasicPace<S>> paces_{memory_};
+  std::pmr::vector<Slow> slow_{memory_};
   std::pmr::vector<std::pair<S, S>> knots_{memory_};  // of the last plan: places and speeds
   std::pmr::vector<S> first_law_{memory_}, levels_{memory_}, law_{memory_}, numbers_{memory_};
   std::pmr::vector<BasicSpeedShare<S>> speeds_{memory_};

@@ -52,10 +52,11 @@ template <std::floating_point S, int N>
 [[nodiscard]] BasicRestCell<S> rest_cell(const BasicSpeedCell<S, N>& cell,
                                          const BasicMotionLimits<S, N>& limits) {
   constexpr S share = S(0.97);
-  BasicRestCell<S> rest(cell.length, share * tangential_limits(std::span(&cell, 1), limits).jerk);
+  const S pace = BasicPace<S>{S(1), cell.pace}.jerk();
+  BasicRestCell<S> rest(cell.length, share * pace * tangential_limits(std::span(&cell, 1), limits).jerk);
   for (int round = 0; round < 20; ++round) {
     const BasicPhase<S> phase{S(0), rest.duration(), S(0), S(0), S(0), rest.jerk};
-    const S use = use_of(phase, cell, limits).slow_down();
+    const S use = use_of(phase, cell, limits).slow_down() / cell.pace;
     if (!(use > S(0.995))) break;
     rest = {cell.length, rest.jerk * std::pow(S(0.98) / use, S(3))};
   }
@@ -129,7 +130,7 @@ template <std::floating_point S, int N>
   const auto law = memory.law.first(inner + 2);
   const auto paces = memory.paces.first(cells.size());
   const auto levels = memory.levels.first(inner);
-  std::fill(paces.begin(), paces.end(), BasicPace<S>{});
+  for (std::size_t i = 0; i < cells.size(); ++i) paces[i] = {S(1), cells[i].pace};
   const BasicSpeedProblem<S, N> problem{cells.subspan(1, inner), paces.subspan(1, inner), &limits};
   const BasicSpeedProblem<S, N> sought{problem.cells.subspan(ends.given), problem.paces.subspan(ends.given),
                                        &limits};

@@ -26,6 +26,8 @@ struct BasicSpeedCell {
   Vector third = Vector::Zero();
   Vector spread = Vector::Zero();
   S skew{};  ///< of the law of speed, see `BasicCellShape`
+  S pace =
+      S(1);  ///< acceleration keeps to its square of the limits, jerk to its cube: a clock that is slower
 
   [[nodiscard]] BasicCellShape<S> shape() const { return {length, skew}; }
   [[nodiscard]] Vector first_at(S s) const { return first + s * (second + (s / S(2)) * third); }

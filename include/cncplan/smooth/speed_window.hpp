@@ -181,7 +181,7 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
         return std::max(std::min(at_places / in_phases, S(1)) * (S(1) - less), of_kept * (S(1) + less));
       };
       BasicPace<S>& pace = problem.paces[cell];
-      const BasicPace<S> most = failed ? pace : BasicPace<S>{};
+      const BasicPace<S> most = failed ? pace : BasicPace<S>{S(1), problem.cells[cell].pace};
       pace = {std::min(most.speed, paced(sampled.velocity, use.velocity, old.velocity, margin / S(10))),
               std::min(most.force, paced(sampled.force(), use.force(), old.force(), margin))};
       set(cell);

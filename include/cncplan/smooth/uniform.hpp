@@ -35,7 +35,8 @@ template <std::floating_point S>
 template <std::floating_point S, int N>
 [[nodiscard]] bool alike(const BasicSpeedCell<S, N>& a, const BasicSpeedCell<S, N>& b,
                          const BasicMotionLimits<S, N>& limits) {
-  if (!(std::abs(a.length - b.length) <= S(1e-6) * a.length) || a.feed != b.feed || a.spread != b.spread)
+  if (!(std::abs(a.length - b.length) <= S(1e-6) * a.length) || a.feed != b.feed || a.pace != b.pace ||
+      a.spread != b.spread)
     return false;
   const auto of_tool = [&](int axis, const BasicLimits<S>& own) {
     return std::count(limits.tool_axes.begin(), limits.tool_axes.end(), axis) > 0 &&
