@@ -6,9 +6,11 @@
 #include <string>
 
 #include "cncplan/core/state.hpp"
+#include "cncplan/plan/path_brake.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/trajectory_executor.hpp"
 #include "cncplan/state/velocity_change.hpp"
+#include "least_brake.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
@@ -41,6 +43,15 @@ struct Clocked {
   plan::TrajectoryChain<Machine<3>, B> chain;
   plan::ClockProof<Machine<3>, B> proof;
 };
+
+const AxisLimits straight = [] {
+  AxisLimits limits;
+  limits.acceleration_up = limits.acceleration_down = mill.limits.acceleration;
+  limits.jerk = mill.limits.jerk;
+  return limits;
+}();
+
+using AlongPath = plan::ClockProof<Machine<3>, Clocked::B>::Motion;
 
 // From a rate of 1 or so to rest, with so much jerk and acceleration of the clock.
 state::Motion change(double at, double rate, double to, double jerk, double acceleration) {
@@ -200,7 +211,8 @@ struct Brakes : Clocked {
   }
   bool proven(double at, const state::Motion& brake) const {
     int work = 20000;
-    return proof.brakes(chain, brake, trajectory->phase_at(at), trajectory->phases().size() - 1, work);
+    const plan::PhasesByLength<Machine<3>, B> way(chain, trajectory->phase_at(at), 0.0);
+    return proof.moves(chain, way, trajectory->phases().size() - 1, AlongPath(brake), work);
   }
 
   const Trajectory<Machine<3>, B>* trajectory{};
@@ -244,7 +256,7 @@ TEST_CASE("clock: proven brakes along the path keep the limits and the planned s
     (ok ? proven : refused)++;
     if (!ok) continue;
     INFO("at " << at << ", for " << brake.duration() << " s");
-    const plan::ClockRamp<Machine<3>, Clocked::B> ramp(brake, trajectory.phase_at(at));
+    const plan::ClockRamp<Machine<3>, Clocked::B> ramp(AlongPath(brake), trajectory.phase_at(at));
     double speed = 0;
     const auto place = [&](double t) -> Vector3 {
       const auto planned = trajectory.at(ramp.at(brakes.chain, t).position);
@@ -259,4 +271,76 @@ TEST_CASE("clock: proven brakes along the path keep the limits and the planned s
   }
   CHECK(proven > 30);
   CHECK(refused > 30);
+}
+
+TEST_CASE("clock: brakes that are made step by step keep the limits, wherever they begin", "[clock]") {
+  Machine<3> machine = mill;
+  machine.axes[0].jerk = 8000;
+  machine.axes[1].acceleration = 400;
+  const auto trajectory = planned(
+      "F1800 G1 X8\nY5\nF900 X9 Y5.5\nG3 X14 Y0.5 R6\nF1500 G1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\n"
+      "G1 X4 Y0\n",
+      with_reserve(machine, 0.1));
+  Clocked clocked(trajectory, machine);
+  const auto tool = tool_axes(machine);
+  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain);
+  Random random;
+  int found = 0, tried = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double at = random.uniform(0.01, trajectory.duration() - 0.01);
+    const auto now = trajectory.at(at).along;
+    const std::size_t phase = trajectory.phase_at(at);
+    const auto& own = trajectory.phases()[phase].phase;
+    const double s = own.at(at - own.time).position - own.position;
+    ++tried;
+    for (int level = 0; level < path_brake.levels; ++level) {
+      int work = 4000;
+      const auto brake = path_brake.find({s, now.velocity, now.acceleration}, phase,
+                                         trajectory.phases().size() - 1, straight, level, work);
+      if (!brake) continue;
+      found += level == 0;
+      INFO("at " << at << ", level " << level << ", for " << brake->duration() << " s");
+      CHECK(brake->end().velocity == 0);
+      CHECK(brake->end().acceleration == 0);
+      const auto& last = brake->phases().back();
+      auto end = brake->start();
+      for (const auto& step : brake->phases()) end = step.after(end, step.duration);
+      CHECK(std::abs(end.velocity) < 1e-9);
+      CHECK(std::abs(last.acceleration + last.jerk * last.duration) < 1e-9);
+      const plan::ClockRamp<Machine<3>, Clocked::B> ramp(*brake, phase);
+      double speed = 0;
+      const auto place = [&](double t) -> Vector3 {
+        const auto planned = trajectory.at(ramp.at(clocked.chain, t).position);
+        if (planned.along.velocity > 1e-3)
+          speed = std::max(speed, brake->at(t).velocity / planned.along.velocity);
+        return planned.position;
+      };
+      const Most most = most_of(place, brake->duration(), machine, 4e-5);
+      CHECK(most.acceleration < 1 + 1e-5);
+      CHECK(most.jerk < 1 + 1e-3);  // rounding of positions
+      CHECK(speed < 1 + 1e-6);
+    }
+  }
+  CHECK(found > tried / 2);
+}
+
+TEST_CASE("clock: a brake on a straight line takes little more than the least time", "[clock]") {
+  const auto trajectory = planned("F1800 G1 X50\n", with_reserve(mill, 0.05));
+  Clocked clocked(trajectory, mill);
+  const auto tool = tool_axes(mill);
+  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain);
+  for (double at = 0.005; at < 1.4; at += 0.03) {
+    const auto now = trajectory.at(at).along;
+    const std::size_t phase = trajectory.phase_at(at);
+    const auto& own = trajectory.phases()[phase].phase;
+    const double s = own.at(at - own.time).position - own.position;
+    int work = 4000;
+    const auto brake = path_brake.find({s, now.velocity, now.acceleration}, phase,
+                                       trajectory.phases().size() - 1, straight, 0, work);
+    CAPTURE(at, now.velocity, now.acceleration);
+    REQUIRE(brake);
+    const double least = least_time(now.velocity, now.acceleration, 1000, 10000);
+    CHECK(brake->duration() >= least * (1 - 1e-9));
+    CHECK(brake->duration() <= least * 1.04 + 1e-3);
+  }
 }

@@ -68,7 +68,7 @@ class ClockProof {
  public:
   using S = typename M::Scalar;
   using Chain = TrajectoryChain<M, B>;
-  using Motion = state::BasicMotion<S>;
+  using Motion = typename ClockRamp<M, B>::Motion;
   static constexpr int n = M::axis_count;
 
   explicit ClockProof(const M& machine) : limits_(machine_limits(machine)), tool_(tool_axes(machine)) {}
@@ -77,17 +77,16 @@ class ClockProof {
 
   /// From the start of the motion of a clock to its end, or to where it shows `until`. It goes one way. Every
   /// interval that is looked at takes one from `work`: false too where nothing is left of it.
-  [[nodiscard]] bool holds(const Chain& chain, const Motion& clock, bool backwards, S until,
+  [[nodiscard]] bool holds(const Chain& chain, const state::BasicMotion<S>& clock, bool backwards, S until,
                            int& work) const {
     const std::size_t last = backwards ? chain.first_phase() : chain.last_phase();
     return holds(chain, chain, chain.phase_at(clock.start().position), last, clock, backwards, until, work);
   }
-  /// A brake along the path, from so many mm behind the start of a phase, to rest before the end of the phase
-  /// `last`.
-  [[nodiscard]] bool brakes(const Chain& chain, const Motion& brake, std::size_t phase, std::size_t last,
-                            int& work) const {
+  /// A motion along the path by the length of `way`, within it and the phases up to `last`.
+  [[nodiscard]] bool moves(const Chain& chain, const PhasesByLength<M, B>& way, std::size_t last,
+                           const Motion& motion, int& work) const {
     constexpr S nowhere = std::numeric_limits<S>::infinity();
-    return holds(chain, PhasesByLength<M, B>(chain, phase, S(0)), phase, last, brake, false, nowhere, work);
+    return holds(chain, PhasesByLength<M, B>(way), way.index(), last, motion, false, nowhere, work);
   }
 
  private:
@@ -98,9 +97,9 @@ class ClockProof {
   enum class Answer { yes, no, unknown };
 
   // Phases by time, or by length: then what comes to the end of the last one does not brake in time.
-  template <class Phases>
+  template <class Phases, class AnyMotion>
   [[nodiscard]] bool holds(const Chain& chain, Phases&& phases, std::size_t now, std::size_t last,
-                           const Motion& clock, bool backwards, S until, int& work) const {
+                           const AnyMotion& clock, bool backwards, S until, int& work) const {
     constexpr bool by_time = std::same_as<std::remove_cvref_t<Phases>, Chain>;
     const S sense = backwards ? S(-1) : S(1);
     BasicAxisState<S> from = clock.start();

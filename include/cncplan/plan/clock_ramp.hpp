@@ -40,6 +40,7 @@ class PhasesByLength {
     return index_;
   }
   [[nodiscard]] S start() const { return start_; }
+  [[nodiscard]] std::size_t index() const { return index_; }
 
  private:
   [[nodiscard]] S length() const {
@@ -60,10 +61,10 @@ class ClockRamp {
  public:
   using S = typename M::Scalar;
   using Chain = TrajectoryChain<M, B>;
-  using Motion = state::BasicMotion<S>;
+  using Motion = state::BasicMotion<S, 48>;
 
   ClockRamp() = default;
-  explicit ClockRamp(const Motion& by_time) : motion_(by_time) {}
+  explicit ClockRamp(const state::BasicMotion<S>& by_time) : motion_(by_time) {}
   /// From mm behind the start of a phase on.
   ClockRamp(const Motion& brake, std::size_t phase) : motion_(brake), along_path_(true), phase_(phase) {}
 

@@ -24,6 +24,7 @@
 #include "cncplan/plan/fallback.hpp"
 #include "cncplan/plan/machine_block.hpp"
 #include "cncplan/plan/motion_table.hpp"
+#include "cncplan/plan/planned_brake.hpp"
 #include "cncplan/plan/set_point.hpp"
 #include "cncplan/plan/smoothing.hpp"
 #include "cncplan/plan/tool.hpp"
@@ -82,7 +83,8 @@ class Trajectory {
         smoothing_(std::move(smoothing)),
         pieces_(std::move(pieces)),
         phases_(std::move(phases)),
-        fallbacks_(blocks_.get_allocator()) {
+        fallbacks_(blocks_.get_allocator()),
+        brakes_(blocks_.get_allocator()) {
     for (std::size_t i = 0; i < blocks_.size(); ++i)
       starts_[i + 1] = starts_[i] + (counts(blocks_[i]) ? blocks_[i].path.length() : Scalar(0));
   }
@@ -195,6 +197,17 @@ class Trajectory {
   void fallbacks() const&& = delete;
   void set_fallbacks(std::pmr::vector<Fallback> fallbacks) { fallbacks_ = std::move(fallbacks); }
 
+  /// Brakes that were planned with it, in order of their times: where it rests by itself is one too. None
+  /// where the options ask for none.
+  [[nodiscard]] std::span<const plan::BasicPlannedBrake<Scalar>> brakes() const& { return brakes_; }
+  void brakes() const&& = delete;
+  /// s, the longest that a hold takes at the planned speed, if it has them; 0 where there are none.
+  [[nodiscard]] Scalar longest_hold() const { return longest_hold_; }
+  void set_brakes(std::pmr::vector<plan::BasicPlannedBrake<Scalar>> brakes, Scalar longest_hold) {
+    brakes_ = std::move(brakes);
+    longest_hold_ = longest_hold;
+  }
+
   /// When the motion comes to the start of a block; of one that takes no time, to that of the next.
   [[nodiscard]] Scalar start_time(std::size_t block) const {
     const auto earlier = [&](const Phase& phase, std::size_t b) { return block_of(phase.piece) < b; };
@@ -247,6 +260,8 @@ class Trajectory {
   std::size_t first_block_ = 0;
   SmoothLevel level_ = SmoothLevel::exact;
   std::pmr::vector<Fallback> fallbacks_;
+  std::pmr::vector<plan::BasicPlannedBrake<Scalar>> brakes_;
+  Scalar longest_hold_{};
   std::vector<TimedWord> words_;
   std::vector<std::string> warnings_;
 };

@@ -61,14 +61,16 @@ class TrajectoryChain {
   using S = typename M::Scalar;
   using T = Trajectory<M, B>;
   using Rest = BasicRest<S>;
+  using Brake = BasicPlannedBrake<S>;
   using SetPoint = typename T::SetPoint;
   using DrivenPath = typename T::DrivenPath;
 
   static constexpr std::size_t most_parts = 20;
 
-  /// Adds a trajectory with phases, and where it stands. There has to be room.
-  void push_back(const T& trajectory, std::span<const Rest> rests) {
-    Part next{&trajectory, rests, end_time(), 0, S(0)};
+  /// Adds a trajectory with phases, where it stands, and the brakes that are planned along it. There has to
+  /// be room.
+  void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes) {
+    Part next{&trajectory, rests, brakes, end_time(), 0, S(0)};
     if (count_ > 0) {
       const Part& last = parts_[count_ - 1];
       const std::size_t blocks = last.trajectory->program().size();
@@ -77,6 +79,9 @@ class TrajectoryChain {
       next.start_length = last.start_length + last.trajectory->start_length(std::min(before, blocks));
     }
     parts_[count_++] = next;
+  }
+  void push_back(const T& trajectory, std::span<const Rest> rests) {
+    push_back(trajectory, rests, trajectory.brakes());
   }
   /// Lets the last one go, or the first one. The running time goes on.
   void pop_back() { --count_; }
@@ -155,6 +160,19 @@ class TrajectoryChain {
     }
     return std::nullopt;
   }
+  /// The planned brake that begins first of those that do not begin before a time; nothing if there is none.
+  [[nodiscard]] std::optional<Brake> brake_after(S time) const {
+    std::optional<Brake> first;
+    const std::size_t now = part_number(time);
+    for (std::size_t i = now; i < count_ && i < now + 2; ++i) {  // one may begin in the trajectory before
+      const auto brakes = parts_[i].brakes;
+      const auto next = std::ranges::lower_bound(brakes, time - parts_[i].start, {}, &Brake::time);
+      if (next == brakes.end() || (first && !(next->time + parts_[i].start < first->time))) continue;
+      first = *next;
+      first->time += parts_[i].start;
+    }
+    return first;
+  }
   [[nodiscard]] std::optional<Rest> rest_before(S time) const {
     for (std::size_t i = part_number(time) + 1; i-- > 0;) {
       const Part& part = parts_[i];
@@ -171,6 +189,7 @@ class TrajectoryChain {
   struct Part {
     const T* trajectory{};
     std::span<const Rest> rests{};
+    std::span<const Brake> brakes{};
     S start{};
     std::size_t first_phase{};
     S start_length{};  // mm of the program

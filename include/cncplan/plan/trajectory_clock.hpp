@@ -9,8 +9,10 @@
 #include <optional>
 
 #include "cncplan/core/axis_limits.hpp"
+#include "cncplan/plan/block_checks.hpp"
 #include "cncplan/plan/clock_proof.hpp"
 #include "cncplan/plan/clock_ramp.hpp"
+#include "cncplan/plan/path_brake.hpp"
 #include "cncplan/plan/trajectory_chain.hpp"
 #include "cncplan/state/velocity_change.hpp"
 
@@ -22,15 +24,17 @@ namespace cncplan::plan {
 /// A change of the rate is begun only once it is proven over all of its way (`ClockProof`). Each step looks
 /// for such a change, fast ones first, and for a faster one while one goes on. Where none is proven, the
 /// clock goes on as it does, which keeps the limits because the trajectories do. To rest it also looks for
-/// brakes along the path, which begin as hard as the place allows: what is planned there no longer counts.
+/// brakes along the path, which begin as hard as the place allows: what is planned there no longer counts. At
+/// the planned speed none is begun that ends later than the next planned brake, which is begun where none is
+/// found.
 template <MachineModel M, BlockModel B>
 class TrajectoryClock {
  public:
   using S = typename M::Scalar;
   using Chain = TrajectoryChain<M, B>;
   using Rest = BasicRest<S>;
-  using Motion = state::BasicMotion<S>;
   using Ramp = ClockRamp<M, B>;
+  using Brake = BasicPlannedBrake<S>;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
 
@@ -108,25 +112,35 @@ class TrajectoryClock {
     return standing_ ? leave(left, wanted, may_leave) : move(left, wanted(), may_change);
   }
 
-  /// s, no less than a hold takes which is asked for where the clock shows a time behind a rest: that of a
-  /// change that is proven at once, or where that is above half the longest, by what steps do.
-  S time_to_hold(const Rest& rest, S shown, S longest) {
-    run_at({shown, S(1), S(0)});
-    low_ = rest;
-    high_ = chain_.rest_after(shown).value_or(rest);
-    asked_ = S(0);
-    int work = levels * work_in_tick;
-    if (const auto ramp = find_change(state(), S(0), false, infinity, work))
-      if (const S time = std::min(ramp->duration(), high_.from - shown); time <= longest / S(2)) return time;
-    search_from(S(1));
-    S time{};
-    while (!rests()) {
-      const S tick = time < longest ? S(1e-3) : longest / S(100);
-      S left = tick;
-      move(left, S(0), [](S) { return true; });
-      time += tick - left;
-    }
-    return time;
+  /// The first brake of the search, fast ones first, that is proven to begin at the planned speed where the
+  /// clock shows a time between rests, and takes less than `most` s; nothing if there is none. The clock
+  /// shows that time then.
+  [[nodiscard]] std::optional<Brake> find_brake(S shown, S most) {
+    run_planned(shown);
+    int work = work_in_plan;
+    const auto ramp = find_change(state(), S(0), false, most, work);
+    if (!ramp) return std::nullopt;
+    return Brake{shown, ramp->duration(), level_};
+  }
+  /// What the clock shows where it ends.
+  [[nodiscard]] S end_of(const Brake& brake) {
+    if (!(brake.duration > S(0))) return brake.time;
+    run_planned(brake.time);
+    const auto ramp = brake_of_level(brake.level);
+    return ramp ? shown_at_end(*ramp) : high_.from;
+  }
+  /// s, the least that a brake takes where the clock shows a time between rests, if the path went straight
+  /// on: from the planned speed and acceleration, or from the feed if that is longer.
+  [[nodiscard]] S least_brake(S shown) {
+    run_planned(shown);
+    const AlongPath along = along_path(state());
+    const B& block = chain_.block_at(shown);
+    const S feed = wanted_speed(block, machine_, length_of(block.path, machine_));
+    const auto from = [&](const AxisState& start) {
+      return Change(start, S(0), along.limits).fastest().duration();
+    };
+    const S now = from(along.now);
+    return std::isfinite(feed) ? std::max(now, from({S(0), feed, S(0)})) : now;
   }
 
   /// What it shows where a change to rest ends that is proven and may begin now, fast ones first.
@@ -150,12 +164,14 @@ class TrajectoryClock {
  private:
   using Change = state::BasicVelocityChange<S>;
   using AxisState = BasicAxisState<S>;
+  using RateMotion = state::BasicMotion<S>;
 
-  static constexpr int work_in_tick = 400;  // intervals of proofs
+  static constexpr int work_in_tick = 250, work_in_plan = 3000;  // intervals of proofs
   // Of changes of the rate, each slower than the one before; ramps along the path come first.
-  static constexpr int shapes = 3, levels_along_path = 12 * shapes, levels = levels_along_path + 32;
+  static constexpr int levels_along_path = PathBrake<M, B>::levels, levels = levels_along_path + 32;
   static constexpr int no_level = levels + 1;
   static constexpr S growth = S(1.2599210498948732);  // 2^(1/3)
+  static constexpr S same_time = S(1e-9);             // s
   static constexpr S least_portion = S(0.1);
 
   [[nodiscard]] const ClockProof<M, B>& proof() const { return brakes_ ? braked_ : proof_; }
@@ -198,6 +214,16 @@ class TrajectoryClock {
     ramp_.go_on(chain_, elapsed_);
     change_rate(wanted, may_change);
     const bool back = heads_back();
+    if (const auto brake = waits_for(wanted)) {
+      const S wait = brake->time - state().position;
+      if (wait > same_time) {
+        const bool soon = wait < left;
+        elapsed_ += soon ? wait : left;
+        left -= soon ? wait : left;
+        return soon;
+      }
+      begin_planned(*brake, may_change);
+    }
     const S end = back ? low_.to : high_.from;
     const S arrival = time_to(end) - elapsed_;
     if (arrival > left) {
@@ -211,9 +237,44 @@ class TrajectoryClock {
     return true;
   }
 
+  // At the planned speed.
+  void run_planned(S shown) {
+    run_at({shown, S(1), S(0)});
+    high_ = chain_.rest_after(shown).value_or(rest_);
+    low_ = chain_.rest_before(shown).value_or(rest_);
+  }
+  [[nodiscard]] bool at_planned_speed() const {
+    return goal_ == S(1) && !(elapsed_ < ramp_.duration()) && !ramp_.ends_at_rest();
+  }
+  // The planned brake that the clock has at the latest, if it is asked to rest and has begun no other.
+  [[nodiscard]] std::optional<Brake> waits_for(S wanted) const {
+    if (wanted > S(0) || !at_planned_speed()) return std::nullopt;
+    const auto brake = chain_.brake_after(state().position - same_time);
+    return brake && brake->duration > S(0) && brake->time < high_.from ? brake : std::nullopt;
+  }
+  template <class MayChange>
+  void begin_planned(const Brake& brake, MayChange&& may_change) {
+    const auto ramp = brake_of_level(brake.level);
+    if (ramp && may_change(shown_at_end(*ramp))) begin(*ramp, S(0));
+    search_from(S(1));
+  }
+  // What was proven once.
+  [[nodiscard]] std::optional<Ramp> brake_of_level(int level) const {
+    const BasicState<S> now = state();
+    if (level >= levels_along_path)
+      return Ramp(change_by_time(now, S(0), fastest_change(now.position), level));
+    int work = work_in_plan;
+    return brake_along(along_path(now), level, work);
+  }
+  void begin(const Ramp& ramp, S goal) {
+    ramp_ = ramp;
+    elapsed_ = S(0);
+    goal_ = goal;
+  }
+
   void run_at(const AxisState& state) {
     standing_ = false;
-    ramp_ = Ramp(Motion(state, state));
+    ramp_ = Ramp(RateMotion(state, state));
     elapsed_ = S(0);
     goal_ = state.velocity;
     search_from(S(1));
@@ -235,19 +296,18 @@ class TrajectoryClock {
     if (goal != asked_) search_from(S(1));
     asked_ = goal;
     const bool back = now.velocity < S(0) || (now.velocity == S(0) && goal < S(0));
-    const S sooner = goal == goal_ ? S(0.99) * (ramp_.duration() - elapsed_) : infinity;
+    S sooner = goal == goal_ ? S(0.99) * (ramp_.duration() - elapsed_) : infinity;
+    std::optional<Brake> planned;
+    if (goal == S(0) && at_planned_speed()) planned = chain_.brake_after(now.position - same_time);
+    if (planned) sooner = planned->time - now.position + planned->duration;
     const S to = now.velocity + portion_ * (goal - now.velocity);
     int work = work_in_tick;
     const auto ramp = find_change(now, to, back, sooner, work);
     if (ramp && !may_change(shown_at_end(*ramp))) return search_from(S(1));
-    if (ramp) {
-      ramp_ = *ramp;
-      elapsed_ = S(0);
-      goal_ = to;
-    }
+    if (ramp) begin(*ramp, to);
     if (ramp || level_ == no_level) return search_from(S(1));
     if (level_ < levels) return;  // more in the next tick
-    search_from(changes || portion_ < least_portion ? S(1) : portion_ / S(2));
+    search_from(changes || planned || portion_ < least_portion ? S(1) : portion_ / S(2));
   }
 
   // The next change of the rate that is proven, from where the search stands: fast ones first. Nothing where
@@ -264,20 +324,15 @@ class TrajectoryClock {
       const bool whole = work == all_work;
       std::optional<Ramp> ramp;
       if (level_ < levels_along_path) {
-        const Motion motion = Change(along.now, S(0), brake_limits(along.limits)).fastest();
-        if (motion.duration() < sooner && one_way(motion, false, infinity) &&
-            proof().brakes(chain_, motion, along.phase, along.last_phase, work))
-          ramp = Ramp(motion, along.phase);
+        ramp = brake_along(along, level_, work);
+        if (ramp && !(ramp->duration() < sooner)) ramp.reset();
       } else {
-        const Motion motion = Change({now.position, now.velocity, now.acceleration}, to,
-                                     slower(fastest, level_ - levels_along_path, level_ - levels_along_path))
-                                  .fastest();
+        const RateMotion motion = change_by_time(now, to, fastest, level_);
         if (!(motion.duration() < sooner)) {
           level_ = no_level;
           return std::nullopt;
         }
-        if (one_way(motion, back, S(1)) &&
-            proof().holds(chain_, motion, back, back ? low_.to : high_.from, work))
+        if (one_way(motion, back) && proof().holds(chain_, motion, back, back ? low_.to : high_.from, work))
           ramp = Ramp(motion);
       }
       if (ramp) return ramp;
@@ -320,18 +375,18 @@ class TrajectoryClock {
     result.limits.jerk = jerk;
     return result;
   }
-  // At a level of the search: less of both, of the jerk, or more of the jerk than of the acceleration.
-  [[nodiscard]] BasicAxisLimits<S> brake_limits(const BasicAxisLimits<S>& limits) const {
-    const int level = level_ / shapes;
-    constexpr std::array<int, shapes> halves{0, 2, 1};
-    return slower(limits, level, halves[static_cast<std::size_t>(level_ % shapes)] * level / 2);
+  [[nodiscard]] std::optional<Ramp> brake_along(const AlongPath& along, int level, int& work) const {
+    const PathBrake<M, B> brake(proof(), tool_, chain_);
+    const auto motion = brake.find(along.now, along.phase, along.last_phase, along.limits, level, work);
+    if (!motion) return std::nullopt;
+    return Ramp(*motion, along.phase);
   }
-  [[nodiscard]] static BasicAxisLimits<S> slower(BasicAxisLimits<S> limits, int of_jerk,
-                                                 int of_acceleration) {
-    limits.acceleration_up /= std::pow(growth, static_cast<S>(of_acceleration));
-    limits.acceleration_down = limits.acceleration_up;
-    limits.jerk /= std::pow(growth, static_cast<S>(of_jerk));
-    return limits;
+  [[nodiscard]] static RateMotion change_by_time(const BasicState<S>& now, S to, BasicAxisLimits<S> limits,
+                                                 int level) {
+    const S share = std::pow(growth, static_cast<S>(levels_along_path - level));
+    limits.acceleration_up = limits.acceleration_down = share * limits.acceleration_up;
+    limits.jerk *= share;
+    return Change({now.position, now.velocity, now.acceleration}, to, limits).fastest();
   }
   void search_from(S portion) {
     portion_ = portion;
@@ -357,11 +412,11 @@ class TrajectoryClock {
     return limits;
   }
 
-  // Whether the rate, or the speed, stays between 0 and the most, in its direction.
-  [[nodiscard]] static bool one_way(const Motion& motion, bool back, S most) {
+  // Whether the rate stays between 0 and 1, in its direction.
+  [[nodiscard]] static bool one_way(const RateMotion& motion, bool back) {
     constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
     const auto within = [&](S rate) {
-      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= most + rounding;
+      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= S(1) + rounding;
     };
     AxisState state = motion.start();
     for (const auto& phase : motion.phases()) {

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory_resource>
 #include <optional>
 #include <vector>
 
+#include "cncplan/plan/brake_planner.hpp"
 #include "cncplan/plan/player/elapsed.hpp"
 #include "cncplan/plan/program_error.hpp"
-#include "cncplan/plan/reserve.hpp"
 #include "cncplan/plan/run_error.hpp"
 #include "cncplan/plan/trajectory.hpp"
 #include "cncplan/plan/trajectory_clock.hpp"
@@ -21,6 +22,8 @@ namespace cncplan {
 template <std::floating_point S>
 struct BasicTrajectoryExecutorOptions {
   S longest_hold = S(1);  ///< s, > 0: the longest that a hold may take from a request to rest
+  /// How many times the least that a brake takes it may take, > 1 (see `plan::BrakePlanner`)
+  S hold_factor = std::numeric_limits<S>::infinity();
 };
 
 using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
@@ -34,11 +37,12 @@ using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
 /// change, fast ones first, and for a faster one while one goes on. Where none is proven, the clock goes on
 /// as it does, which keeps the limits because the trajectory does.
 ///
-/// A trajectory that uses up the jerk limit on long bends could be held only behind them. So holds are tried
-/// when the executor is made, from instants a quarter of `longest_hold` apart. If one of them takes longer
-/// than that, the trajectory is refused: it does not begin, and `error` says how long a hold takes. Plan with
-/// a reserve then (`with_reserve`; a twentieth is plenty), or allow for longer holds. Refused as well is one
-/// that does not begin and end at rest, as a part of a `SmoothStream`, and a machine that `validate` refuses.
+/// A trajectory that uses up the jerk limit on long bends could be held only behind them. So brakes are
+/// planned when the executor is made, so close that a hold at the planned speed that waits for the next one
+/// takes no longer than the options allow; one that is found sooner is taken. Where that cannot be, the
+/// trajectory is refused: it does not begin, and `error` says how long a hold takes. Plan with `hold_factor`
+/// then, or allow for longer holds. Refused as well is one that does not begin and end at rest, as a part of
+/// a `SmoothStream`, and a machine that `validate` refuses.
 ///
 /// Unlike in `Executor`, a lower override slows all of the motion, its ramps too, and the program is there as
 /// a whole. The trajectory must outlive it. Nothing is allocated once it is made.
@@ -60,8 +64,8 @@ class TrajectoryExecutor {
         words_.push_back({word, static_cast<double>(trajectory.start_time(i))});
     std::stable_sort(words_.begin(), words_.end(),
                      [](const TimedWord& a, const TimedWord& b) { return a.time < b.time; });
-    if (!trajectory.phases().empty()) clock_.chain().push_back(trajectory, rests_);
-    if (const auto ok = accept(machine, options.longest_hold); !ok) fail(ok.error());
+    if (const auto ok = accept(machine, options); !ok) fail(ok.error());
+    if (!trajectory.phases().empty()) clock_.chain().push_back(trajectory, rests_, brakes_);
     clock_.stand_at(Scalar(0));
   }
   TrajectoryExecutor(Trajectory<M, B>&&, const M&, const Options& = {}) = delete;
@@ -70,7 +74,7 @@ class TrajectoryExecutor {
 
   /// Why the trajectory does not run, or why it was stopped; nothing where all is well.
   [[nodiscard]] std::optional<RunError> error() const { return error_; }
-  /// s: none of the holds that were tried when this was made takes longer.
+  /// s: no hold from the planned speed takes longer.
   [[nodiscard]] Scalar worst_hold() const { return worst_hold_; }
 
   // Requests. They act at the next tick.
@@ -129,9 +133,12 @@ class TrajectoryExecutor {
   }
 
   // Nothing, or why the trajectory does not begin.
-  Expected<void> accept(const M& machine, Scalar longest_hold) {
+  Expected<void> accept(const M& machine, const Options& options) {
     if (auto ok = validate(machine); !ok) return ok;
-    if (!(longest_hold > Scalar(0))) return refusal(ErrorCode::not_positive, "longest hold", longest_hold);
+    if (!(options.longest_hold > Scalar(0)))
+      return refusal(ErrorCode::not_positive, "longest hold", options.longest_hold);
+    if (!(options.hold_factor > Scalar(1)))
+      return refusal(ErrorCode::below_limit, "hold factor", options.hold_factor, Scalar(1));
     const auto phases = trajectory_->phases();
     if (phases.empty()) return {};
     const BasicPhase<Scalar>& first = phases.front().phase;
@@ -141,21 +148,16 @@ class TrajectoryExecutor {
     if (!plan::ends_at_rest(last))
       return refusal(ErrorCode::above_limit, "speed at the end of the trajectory",
                      last.at(last.duration).velocity);
-    return try_holds(longest_hold);
-  }
-
-  // Holds from instants that are so far apart that any other one waits a quarter of the longest at most.
-  Expected<void> try_holds(Scalar longest) {
-    for (std::size_t rest = 0; rest + 1 < rests_.size(); ++rest) {
-      const Scalar step = longest / Scalar(4), from = rests_[rest].to;
-      const auto count = static_cast<int>(std::ceil((rests_[rest + 1].from - from) / step));
-      for (int i = 0; i < count; ++i) {
-        worst_hold_ = std::max(
-            worst_hold_, clock_.time_to_hold(rests_[rest], from + static_cast<Scalar>(i) * step, longest));
-        if (worst_hold_ > longest)
-          return refusal(ErrorCode::above_limit, "s of a hold", worst_hold_, longest);
-      }
-    }
+    plan::BrakePlanner<M, B> planner(machine, {options.hold_factor, options.longest_hold});
+    planner.chain().push_back(*trajectory_, rests_, {});
+    planner.plan(Scalar(0));
+    brakes_ = planner.brakes();
+    worst_hold_ = planner.longest();
+    if (worst_hold_ > options.longest_hold)
+      return refusal(ErrorCode::above_limit, "s of a hold", worst_hold_, options.longest_hold);
+    if (!planner.late().empty())
+      return refusal(ErrorCode::above_limit, "times the least of a hold", planner.times_least(),
+                     options.hold_factor);
     return {};
   }
 
@@ -186,6 +188,7 @@ class TrajectoryExecutor {
 
   const Trajectory<M, B>* trajectory_;
   std::pmr::vector<plan::BasicRest<Scalar>> rests_;  // the first is the start, the last the end
+  std::pmr::vector<plan::BasicPlannedBrake<Scalar>> brakes_;
   plan::TrajectoryClock<M, B> clock_;
   std::vector<TimedWord> words_;
   std::size_t told_ = 0;

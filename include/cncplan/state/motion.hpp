@@ -15,20 +15,28 @@
 
 namespace cncplan::state {
 
-/// Phases of constant jerk from one state to another; forwards and backwards. Trivially copyable; the default
-/// stands still for no time.
-template <std::floating_point S>
+/// Phases of constant jerk, so many at most, from one state to another; forwards and backwards. Trivially
+/// copyable; the default stands still for no time.
+template <std::floating_point S, std::size_t Most = 15>
 class BasicMotion {
  public:
   using Scalar = S;
   using State = BasicAxisState<S>;
   using Phase = BasicJerkPhase<S>;
 
-  static constexpr std::size_t most_phases = 15;
+  static constexpr std::size_t most_phases = Most;
 
   constexpr BasicMotion() = default;
   /// No phases yet: `append` adds them. What they add up to is `end` but for rounding.
   constexpr BasicMotion(const State& start, const State& end) : start_(start), end_(end) {}
+
+  /// One of another room, which its phases have to fit in.
+  template <std::size_t Other>
+    requires(Other < Most)
+  constexpr explicit BasicMotion(const BasicMotion<S, Other>& other)
+      : start_(other.start()), end_(other.end()) {
+    for (const Phase& phase : other.phases()) append(phase);
+  }
 
   /// Begins anew. A motion is large: who makes one writes it where it stays.
   constexpr void reset(const State& start, const State& end) {
