@@ -82,7 +82,7 @@ TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
   const MillBlocks blocks = blocks_of("F1800 G1 X10\nX10.7 Y0.7\nX11.4 Y0\nX20\nX20.5 Y0.5\nX21 Y0\nX30\n");
   double last = std::numeric_limits<double>::infinity();
   for (const auto level : {SmoothLevel::fast, SmoothLevel::good}) {
-    const auto executor = runner({.level = level, .reserve = 0});
+    const auto executor = runner({.level = level, .reserve = 0, .hold_factor = 0});
     const double time = run_to_end(*executor, blocks);
     CAPTURE(static_cast<int>(level), time);
     CHECK(time < last);
@@ -91,7 +91,7 @@ TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
   const auto whole = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::good, within));
   REQUIRE(whole);
   CHECK(last == Approx(whole->duration()).margin(2 * period));
-  const auto best = runner({.level = SmoothLevel::best, .reserve = 0});
+  const auto best = runner({.level = SmoothLevel::best, .reserve = 0, .hold_factor = 0});
   const auto whole_best = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::best, within));
   CHECK(run_to_end(*best, blocks) == Approx(whole_best->duration()).margin(5 * period));
 }
@@ -99,7 +99,7 @@ TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
 TEST_CASE("executor levels: a long run in parts goes through the cuts, within limits and tolerance",
           "[executor-levels]") {
   const MillBlocks blocks = blocks_of(rows(12, 50));
-  const auto executor = runner({.level = SmoothLevel::good, .reserve = 0});
+  const auto executor = runner({.level = SmoothLevel::good, .reserve = 0, .hold_factor = 0});
   test::Random random;
   const Machine<3> machine = with_axes();
   const LiveFaults faults = LiveRun(*executor, blocks, machine, {.small = 0.0098}, random).run(600);
@@ -302,7 +302,7 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   executor->feed_override(1.5);
   drive(10, watch);
   CHECK(most == Approx(15).epsilon(1e-3));
-  CHECK(last == Approx(15).epsilon(1e-3));
+  CHECK(last == Approx(15).epsilon(0.015));  // a little less where the run is cut
   executor->feed_override(0.8);
   drive(0.3, [](double) {});
   most = 0;
@@ -373,7 +373,7 @@ TEST_CASE("executor levels: all memory is that of a resource that it is given", 
   const MillBlocks blocks = blocks_of(rows(6, 50));
   std::vector<std::byte> room(64 << 20);
   std::pmr::monotonic_buffer_resource all(room.data(), room.size(), std::pmr::null_memory_resource());
-  std::pmr::unsynchronized_pool_resource memory(&all);
+  std::pmr::unsynchronized_pool_resource memory({0, 4 << 20}, &all);  // what is given back is used again
   const auto executor =
       std::make_unique<Runner>(mill, LevelExecutorOptions{.level = SmoothLevel::good}, &memory);
   const auto allocations = heap_allocations_of([&] { run_to_end(*executor, blocks); });

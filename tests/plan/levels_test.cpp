@@ -137,6 +137,9 @@ TEST_CASE("levels: paths of one's own without enclosures are exact, and that is 
     for (const auto& block : planned->blocks()) CHECK(block.level == SmoothLevel::exact);
   }
   CHECK(plan_blocks(blocks, mill, {.tolerance = 0})->fallbacks().empty());
+  const auto held = plan_blocks(blocks, mill, {.hold_factor = 1.5});
+  REQUIRE_FALSE(held);
+  CHECK(held.error().about.error.code == ErrorCode::not_supported);
 }
 
 TEST_CASE("levels: a smoothed path that would leave the travel is exact there, and none is refused",

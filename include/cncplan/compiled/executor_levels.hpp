@@ -5,7 +5,8 @@
 #include "cncplan/plan/executor_levels.hpp"
 
 /// Running blocks of a type at these levels, whatever the capacity of the executor.
-#define CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, BLOCK) PREFIX template struct plan::ExecutorLevels<MACHINE, BLOCK>;
+#define CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, BLOCK) \
+  PREFIX template struct plan::ExecutorLevels<MACHINE, BLOCK>;
 
 #ifdef CNCPLAN_COMPILED
 namespace cncplan {

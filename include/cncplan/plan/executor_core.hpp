@@ -212,6 +212,12 @@ class ExecutorCore {
   [[nodiscard]] Scalar until_change() const {
     return drive([](auto& driver) { return driver.until_change(); });
   }
+  /// s: at the levels `good` and `best` with a `hold_factor`, no hold that is asked for at the planned speed
+  /// takes longer, along what has been planned since it was made or restarted. Else nothing.
+  [[nodiscard]] std::optional<Scalar> worst_hold() const {
+    return level_ != nullptr && level_->worst_hold() > Scalar(0) ? std::optional(level_->worst_hold())
+                                                                 : std::nullopt;
+  }
   /// Seconds since there was nothing more to run: since it came to the end, or to rest as asked.
   [[nodiscard]] Scalar rested() const {
     return drive([](auto& driver) { return driver.rested(); });

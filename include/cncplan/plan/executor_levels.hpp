@@ -27,7 +27,8 @@ struct ExecutorLevels {
             .longest_wait = options.longest_wait,
             .quick_stop_share = options.quick_stop_share,
             .background = options.background,
-            .reserve = options.reserve};
+            .reserve = options.reserve,
+            .hold_factor = options.hold_factor};
   }
 
   /// Nothing where the level is `fast` at most.
@@ -45,8 +46,10 @@ LevelDriver<M, B>* ExecutorLevels<M, B>::make(const M& machine, const Options& o
   plan.rotary_tolerance = static_cast<double>(options.rotary_tolerance);
   plan.junction_deviation = static_cast<double>(options.junction_deviation);
   plan.exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds;
-  return LiveDriver<M, B>::make(machine, {plan, options.reserve, options.longest_wait, options.background},
-                                most_blocks, memory);
+  plan.reserve = static_cast<double>(options.reserve);
+  plan.hold_factor = static_cast<double>(options.hold_factor);
+  return LiveDriver<M, B>::make(machine, {plan, options.longest_wait, options.background}, most_blocks,
+                                memory);
 }
 
 }  // namespace cncplan::plan

@@ -1,10 +1,10 @@
 // How an executor is to run programs.
 #pragma once
 
-#include <cmath>
 #include <concepts>
 
 #include "cncplan/core/error.hpp"
+#include "cncplan/plan/reserve.hpp"
 #include "cncplan/plan/smooth_level.hpp"
 #include "cncplan/plan/valid_tolerances.hpp"
 
@@ -37,17 +37,16 @@ struct BasicExecutorOptions {
   bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
   /// In [0, 1): the share of the limits of acceleration and jerk that plans at the levels `good` and `best`
   /// leave for holds. The more, the sooner a hold comes, and the longer the program takes.
-  S reserve = S(0.05);
+  S reserve = S(0.02);
+  /// How many times the least that a brake takes a hold may take, > 1; 0: no plan for it. Plans at the levels
+  /// `good` and `best` are slower where a hold would come later.
+  S hold_factor = S(1.5);
 };
 
 /// Nothing, or the first number that is out of its domain.
 template <std::floating_point S, class Level>
 [[nodiscard]] Expected<void> validate(const BasicExecutorOptions<S, Level>& options) {
-  if (const S share = options.reserve; !(share >= S(0) && share < S(1)))
-    return refusal(std::isnan(share) ? ErrorCode::not_finite
-                   : share < S(0)    ? ErrorCode::negative
-                                     : ErrorCode::above_limit,
-                   "reserve", share, share < S(0) ? S(0) : S(1));
+  if (auto ok = plan::valid_reserve(options.reserve, options.hold_factor); !ok) return ok;
   return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
                                 options.tolerance > S(0));
 }

@@ -14,6 +14,7 @@
 #include "cncplan/core/compiled.hpp"
 #include "cncplan/plan/interruption.hpp"
 #include "cncplan/plan/look_ahead_plan.hpp"
+#include "cncplan/plan/run_brakes.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
 #include "cncplan/plan/step_edges.hpp"
 
@@ -40,6 +41,7 @@ template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> plan_own_blocks(std::pmr::vector<B>&& blocks,
                                                                        const M& machine,
                                                                        const PlanOptions& options) {
+  using S = typename M::Scalar;
   if (const auto ok = validate(options); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   if constexpr (!without_smoothing<M, B>())
     if (has_curves<M>(options)) {
@@ -51,7 +53,21 @@ template <MachineModel M, BlockModel B>
       return stream.take();
     }
   Listening listening(options, reading_share(options));
-  return plan_by_look_ahead(std::move(blocks), machine, options, listening.progress());
+  const M planned_for = with_reserve(machine, static_cast<S>(options.reserve));
+  const auto plan = [&](std::pmr::vector<B>&& own, const M& with_limits) {
+    return plan_by_look_ahead(std::move(own), with_limits, options, listening.progress());
+  };
+  if (!(options.hold_factor > 0)) return plan(std::move(blocks), planned_for);
+  if constexpr (!without_smoothing<M, B>()) {
+    RunBrakes<M, B> brakes(machine, static_cast<S>(options.hold_factor), blocks.get_allocator().resource());
+    auto planned = plan_with_brakes(brakes, planned_for, [&](const M& with_limits) {
+      return plan({blocks, blocks.get_allocator()}, with_limits);
+    });
+    if (planned) planned->set_brakes(brakes.brakes(), brakes.longest());
+    return planned;
+  }
+  return tl::unexpected(
+      ProgramError{{{ErrorCode::not_supported, "hold factor", options.hold_factor}, 0, 0, {}}});
 }
 
 }  // namespace plan

@@ -10,6 +10,7 @@
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/path/arc_tolerance.hpp"
 #include "cncplan/plan/orientation.hpp"
+#include "cncplan/plan/reserve.hpp"
 #include "cncplan/plan/smooth_level.hpp"
 #include "cncplan/plan/valid_tolerances.hpp"
 
@@ -24,6 +25,12 @@ struct PlanOptions {
   double rotary_tolerance = 8.726646259971648e-4;  ///< rad, > 0: the same for rotary axes; 0.05 degrees
   /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
   double junction_deviation = 0.01;
+  /// In [0, 1): the share of the limits of acceleration and jerk that the plan leaves for holds. The more,
+  /// the sooner a hold comes, and the longer the program takes
+  double reserve{};
+  /// How many times the least that a brake takes a hold may take, > 1; 0: no plan for it. At the levels
+  /// `good` and `best` the plan is slower where a hold would come later (see `plan::BrakePlanner`).
+  double hold_factor{};
   bool exact_between_rapids_and_feeds{};    ///< keeps the joints of rapids with feed moves exact
   std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
@@ -43,8 +50,9 @@ struct PlanOptions {
   return options.tolerance > 0 ? options.level : SmoothLevel::exact;
 }
 
-/// Nothing, or the first tolerance that is none.
+/// Nothing, or the first number that is out of its domain.
 [[nodiscard]] inline Expected<void> validate(const PlanOptions& options) {
+  if (auto ok = plan::valid_reserve(options.reserve, options.hold_factor); !ok) return ok;
   return plan::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
                                 level_of(options) != SmoothLevel::exact);
 }

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "cncplan/core/enclosed_bounds.hpp"
-#include "cncplan/plan/block_checks.hpp"
-#include "cncplan/plan/curve_limits.hpp"
 #include "cncplan/plan/interruption.hpp"
 #include "cncplan/plan/look_ahead_plan.hpp"
+#include "cncplan/plan/run_brakes.hpp"
+#include "cncplan/plan/run_finder.hpp"
 #include "cncplan/plan/smooth_pieces.hpp"
 
 namespace cncplan::plan {
@@ -36,20 +36,20 @@ class SmoothPlanner {
   static constexpr int n = M::axis_count;
   using Part = Trajectory<M, B>;
 
-  /// `most`: blocks that are held at once. The machine is to stay. Everything lies in `memory`. Where there
-  /// is too little of that, what throws std::bad_alloc can be called again; nothing is lost.
-  SmoothPlanner(const M& machine, const PlanOptions& options, std::size_t most,
+  /// Plans with the limits of a machine that is `planned_for`; brakes have those of `machine`. `most`: blocks
+  /// that are held at once. The machines are to stay. Everything lies in `memory`. Where there is too little
+  /// of that, what throws std::bad_alloc can be called again; nothing is lost.
+  SmoothPlanner(const M& planned_for, const M& machine, const PlanOptions& options, std::size_t most,
                 std::pmr::memory_resource* memory)
-      : machine_(machine),
+      : machine_(planned_for),
+        full_machine_(machine),
         options_(options),
-        rules_(smoothing_rules<S>(options)),
         work_(options.level == SmoothLevel::best ? smooth::BasicSmoothOptions<S>{}
                                                  : smooth::good_smoothing<S>),
-        limits_(motion_limits(machine)),
-        impossible_(has_curves<M>(options) ? without_curve_level(machine) : std::nullopt),
-        possible_(has_curves<M>(options) && !impossible_),
+        limits_(motion_limits(planned_for)),
         most_(most),
-        memory_(memory) {}
+        memory_(memory),
+        run_brakes_(machine, static_cast<S>(options.hold_factor), memory) {}
 
   SmoothPlanner(const SmoothPlanner&) = delete;
   SmoothPlanner& operator=(const SmoothPlanner&) = delete;
@@ -113,20 +113,23 @@ class SmoothPlanner {
   /// What was planned since the last call; its time begins at 0.
   [[nodiscard]] Part take() {
     BasicSmoothing<S, n> none(memory_);
-    Part part(machine_, std::move(out_), std::move(phases_),
+    Part part(full_machine_, std::move(out_), std::move(phases_),
               std::move(smoothing_.corrections.empty() ? none : smoothing_), std::move(pieces_));
     part.set_first_block(out_first_);
     part.set_level(options_.level);
     part.set_fallbacks(std::move(fallbacks_));
+    part.set_brakes(std::move(brakes_), longest_hold_);
     fallbacks_.clear();
     smoothing_.blocks.clear();
-    time_ = S(0);
+    brakes_.clear();
+    longest_hold_ = time_ = S(0);
     return part;
   }
 
  private:
   using Run = typename RunBlocks<M, B>::Run;
   using RunPlan = typename Run::Plan;
+  using Cut = typename Run::Cut;
 
   // Corners reach no farther beyond a cut, as a rule.
   static constexpr std::size_t most_context = 20;
@@ -151,9 +154,9 @@ class SmoothPlanner {
   }
   [[nodiscard]] Expected<void, ProgramError> plan_runs(bool all) {
     for (std::size_t i = planned_; i < blocks_.size();) {
-      const std::size_t end = run_end(i);
-      const bool goes_on = !all && end > i && is_open(end);
-      if (!goes_on && !cut_ && (end == i || !worth_it(i, end))) {
+      const std::size_t end = runs_.run_end(i);
+      const bool goes_on = !all && end > i && runs_.is_open(end);
+      if (!goes_on && !cut_ && (end == i || !runs_.worth_it(i, end))) {
         i = std::max(i + 1, end);
         continue;
       }
@@ -164,7 +167,8 @@ class SmoothPlanner {
       i = end;
     }
     if (all) return add_fast(blocks_.size());
-    return blocks_.size() - planned_ < most_ ? Expected<void, ProgramError>{} : add_fast(last_rest());
+    return blocks_.size() - planned_ < most_ ? Expected<void, ProgramError>{}
+                                             : add_fast(runs_.last_rest(planned_));
   }
 
   // Of the plan of blocks up to `end`, among those that are held.
@@ -183,62 +187,6 @@ class SmoothPlanner {
     planned_ -= count;
   }
 
-  [[nodiscard]] bool rests(std::size_t i) const { return blocks_[i].exact_stop || blocks_[i].pause > S(0); }
-  // Whether a run that ends before a block may go on in one that has not come yet.
-  [[nodiscard]] bool is_open(std::size_t end) const {
-    if (rests(end - 1)) return false;
-    for (std::size_t i = end; i < blocks_.size(); ++i)
-      if (moves(i) || rests(i)) return false;
-    return true;
-  }
-  // Behind the last block without a plan where the program rests; behind the last of all if it nowhere does.
-  [[nodiscard]] std::size_t last_rest() const {
-    for (std::size_t end = blocks_.size(); end > planned_; --end)
-      if (rests(end - 1)) return end;
-    return blocks_.size();
-  }
-
-  [[nodiscard]] bool moves(std::size_t i) const { return blocks_[i].path.length() > S(0); }
-
-  [[nodiscard]] S speed(std::size_t i) const { return wanted_speed(blocks_[i], machine_, LengthOf::tool); }
-
-  [[nodiscard]] bool smooth(std::size_t i) const {
-    return possible_ && tolerance_of(blocks_[i], rules_) > S(0) && speed(i) > S(0) &&
-           length_of(blocks_[i].path, machine_) == LengthOf::tool && can_follow(blocks_[i].path, machine_);
-  }
-
-  // Behind the last block of the run that begins with a block; that block if none does.
-  [[nodiscard]] std::size_t run_end(std::size_t first) const {
-    if (!moves(first) || !smooth(first)) return first;
-    std::size_t last = first;
-    for (std::size_t i = first;; ++i) {
-      if (moves(i)) {
-        if (i > first &&
-            (!smooth(i) || passing_between(blocks_[last], blocks_[i], machine_, rules_) != Passing::smooth ||
-             !maps_agree(blocks_[last].path, blocks_[i].path, machine_)))
-          break;
-        last = i;
-      }
-      if (blocks_[i].exact_stop || blocks_[i].pause > S(0) || i + 1 == blocks_.size()) break;
-    }
-    return last + 1;
-  }
-
-  // Straight on through lines, the level `fast` is the exact plan, and no other is faster.
-  [[nodiscard]] bool worth_it(std::size_t first, std::size_t end) const {
-    constexpr S straight = S(1e-6);  // what rounding leaves of short lines
-    std::optional<VectorN<S, n>> direction;
-    for (std::size_t i = first; i < end; ++i) {
-      if (!moves(i)) continue;
-      const auto* line = blocks_[i].path.line();
-      if (line == nullptr) return true;
-      const VectorN<S, n> way = (line->end() - line->start()).normalized();
-      if (direction && !(way - *direction).isZero(straight)) return true;
-      direction = way;
-    }
-    return false;
-  }
-
   // What is planned is void.
   void take_nothing() {
     out_.clear();
@@ -247,7 +195,8 @@ class SmoothPlanner {
     fallbacks_.clear();
     smoothing_.corrections.clear();
     smoothing_.blocks.clear();
-    time_ = S(0);
+    brakes_.clear();
+    longest_hold_ = time_ = S(0);
   }
 
   // A planned block has another level than was asked for. There is room.
@@ -263,36 +212,14 @@ class SmoothPlanner {
     for (std::size_t block = before; block < out_.size(); ++block) tell(block, level, reason);
   }
 
-  // Whether a block without a plan follows another one as smoothing would have it, but for its length, which
-  // only rotary axes make.
-  [[nodiscard]] bool turns_on(std::size_t i) const {
-    if (!possible_ || !moves(i) || length_of(blocks_[i].path, machine_) == LengthOf::tool) return false;
-    for (std::size_t before = i; before-- > planned_;) {
-      if (rests(before)) return false;
-      if (moves(before))
-        return passing_between(blocks_[before], blocks_[i], machine_, rules_) == Passing::smooth;
-    }
-    return false;
-  }
-
-  // Why blocks up to `end` that are no run are not smoothed as they might be, if that is so.
-  [[nodiscard]] std::optional<FallbackReason> why_fast(std::size_t end) const {
-    for (std::size_t i = planned_; i < end; ++i) {
-      if (impossible_ && moves(i) && tolerance_of(blocks_[i], rules_) > S(0)) return impossible_;
-      if (possible_ && moves(i) && tolerance_of(blocks_[i], rules_) > S(0) &&
-          !can_follow(blocks_[i].path, machine_))
-        return FallbackReason::map;
-      if (turns_on(i)) return FallbackReason::other_axes;
-    }
-    return std::nullopt;
-  }
-
   // Blocks as they are, up to `end`, planned at the level `fast`.
   [[nodiscard]] Expected<void, ProgramError> add_fast(std::size_t end,
                                                       std::optional<FallbackReason> reason = std::nullopt) {
     if (planned_ == end) return {};
-    if (!reason) reason = why_fast(end);
-    auto planned = fast(end, progress_to(end));
+    if (!reason) reason = runs_.why_fast(planned_, end);
+    auto planned = plan_with_brakes(run_brakes_, machine_, [&](const M& planned_for) {
+      return fast(end, planned_for, progress_to(end));
+    });
     if (!planned) {
       if (planned.error().block) *planned.error().block += first_source_ + planned_;
       return tl::unexpected(planned.error());
@@ -312,6 +239,7 @@ class SmoothPlanner {
       smoothing_.blocks.back() = own.blocks[i - planned_];
       smoothing_.blocks.back().first += corrections;
     }
+    if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes());
     for (BasicPiecePhase<S> phase : planned->phases()) {
       phase.phase.time += time_;
       phase.piece += pieces;
@@ -346,10 +274,15 @@ class SmoothPlanner {
   std::optional<FallbackReason> add_curve(std::size_t end) try {
     const Given given = run_blocks(cut_ ? 0 : planned_, end);
     if (!given.blocks.bounded()) return FallbackReason::tool_limits;
-    const RunPlan planned = given.blocks.run(work_, cut_, memory_).plan(progress_to(end));
+    Run run = given.blocks.run(work_, cut_, memory_);
+    RunPlan planned = run.plan(progress_to(end));
     if (!found(planned)) return FallbackReason::no_motion;
     if (!has_room(planned, given.blocks)) return FallbackReason::travel;
     if (!cut_ && fast_is_faster(planned.duration, end)) return FallbackReason::fast_is_faster;
+    if (run_brakes_.wanted()) {
+      make_holdable(run, planned, given, [](const RunPlan&) { return std::optional(Behind{}); });
+      add_brakes(run_brakes_.brakes());
+    }
     add_pieces(planned, given, end);
     return std::nullopt;
   } catch (const std::bad_alloc&) {
@@ -361,6 +294,7 @@ class SmoothPlanner {
     const RunPlan planned = given.blocks.run(work_, cut_, memory_).slow_plan();
     make_room(fallbacks_, 1);
     const std::size_t before = out_.size();
+    add_brakes(run_brakes_.of_way());
     add_pieces(planned, given, end);
     tell_since(before, options_.level, FallbackReason::slow_motion);
   }
@@ -374,7 +308,7 @@ class SmoothPlanner {
       // From there the machine can come to rest along what is known.
       std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
       while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
-      typename Run::Cut there = cut;
+      Cut there = cut;
       there.place.block -= moving;
       const Given rest = run_blocks(given.sources[moving], end);
       if (!works(rest.blocks.run(work_, there, memory_).slow_plan(), rest.blocks)) continue;
@@ -383,22 +317,24 @@ class SmoothPlanner {
       const bool fastest = works(planned, given.blocks);
       if (!fastest) planned = run.slow_plan();
       if (!works(planned, given.blocks)) return false;
-      const std::size_t at = given.sources[planned.end_block];
-      const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
-      if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return false;  // nothing is let go
-      // The very way to rest that is driven if nothing else can be: it begins with the approach.
-      typename Run::Cut next = cut;
-      next.place.block -= kept;
-      next.approach = &planned.approach;
-      const Given way = run_blocks(gone, end);
-      if (!works(way.blocks.run(work_, next, memory_).slow_plan(), way.blocks)) return false;
+      const auto behind_it = [&, &cut = cut](const RunPlan& plan) {
+        return behind(plan, cut, moving, given, end);
+      };
+      auto next = behind_it(planned);
+      if (!next) return false;
+      if (run_brakes_.wanted()) {
+        next = make_holdable(run, planned, given, behind_it);
+        add_brakes(run_brakes_.brakes());
+        run_brakes_.keep(part_of(planned, given));
+      }
+      const std::size_t at = given.sources[planned.end_block], gone = next->gone;
       make_room(fallbacks_, 1);
       const std::size_t before = out_.size();
       add_pieces(planned, given, at);
       if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
       begun_ = !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + at;
       approach_ = std::move(planned.approach);
-      cut_ = next;
+      cut_ = next->cut;
       cut_->approach = &approach_;
       known_ = end - gone;
       let_go(gone);
@@ -409,13 +345,77 @@ class SmoothPlanner {
     return false;
   }
 
+  // What follows a part that is cut.
+  struct Behind {
+    Cut cut;                  // of the blocks that stay
+    std::size_t gone{};       // blocks that do not
+    std::optional<Part> way;  // the very way to rest that is driven if nothing else can be
+  };
+  // Behind a plan of a part; nothing where there is no way to rest, or no block is let go. `moving`: the
+  // first block that may be near the cut.
+  [[nodiscard]] std::optional<Behind> behind(const RunPlan& planned, const Cut& cut, std::size_t moving,
+                                             const Given& given, std::size_t end) const {
+    const std::size_t at = given.sources[planned.end_block];
+    const std::size_t kept = std::min(moving, planned.end_block), gone = given.sources[kept];
+    if (at <= planned_ || (gone == 0 && blocks_.size() >= most_)) return std::nullopt;
+    Behind result{cut, gone, std::nullopt};
+    result.cut.place.block -= kept;
+    result.cut.approach = &planned.approach;  // with which the way begins
+    const Given rest = run_blocks(gone, end);
+    const RunPlan way = rest.blocks.run(work_, result.cut, memory_).slow_plan();
+    if (!works(way, rest.blocks)) return std::nullopt;
+    if (run_brakes_.wanted()) result.way = part_of(way, rest);
+    return result;
+  }
+
+  // Plans brakes, and a run slower where they come late, as long as that works; what is behind it.
+  template <class BehindIt>
+  std::optional<Behind> make_holdable(Run& run, RunPlan& planned, const Given& given, BehindIt&& behind_it) {
+    constexpr int most_rounds = 16;
+    constexpr S share = S(0.95);  // of the limits of acceleration, from round to round
+    auto next = behind_it(planned);
+    for (int round = 0;; ++round) {
+      const Part part = part_of(planned, given);
+      run_brakes_.plan(part, cut_.has_value(), next->way ? &*next->way : nullptr);
+      if (run_brakes_.late().empty() || round == most_rounds) return next;
+      const auto piece_at = [&](S time) { return part.phases()[part.phase_at(time)].piece; };
+      for (const auto& [from, to] : run_brakes_.late())
+        run.slow_down(planned, piece_at(from), piece_at(to), share);
+      RunPlan slower = run.plan_speed();
+      auto behind_slower = works(slower, given.blocks) ? behind_it(slower) : std::nullopt;
+      if (!behind_slower) return next;
+      planned = std::move(slower);
+      next = std::move(behind_slower);
+    }
+  }
+  // A plan of a run as a trajectory of its own.
+  [[nodiscard]] Part part_of(const RunPlan& run, const Given& given) const {
+    std::pmr::vector<B> blocks(memory_);
+    std::pmr::vector<typename Part::Piece> pieces(memory_);
+    blocks.reserve(given.sources.size());
+    pieces.reserve(run.pieces.size());
+    for (const std::size_t source : given.sources) blocks.push_back(blocks_[source]);
+    for (const auto& [path, block, from] : run.pieces)
+      pieces.push_back({block, from, given.blocks.piece(path, block, from)});
+    return Part(full_machine_, std::move(blocks), {run.phases, memory_}, {}, std::move(pieces));
+  }
+  // Of what is added next.
+  void add_brakes(const typename RunBrakes<M, B>::Brakes& brakes) {
+    make_room(brakes_, brakes.size());
+    for (auto brake : brakes) {
+      brake.time += time_;
+      brakes_.push_back(brake);
+    }
+    longest_hold_ = std::max(longest_hold_, run_brakes_.longest());
+  }
+
   [[nodiscard]] Given run_blocks(std::size_t first, std::size_t end) const {
     Given result{RunBlocks<M, B>(machine_, limits_, end - first, memory_),
                  std::pmr::vector<std::size_t>(memory_)};
     result.sources.reserve(end - first);
     for (std::size_t i = first; i < end; ++i) {
-      if (!moves(i)) continue;
-      result.blocks.push(blocks_[i], speed(i), rules_);
+      if (!runs_.moves(i)) continue;
+      result.blocks.push(blocks_[i], runs_.speed(i), runs_.rules());
       result.sources.push_back(i);
     }
     return result;
@@ -429,17 +429,18 @@ class SmoothPlanner {
   }
 
   // Blocks that have no plan, at the level `fast`.
-  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end, const Progress& progress = {}) const {
+  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end, const M& planned_for,
+                                                  const Progress& progress = {}) const {
     const auto blocks = given(end);
     PlanOptions options = options_;
     options.level = SmoothLevel::fast;
-    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), machine_, options,
-                              progress);
+    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), planned_for,
+                              options, progress);
   }
 
   // Whether the level `fast` takes less time.
   [[nodiscard]] bool fast_is_faster(S duration, std::size_t end) const {
-    const auto planned = fast(end);
+    const auto planned = fast(end, machine_);
     return planned && planned->duration() < duration;
   }
 
@@ -519,25 +520,24 @@ class SmoothPlanner {
   // A block among those of a curve that has no piece of it, or that stands.
   void add_whole(std::size_t i) {
     add_block(i);
-    if (!moves(i)) add_piece();
+    if (!runs_.moves(i)) add_piece();
   }
 
   const M& machine_;
+  const M& full_machine_;
   PlanOptions options_;
   Listening listening_{options_, reading_share(options_)};
-  SmoothingRules<S> rules_;
   smooth::BasicSmoothOptions<S> work_;
   smooth::BasicMotionLimits<S, n> limits_;
-  std::optional<FallbackReason> impossible_;  // for the whole program
-  bool possible_;
   std::size_t most_;
   std::pmr::memory_resource* memory_;
   std::pmr::vector<B> blocks_{memory_};
+  RunFinder<M, B> runs_{machine_, options_, blocks_};
   std::size_t first_source_ = 0;  // the program's number of the first of them
   std::size_t planned_ = 0;       // of them that have plans; blocks next to a cut are kept
   // The run goes on in a block whose first part has a plan; from there motion to rest along all blocks before
   // `known_` is proven.
-  std::optional<typename Run::Cut> cut_;
+  std::optional<Cut> cut_;
   smooth::BasicApproach<S, Run::axis_count> approach_{memory_};
   std::size_t known_ = 0;
   bool begun_ = false;  // a piece of the block in which it goes on is planned
@@ -555,7 +555,9 @@ class SmoothPlanner {
   std::pmr::vector<BasicPiecePhase<S>> phases_{memory_};
   std::pmr::vector<Fallback> fallbacks_{memory_};
   BasicSmoothing<S, n> smoothing_{memory_};
-  S time_{};  // s
+  RunBrakes<M, B> run_brakes_;
+  typename RunBrakes<M, B>::Brakes brakes_{memory_};
+  S time_{}, longest_hold_{};  // s
 };
 
 }  // namespace cncplan::plan

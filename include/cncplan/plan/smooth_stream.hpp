@@ -51,8 +51,9 @@ class SmoothStream {
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : machine_(machine),
         options_(validate(options)),
+        planned_for_(with_reserve(machine, options_ ? static_cast<Scalar>(options.reserve) : Scalar(0))),
         merger_(machine_, plan::smoothing_rules<Scalar>(options)),
-        planner_(machine_, options, std::max(most_blocks, least_blocks), memory),
+        planner_(planned_for_, machine_, options, std::max(most_blocks, least_blocks), memory),
         merging_(memory) {}
   SmoothStream(const SmoothStream&) = delete;
   SmoothStream& operator=(const SmoothStream&) = delete;
@@ -147,6 +148,7 @@ class SmoothStream {
 
   M machine_;
   Expected<void> options_;  // nothing, or why there is no plan with them
+  M planned_for_;
   plan::LineMerger<M, B> merger_;
   plan::SmoothPlanner<M, B> planner_;
   std::pmr::vector<B> merging_;  // the last blocks, which may become parts of one line

@@ -56,6 +56,8 @@ class LevelDriver {
   virtual void pause_at(int line) = 0;
 
   [[nodiscard]] virtual bool held() const = 0;
+  /// s, the longest that a hold from the planned speed takes, along what has been planned.
+  [[nodiscard]] virtual S worst_hold() const = 0;
   [[nodiscard]] virtual bool stopped() const = 0;
   [[nodiscard]] virtual bool stands() const = 0;
   [[nodiscard]] virtual bool dwells() const = 0;

@@ -14,7 +14,6 @@
 #include "cncplan/plan/live/feed_shares.hpp"
 #include "cncplan/plan/live/level_driver.hpp"
 #include "cncplan/plan/live/part_planner.hpp"
-#include "cncplan/plan/reserve.hpp"
 #include "cncplan/plan/trajectory_clock.hpp"
 
 namespace cncplan::plan {
@@ -23,7 +22,6 @@ namespace cncplan::plan {
 template <std::floating_point S>
 struct BasicLiveOptions {
   PlanOptions plan{};
-  S reserve{};       ///< share of the limits that is kept for changes of the rate
   S longest_wait{};  ///< s
   bool background = false;
 };
@@ -89,6 +87,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   void pause_at(int line) override { pause_line_ = line; }
 
   [[nodiscard]] bool held() const override { return held_; }
+  [[nodiscard]] S worst_hold() const override { return planner_.longest_hold(); }
   [[nodiscard]] bool stopped() const override { return stopped_ && clock_.rests(); }
   [[nodiscard]] bool stands() const override { return clock_.rests(); }
   [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0); }
@@ -212,7 +211,7 @@ class LiveDriver final : public LevelDriver<M, B> {
              std::pmr::memory_resource* memory)
       : machine_(machine),
         memory_(memory),
-        planner_(with_reserve(machine, options.reserve), options.plan, most_blocks, memory),
+        planner_(machine, options.plan, most_blocks, memory),
         clock_(machine),
         longest_wait_(options.longest_wait),
         background_(options.background) {}

@@ -131,6 +131,8 @@ class PartPlanner {
   [[nodiscard]] bool ended() const { return ended_.load(std::memory_order_acquire); }
   [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_acquire); }
   [[nodiscard]] gcode::Diagnostic fault() const { return fault_; }
+  /// s, the longest that a hold takes along the parts that were planned, from the planned speed.
+  [[nodiscard]] S longest_hold() const { return longest_hold_.load(std::memory_order_relaxed); }
   /// Where the first block begins, once it has been pushed.
   [[nodiscard]] const Vector& start() const { return start_; }
   [[nodiscard]] bool begun() const { return begun_.load(std::memory_order_acquire); }
@@ -179,7 +181,7 @@ class PartPlanner {
     stream_->keep_cuts();
     made_ = 0;
     released_ = taken_ = 0;
-    left_ = S(0);
+    left_ = longest_hold_ = S(0);
     pushed_ = 0;
     last_block_.reset();
     open_ = false;
@@ -244,6 +246,8 @@ class PartPlanner {
     const std::size_t last = next.motion.emplace(stream_->take(), last_block_, memory_).last_block();
     const bool opens = stream_->open();
     if (opens) next.tail.emplace(stream_->tail(), last, memory_);
+    const S hold = next.motion->trajectory.longest_hold();
+    if (hold > longest_hold()) longest_hold_.store(hold, std::memory_order_relaxed);
     next.link.store(opens ? PartLink::open : PartLink::rest, std::memory_order_relaxed);
     if (made_ > 0 && !link(part(made_ - 1).link)) {
       clear(next);
@@ -287,7 +291,7 @@ class PartPlanner {
   gcode::Diagnostic fault_{};
   std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
   std::atomic<std::int64_t> released_{0}, taken_{0}, pushed_{0};
-  std::atomic<S> left_{};
+  std::atomic<S> left_{}, longest_hold_{};
   std::atomic<bool> begun_{false}, ended_{false}, failed_{false}, let_go_{false}, all_planned_{true};
 };
 
