@@ -35,6 +35,9 @@ class Executor:
         1 to 1000: how many times its limits of acceleration and jerk the machine may use in a quick stop.
     reserve : float
         >= 0, < 1: the share of the limits that plans at "good" and "best" leave for holds.
+    hold_factor : float
+        > 1, or 0: how many times the least that a brake takes a hold may take at "good" and "best". Plans are
+        slower where it would take longer; 0 asks for no such plan.
 
     Examples
     --------
@@ -50,10 +53,11 @@ class Executor:
     def __init__(self, machine: Machine, tolerance: float = 0.01, level: str = "fast", *,
                  rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
                  start: Sequence[float] | None = None, longest_wait: float = 0.05, quick_stop_share: float = 1.0,
-                 reserve: float = 0.05) -> None:
+                 reserve: float = 0.02, hold_factor: float = 1.5) -> None:
         options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
         self._core = _core.Executor(core_of(machine), options, not_negative(longest_wait, "longest_wait"),
-                                    finite(quick_stop_share, "quick_stop_share"), finite(reserve, "reserve"))
+                                    finite(quick_stop_share, "quick_stop_share"), finite(reserve, "reserve"),
+                                    finite(hold_factor, "hold_factor"))
         self.machine = machine
         self.level = level  #: what was asked for
 
@@ -122,6 +126,12 @@ class Executor:
     def rested(self) -> float:
         """s since there was nothing more to run."""
         return self._core.rested()
+
+    @property
+    def worst_hold(self) -> float | None:
+        """s: at "good" and "best" with a `hold_factor`, no hold that is asked for at the planned speed takes longer,
+        along what has been planned. Else None."""
+        return self._core.worst_hold()
 
     def feed_hold(self) -> None:
         """Comes to rest as soon as the limits allow; `resume` goes on."""

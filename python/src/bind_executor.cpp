@@ -16,7 +16,7 @@ void bind_executor(py::module_& module) {
   };
   py::class_<AnyExecutor>(module, "Executor")
       .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
-                       double quick_stop_share, double reserve) {
+                       double quick_stop_share, double reserve, double hold_factor) {
         if (machine.has_map())
           raise(Error{ErrorCode::not_supported, "executor of a machine behind a map", 0, 0});
         const ExecutorSettings settings{options,
@@ -26,7 +26,8 @@ void bind_executor(py::module_& module) {
                                          .junction_deviation = options.junction_deviation,
                                          .longest_wait = longest_wait,
                                          .quick_stop_share = quick_stop_share,
-                                         .reserve = reserve}};
+                                         .reserve = reserve,
+                                         .hold_factor = hold_factor}};
         return make_executor(machine, settings);
       }))
       .def("push_line", [](E& e, const std::string& line) { return e.push_line(line); })
@@ -55,6 +56,7 @@ void bind_executor(py::module_& module) {
       .def("time", &E::time)
       .def("until_change", &E::until_change)
       .def("rested", &E::rested)
+      .def("worst_hold", &E::worst_hold)
       .def("feed_hold", &E::feed_hold)
       .def("resume", &E::resume)
       .def("feed_override", &E::feed_override)

@@ -57,6 +57,7 @@ class AnyExecutor {
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual double until_change() const = 0;
   [[nodiscard]] virtual double rested() const = 0;
+  [[nodiscard]] virtual std::optional<double> worst_hold() const = 0;
 
   virtual void feed_hold() = 0;
   virtual void resume() = 0;

@@ -65,6 +65,26 @@ def test_every_level(mill, level):
     assert np.abs((position[2:] - position[:-2]) / 0.002 - velocity[1:-1]).max() < 10000 * 0.001**2
 
 
+def test_the_longest_hold_is_told_where_it_is_planned(mill):
+    for level, factor, told in (("fast", 1.5, False), ("good", 0, False), ("good", 1.5, True), ("best", 1.5, True)):
+        executor = cncplan.Executor(mill, level=level, hold_factor=factor)
+        assert executor.worst_hold is None
+        for text in PROGRAM:
+            assert executor.push(text)
+        executor.end_of_program()
+        for _ in range(300):
+            executor.tick(0.001)
+        assert (executor.worst_hold is not None) == told
+        if not told:
+            continue
+        executor.feed_hold()
+        ticks = 0
+        while executor.state != "held":
+            executor.tick(0.001)
+            ticks += 1
+        assert ticks * 0.001 <= executor.worst_hold + 0.002 < 0.5
+
+
 @pytest.mark.parametrize("level", LEVELS)
 def test_requests_at_every_level(mill, level):
     executor = cncplan.Executor(mill, level=level, reserve=0.1)
@@ -267,7 +287,8 @@ def test_errors(mill):
         executor.reverse(1)
     with pytest.raises(cncplan.Error):
         executor.jog([1, 2])
-    for wrong in ({"tolerance": -1}, {"level": "better"}, {"reserve": 1}, {"reserve": -0.1}, {"longest_wait": -1}):
+    for wrong in ({"tolerance": -1}, {"level": "better"}, {"reserve": 1}, {"reserve": -0.1}, {"hold_factor": 1},
+                  {"longest_wait": -1}):
         with pytest.raises(cncplan.Error):
             cncplan.Executor(mill, **wrong)
 

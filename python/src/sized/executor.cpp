@@ -100,6 +100,7 @@ class ExecutorOfSize final : public AnyExecutor {
   [[nodiscard]] double time() const override { return executor_.time(); }
   [[nodiscard]] double until_change() const override { return executor_.until_change(); }
   [[nodiscard]] double rested() const override { return executor_.rested(); }
+  [[nodiscard]] std::optional<double> worst_hold() const override { return executor_.worst_hold(); }
 
   void feed_hold() override { executor_.feed_hold(); }
   void resume() override { executor_.resume(); }
