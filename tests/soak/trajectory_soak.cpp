@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,7 @@ struct Errors {
   double dwell = -1;  // s that rests are too short
   double words = -1;  // not told, or not in order
   double hold = -1;   // s from a hold to rest, at most
+  double late = -1;   // s that a hold at the planned speed takes longer than the executor tells
   double ticks = -1;  // of a case that does not end
 };
 
@@ -44,14 +46,14 @@ struct Request {
 
 struct Case {
   test::SmoothCase program;
-  double reserve{};
+  double reserve{}, hold_factor{};
   SmoothLevel level{};
   std::vector<Request> requests;
 };
 
 // Programs that are planned in little time, with dwells and words in them.
 Case draw(std::uint64_t seed, double seconds) {
-  Case c{test::draw_smooth_case(seed), 0, SmoothLevel::good, {}};
+  Case c{test::draw_smooth_case(seed), 0, 0, SmoothLevel::good, {}};
   test::Random random(seed ^ 0x5bd1e995);
   std::string text;
   int lines = 0;
@@ -90,6 +92,7 @@ Case draw(std::uint64_t seed, double seconds) {
         c.requests.push_back({tick, 'o', random.coin() ? random.uniform(0, 1) : 1.0});
     }
   }
+  c.hold_factor = random.coin() ? 0 : random.uniform(1.2, 3);
   return c;
 }
 
@@ -98,7 +101,9 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
   std::vector<double> ends;  // mm of the program up to the end of each block
   for (const auto& block : blocks) ends.push_back((ends.empty() ? 0 : ends.back()) + block.path.length());
   const Mill& machine = c.program.machine;
-  TrajectoryExecutor executor(trajectory, machine, {.longest_hold = 1000});  // of any plan
+  std::optional<TrajectoryExecutor<Mill, ProgramBlock<Mill>>> made(std::in_place, trajectory, machine);
+  if (made->error()) made.emplace(trajectory, machine, TrajectoryExecutorOptions{.longest_hold = 1000});
+  auto& executor = *made;
   executor.program_stop(false);
   const auto share = [&](const Vector3& value, double rounding, double of_tool, auto of_axis) {
     double result = (value.norm() - rounding) / of_tool;
@@ -115,12 +120,17 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
   const auto words = trajectory.words();
   bool in_order = true;
   long known = 0, held_since = -1;
+  bool steady = false;  // where the hold was asked for
   const auto most = static_cast<long>((40 * trajectory.duration() + 60) / period);
   long tick = 0;
   for (; !executor.finished() && tick < most; ++tick) {
     for (; next < c.requests.size() && c.requests[next].tick == tick; ++next) {
       const auto& [at, what, value] = c.requests[next];
-      if (what == 'h') executor.feed_hold(), held_since = held_since < 0 ? tick : held_since;
+      if (what == 'h' && held_since < 0) {
+        steady = executor.clock().velocity == 1 && executor.clock().acceleration == 0;
+        held_since = tick;
+      }
+      if (what == 'h') executor.feed_hold();
       if (what == 'r') executor.resume(), held_since = -1;
       if (what == 'b' || what == 'f') executor.reverse(what == 'b');
       if (what == 'o') executor.feed_override(value);
@@ -133,7 +143,9 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
     }
     const auto point = executor.tick(period);
     if (executor.rests() && held_since >= 0) {
-      errors.hold = std::max(errors.hold, static_cast<double>(tick - held_since) * period);
+      const double held = static_cast<double>(tick - held_since) * period;
+      errors.hold = std::max(errors.hold, held);
+      if (steady) errors.late = std::max(errors.late, held - executor.worst_hold() - period);
       held_since = std::numeric_limits<long>::max();
     }
     for (const auto& word : point.words)
@@ -167,11 +179,11 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
 }
 
 bool examine(const Case& c, Errors& errors) {
-  const PlanOptions options{.tolerance = c.program.tolerance};
-  const Mill planned_for = with_reserve(c.program.machine, c.reserve);
-  const auto program = read_text(c.program.program, planned_for, options);
+  const PlanOptions options{
+      .tolerance = c.program.tolerance, .reserve = c.reserve, .hold_factor = c.hold_factor};
+  const auto program = read_text(c.program.program, c.program.machine, options);
   if (program.failed()) return false;
-  auto trajectory = plan_blocks(program.blocks(), planned_for, test::at_level(c.level, options));
+  auto trajectory = plan_blocks(program.blocks(), c.program.machine, test::at_level(c.level, options));
   if (!trajectory) return false;
   trajectory->set_words(timed_words(program, *trajectory));
   examine(*trajectory, program.blocks(), c, errors);
@@ -189,7 +201,8 @@ int soak(std::uint64_t seed, std::uint64_t count, double seconds) {
                                          {"dwells too short (s)", &E::dwell, 0},
                                          {"words not told once", &E::words, 0},
                                          {"ticks without an end", &E::ticks, 0},
-                                         {"hold until rest (s)", &E::hold, 1e3}};
+                                         {"hold until rest (s)", &E::hold, 1e3},
+                                         {"hold later than told (s)", &E::late, 1e-9}};
   std::uint64_t requests = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     Errors errors;
@@ -209,12 +222,12 @@ int soak(std::uint64_t seed, std::uint64_t count, double seconds) {
 int show(std::uint64_t seed, double seconds) {
   const Case c = draw(seed, seconds);
   print(c.program);
-  std::printf("; reserve %.17g\n", c.reserve);
+  std::printf("; reserve %.17g, hold factor %.17g\n", c.reserve, c.hold_factor);
   for (const auto& [tick, what, value] : c.requests) std::printf("; tick %ld: %c %.17g\n", tick, what, value);
   Errors e;
   if (!examine(c, e)) return 1;
-  std::printf("; limits %.2g %.2g %.2g, place %.2g, end %.2g, words %g, ticks %g, hold %.4f s\n", e.velocity,
-              e.acceleration, e.jerk, e.place, e.end, e.words, e.ticks, e.hold);
+  std::printf("; limits %.2g %.2g %.2g, place %.2g, end %.2g, words %g, ticks %g, hold %.4f s, late %.2g s\n",
+              e.velocity, e.acceleration, e.jerk, e.place, e.end, e.words, e.ticks, e.hold, e.late);
   return 0;
 }
 
