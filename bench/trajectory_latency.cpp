@@ -1,7 +1,7 @@
 // The time of single ticks of an executor of a planned trajectory, and how long holds take, on a program of
-// many short moves at the level good, with a reserve of a twentieth unless said: holds at random instants,
-// each resumed at rest.
-//   [CNCPLAN_BALL=ball.nc] cncplan_trajectory_latency [COUNT [RESERVE]]
+// many short moves at the level good, planned for holds that take 1.5 times the least of a brake unless said:
+// holds at random instants, each resumed at rest. COUNT 0: what such a plan costs.
+//   [CNCPLAN_BALL=ball.nc] cncplan_trajectory_latency [COUNT [HOLD_FACTOR]]
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -37,23 +37,27 @@ double least(const SetPoint<3>& point) {
 int main(int argc, char** argv) {
   constexpr double period = 1e-3;
   const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1'000'000;
-  const double reserve = argc > 2 ? std::strtod(argv[2], nullptr) : 0.05;
+  const double factor = argc > 2 ? std::strtod(argv[2], nullptr) : 1.5;
   std::vector<bench::Block> blocks;
   if (!bench::read_blocks(bench::ball(), blocks))
     return std::fprintf(stderr, "the program does not read\n"), 1;
-  const PlanOptions options{.tolerance = 0.01, .level = SmoothLevel::good};
-  const auto planned = plan_blocks(blocks, with_reserve(bench::mill, reserve), options);
-  const auto without = plan_blocks(blocks, bench::mill, options);
+  const auto planned = plan_blocks(blocks, bench::mill, {.level = SmoothLevel::good, .hold_factor = factor});
+  const auto without = plan_blocks(blocks, bench::mill, {.level = SmoothLevel::good});
   if (!planned || !without) return std::fprintf(stderr, "the program has no plan\n"), 1;
-  std::printf("the program takes %.3f s, without a reserve %.3f s\n", planned->duration(),
-              without->duration());
+  const TrajectoryExecutorOptions options{.hold_factor = factor};
+  {
+    const TrajectoryExecutor executor(*planned, bench::mill, options);
+    if (const auto error = executor.error()) return std::fprintf(stderr, "%s\n", to_text(*error).c_str()), 1;
+    std::printf("the program takes %.3f s, without a bound of holds %.3f s; the longest hold is %.3f s\n",
+                planned->duration(), without->duration(), executor.worst_hold());
+  }
 
   bench::Latencies undisturbed(count), changing(count);
   std::vector<double> holds, times_least;
   test::Random random;
   std::size_t done = 0;
   while (done < count) {
-    TrajectoryExecutor executor(*planned, bench::mill);
+    TrajectoryExecutor executor(*planned, bench::mill, options);
     double until = random.uniform(0.3, 3), held_at = -1, from_here = 0;
     SetPoint<3> point;
     for (double time = 0; done < count && !executor.finished(); time += period, ++done) {
@@ -75,6 +79,7 @@ int main(int argc, char** argv) {
       });
     }
   }
+  if (count == 0) return 0;
   undisturbed.print("undisturbed");
   changing.print("while the rate changes");
   std::sort(holds.begin(), holds.end());
