@@ -462,8 +462,11 @@ TEST_CASE("executor levels: a part comes while the rate changes", "[executor-lev
     CAPTURE(before, behind);
     double acceleration = 0, jerk = 0, latest = 0;
     for (double at = 0.02; at < 2 / before; at += 0.01) {
-      const auto executor =
-          runner({.level = SmoothLevel::good, .longest_wait = 1e9, .background = true, .reserve = 0});
+      const auto executor = runner({.level = SmoothLevel::good,
+                                    .longest_wait = 1e9,
+                                    .background = true,
+                                    .reserve = 0,
+                                    .hold_factor = 0});
       std::size_t fed = 0;
       while (fed < 65 && executor->push(blocks[fed])) ++fed;  // one more than are held
       executor->feed_override(before);
