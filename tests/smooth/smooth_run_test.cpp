@@ -230,15 +230,6 @@ TEST_CASE("a longer line takes hardly more cells") {
   CHECK(many.duration - few.duration == Approx(450.0 / 30).margin(1e-3));
 }
 
-TEST_CASE("a long line takes few cells where the acceleration limits its ramps") {
-  Program program = corner(90, {50, 150, 1e6});
-  const auto run = smooth_run<double, 3>(program.blocks(), program.limits);
-  check(run, program);
-  CHECK(run.pieces.size() < 400);
-  // No more than with a stop at the corner and no limit of jerk.
-  CHECK(run.duration < 100.0 / 50 + 2 * 50.0 / 150);
-}
-
 TEST_CASE("the time does not depend on the windows") {
   Program program = corner(90);
   program.line(program.paths.back().position_at(50), Vector3(20, 50, 3), 30);

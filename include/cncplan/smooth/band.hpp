@@ -224,7 +224,8 @@ class BasicBand {
   // The length on which a speed is reached from rest, about.
   [[nodiscard]] S ramp_length(S speed) const {
     const auto& limits = options_.along;
-    return std::max(speed * std::sqrt(speed / limits.jerk), speed * speed / limits.acceleration);
+    return std::isfinite(limits.jerk) ? speed * std::sqrt(speed / limits.jerk)
+                                      : speed * speed / limits.acceleration;
   }
 
   // A length of cell, which holds up to `reach` on both sides of a place and grows with the distance beyond.
