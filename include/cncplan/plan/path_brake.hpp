@@ -61,7 +61,8 @@ class PathBrake {
                                            const BasicAxisLimits<S>& straight, int level, int& work) const {
     const S most_jerk = straight.jerk;
     const S duration = state::BasicVelocityChange<S>(from, S(0), straight).fastest().duration();
-    const S longest_step = std::max(duration, straight.acceleration_down / most_jerk) / steps_in_brake;
+    const S longest_step =
+        std::clamp(straight.acceleration_down / most_jerk, duration, S(2) * duration) / steps_in_brake;
     Motion motion(from, from);
     Way way(chain_, phase, S(0));
     AxisState state = from;

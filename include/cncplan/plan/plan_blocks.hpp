@@ -54,16 +54,13 @@ template <MachineModel M, BlockModel B>
     }
   Listening listening(options, reading_share(options));
   const M planned_for = with_reserve(machine, static_cast<S>(options.reserve));
-  const auto plan = [&](std::pmr::vector<B>&& own, const M& with_limits) {
-    return plan_by_look_ahead(std::move(own), with_limits, options, listening.progress());
-  };
-  if (!(options.hold_factor > 0)) return plan(std::move(blocks), planned_for);
+  std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
+  auto planned = plan_by_look_ahead(std::move(blocks), planned_for, options, listening.progress());
+  if (!planned || !(options.hold_factor > 0)) return planned;
   if constexpr (!without_smoothing<M, B>()) {
-    RunBrakes<M, B> brakes(machine, static_cast<S>(options.hold_factor), blocks.get_allocator().resource());
-    auto planned = plan_with_brakes(brakes, planned_for, [&](const M& with_limits) {
-      return plan({blocks, blocks.get_allocator()}, with_limits);
-    });
-    if (planned) planned->set_brakes(brakes.brakes(), brakes.longest());
+    RunBrakes<M, B> brakes(machine, static_cast<S>(options.hold_factor), memory);
+    brakes.plan(*planned, false);
+    planned->set_brakes(brakes.brakes(), brakes.longest());
     return planned;
   }
   return tl::unexpected(

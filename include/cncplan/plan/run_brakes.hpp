@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cncplan/plan/brake_planner.hpp"
-#include "cncplan/plan/reserve.hpp"
 
 namespace cncplan::plan {
 
@@ -80,19 +79,5 @@ class RunBrakes {
   std::pmr::vector<Late> late_{memory_};
   S longest_{};
 };
-
-/// What `plan(machine)` gives for a machine, or one of lower limits where holds come late, and its brakes if
-/// they are wanted.
-template <MachineModel M, BlockModel B, class Plan>
-[[nodiscard]] auto plan_with_brakes(RunBrakes<M, B>& brakes, const M& machine, Plan&& plan) {
-  using S = typename M::Scalar;
-  constexpr S share = S(0.85), least = S(0.35);  // of the limits, from plan to plan
-  for (S now = S(1);; now *= share) {
-    auto planned = plan(with_reserve(machine, S(1) - now));
-    if (!planned || !brakes.wanted()) return planned;
-    brakes.plan(*planned, false);
-    if (brakes.late().empty() || now * share < least) return planned;
-  }
-}
 
 }  // namespace cncplan::plan

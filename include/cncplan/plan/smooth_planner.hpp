@@ -217,12 +217,14 @@ class SmoothPlanner {
                                                       std::optional<FallbackReason> reason = std::nullopt) {
     if (planned_ == end) return {};
     if (!reason) reason = runs_.why_fast(planned_, end);
-    auto planned = plan_with_brakes(run_brakes_, machine_, [&](const M& planned_for) {
-      return fast(end, planned_for, progress_to(end));
-    });
+    auto planned = fast(end, progress_to(end));
     if (!planned) {
       if (planned.error().block) *planned.error().block += first_source_ + planned_;
       return tl::unexpected(planned.error());
+    }
+    if (run_brakes_.wanted()) {
+      run_brakes_.plan(*planned, false);
+      make_room(brakes_, run_brakes_.brakes().size());
     }
     const std::size_t corrections = smoothing_.corrections.size(), before = out_.size();
     const std::size_t pieces = pieces_.size();
@@ -239,7 +241,7 @@ class SmoothPlanner {
       smoothing_.blocks.back() = own.blocks[i - planned_];
       smoothing_.blocks.back().first += corrections;
     }
-    if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes());
+    if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes(), time_);
     for (BasicPiecePhase<S> phase : planned->phases()) {
       phase.phase.time += time_;
       phase.piece += pieces;
@@ -281,9 +283,11 @@ class SmoothPlanner {
     if (!cut_ && fast_is_faster(planned.duration, end)) return FallbackReason::fast_is_faster;
     if (run_brakes_.wanted()) {
       make_holdable(run, planned, given, [](const RunPlan&) { return std::optional(Behind{}); });
-      add_brakes(run_brakes_.brakes());
+      make_room(brakes_, run_brakes_.brakes().size());
     }
+    const S start = time_;
     add_pieces(planned, given, end);
+    if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes(), start);
     return std::nullopt;
   } catch (const std::bad_alloc&) {
     return FallbackReason::memory;
@@ -294,8 +298,10 @@ class SmoothPlanner {
     const RunPlan planned = given.blocks.run(work_, cut_, memory_).slow_plan();
     make_room(fallbacks_, 1);
     const std::size_t before = out_.size();
-    add_brakes(run_brakes_.of_way());
+    make_room(brakes_, run_brakes_.of_way().size());
+    const S start = time_;
     add_pieces(planned, given, end);
+    add_brakes(run_brakes_.of_way(), start);
     tell_since(before, options_.level, FallbackReason::slow_motion);
   }
 
@@ -324,13 +330,15 @@ class SmoothPlanner {
       if (!next) return false;
       if (run_brakes_.wanted()) {
         next = make_holdable(run, planned, given, behind_it);
-        add_brakes(run_brakes_.brakes());
+        make_room(brakes_, run_brakes_.brakes().size());
         run_brakes_.keep(part_of(planned, given));
       }
       const std::size_t at = given.sources[planned.end_block], gone = next->gone;
       make_room(fallbacks_, 1);
       const std::size_t before = out_.size();
+      const S start = time_;
       add_pieces(planned, given, at);
+      if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes(), start);
       if (!fastest) tell_since(before, options_.level, FallbackReason::slow_motion);
       begun_ = !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + at;
       approach_ = std::move(planned.approach);
@@ -399,11 +407,10 @@ class SmoothPlanner {
       pieces.push_back({block, from, given.blocks.piece(path, block, from)});
     return Part(full_machine_, std::move(blocks), {run.phases, memory_}, {}, std::move(pieces));
   }
-  // Of what is added next.
-  void add_brakes(const typename RunBrakes<M, B>::Brakes& brakes) {
-    make_room(brakes_, brakes.size());
+  // Of what begins at a time. There is room.
+  void add_brakes(const typename RunBrakes<M, B>::Brakes& brakes, S start) {
     for (auto brake : brakes) {
-      brake.time += time_;
+      brake.time += start;
       brakes_.push_back(brake);
     }
     longest_hold_ = std::max(longest_hold_, run_brakes_.longest());
@@ -429,18 +436,17 @@ class SmoothPlanner {
   }
 
   // Blocks that have no plan, at the level `fast`.
-  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end, const M& planned_for,
-                                                  const Progress& progress = {}) const {
+  [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end, const Progress& progress = {}) const {
     const auto blocks = given(end);
     PlanOptions options = options_;
     options.level = SmoothLevel::fast;
-    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), planned_for,
-                              options, progress);
+    return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), machine_, options,
+                              progress);
   }
 
   // Whether the level `fast` takes less time.
   [[nodiscard]] bool fast_is_faster(S duration, std::size_t end) const {
-    const auto planned = fast(end, machine_);
+    const auto planned = fast(end);
     return planned && planned->duration() < duration;
   }
 
