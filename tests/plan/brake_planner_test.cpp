@@ -118,6 +118,30 @@ TEST_CASE("brakes: of machines that take longer to brake, and less long", "[brak
   }
 }
 
+TEST_CASE("brakes: where only axes have limits, and where nothing limits the jerk", "[brakes]") {
+  Machine<3> axes_only;
+  for (auto& axis : axes_only.axes) axis.velocity = 50, axis.acceleration = 800, axis.jerk = 8000;
+  const Machine<3> no_jerk{.limits = {.velocity = 30, .acceleration = 1000}};
+  for (const Machine<3>& machine : {axes_only, no_jerk})
+    for (const auto level : {SmoothLevel::exact, SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {
+      CAPTURE(machine.limits.velocity, level);
+      const auto program =
+          read_text("G0 X20 Y5\nG1 F1800 X40\nY20\nG3 X60 Y40 R20\nG0 X0 Y0\nG1 X-30\n", machine);
+      REQUIRE_FALSE(program.failed());
+      const auto trajectory = plan_blocks(program.blocks(), machine, {.level = level, .hold_factor = 1.5});
+      REQUIRE(trajectory);
+      TrajectoryExecutor executor(*trajectory, machine, {.longest_hold = 10});
+      REQUIRE_FALSE(executor.error());
+      while (executor.clock().position < trajectory->duration() - 0.3) executor.tick(period);
+      executor.feed_hold();  // on a line
+      const double speed = executor.tick(0).velocity.norm();
+      double held = 0;
+      for (; !executor.rests() && held < 1; held += period) executor.tick(period);
+      const double least = machine.limits.velocity < 100 ? speed / 1000 : 2 * std::sqrt(speed / 8000);
+      CHECK(held <= 1.05 * least + 2 * period);
+    }
+}
+
 TEST_CASE("brakes: a bound costs time, and one that a plan cannot keep is refused", "[brakes]") {
   const std::string text = circles(3);
   const auto fastest = planned(text, {.level = SmoothLevel::best});

@@ -12,7 +12,7 @@
 
 namespace cncplan::plan {
 
-/// How long a hold may take.
+/// How long a hold may take: both of them hold, and a millisecond is allowed beside the first.
 template <std::floating_point S>
 struct BasicHoldBound {
   S times_least = std::numeric_limits<S>::infinity();  ///< times the least that a brake takes
@@ -69,6 +69,7 @@ class BrakePlanner {
 
  private:
   static constexpr S infinity = std::numeric_limits<S>::infinity();
+  static constexpr S tick = S(1e-3);  // s, next to a start from rest the least brake takes less
   // How long a hold waits for a brake: of a bound, and of what that leaves beside the least brake.
   static constexpr S shortest_wait = S(1) / S(32), longest_wait = S(1) / S(4), kept_wait = S(1) / S(8);
 
@@ -78,11 +79,12 @@ class BrakePlanner {
     Brake next{to, S(0), 0};
     for (S least = clock_.least_brake(std::max(from, to - S(1e-3)));; least = clock_.least_brake(next.time)) {
       const S bound = most(least);
-      const S wait = std::clamp(bound - next.duration, shortest_wait * bound, longest_wait * bound);
+      const S wait =
+          std::max(std::clamp(bound - next.duration, shortest_wait * bound, longest_wait * bound), tick);
       const auto before = find_before(next, wait, from);
       const S hold = next.time - (before ? before->time : from) + next.duration;
       longest_ = std::max(longest_, hold);
-      times_least_ = std::max(times_least_, hold / least);
+      times_least_ = std::max(times_least_, (hold - tick) / least);
       if (hold > bound * (S(1) + S(1e-6))) add_late({before ? before->time : from, next.time + least / S(2)});
       brakes_.push_back(next);
       if (!before) return;
@@ -110,7 +112,7 @@ class BrakePlanner {
       if (const auto brake = clock_.find_brake(time, next.time - time + next.duration)) return brake;
     return std::nullopt;
   }
-  [[nodiscard]] S most(S least) const { return std::min(bound_.times_least * least, bound_.longest); }
+  [[nodiscard]] S most(S least) const { return std::min(bound_.times_least * least + tick, bound_.longest); }
   void add_late(const Late& late) {
     if (!late_.empty() && !(late.to < late_.back().from))
       late_.back().from = std::min(late_.back().from, late.from);

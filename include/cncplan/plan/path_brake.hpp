@@ -36,7 +36,8 @@ struct BasicRoom {
 
 /// Makes brakes step by step, each of a constant jerk: the lowest that the limits leave there, as long as
 /// some other constant jerk still ends speed and acceleration together; then back to the last place from
-/// where such an end is proven. A step that is not proven becomes shorter, and then gentler.
+/// where such an end is proven. A step that is not proven becomes shorter, and then gentler. Where the brake
+/// is proven that the path would allow if it went straight on, it is that one.
 template <MachineModel M, BlockModel B>
 class PathBrake {
  public:
@@ -59,16 +60,21 @@ class PathBrake {
   /// limits along the path, if it went straight on.
   [[nodiscard]] std::optional<Motion> find(const AxisState& from, std::size_t phase, std::size_t last,
                                            const BasicAxisLimits<S>& straight, int level, int& work) const {
-    const S most_jerk = straight.jerk;
-    const S duration = state::BasicVelocityChange<S>(from, S(0), straight).fastest().duration();
+    const S most_jerk = straight.jerk, share = shares[static_cast<std::size_t>(level)];
+    BasicAxisLimits<S> gentle = straight;
+    gentle.acceleration_up = gentle.acceleration_down = share * straight.acceleration_down;
+    const Motion direct(state::BasicVelocityChange<S>(from, S(0), gentle).fastest());
+    const S duration = direct.duration();
+    const bool in_time = !too_late(from, most_jerk);
+    if (in_time && proof_.moves(chain_, Way(chain_, phase, S(0)), last, direct, work)) return direct;
+    if (!std::isfinite(most_jerk) || !(duration > S(0))) return std::nullopt;
     const S longest_step =
         std::clamp(straight.acceleration_down / most_jerk, duration, S(2) * duration) / steps_in_brake;
     Motion motion(from, from);
     Way way(chain_, phase, S(0));
     AxisState state = from;
     while (motion.phases().size() + 1 < Motion::most_phases && !too_late(state, most_jerk)) {
-      const auto step =
-          prove(way, last, state, longest_step, shares[static_cast<std::size_t>(level)], most_jerk, work);
+      const auto step = prove(way, last, state, longest_step, share, most_jerk, work);
       if (!step) break;
       motion.append(*step);
       state = step->after(state, step->duration);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/plan/block_checks.hpp"
@@ -254,7 +255,9 @@ class TrajectoryClock {
   }
   template <class MayChange>
   void begin_planned(const Brake& brake, MayChange&& may_change) {
+    const bool stronger = std::exchange(brakes_, false);  // it was proven with the limits of the machine
     const auto ramp = brake_of_level(brake.level);
+    brakes_ = stronger;
     if (ramp && may_change(shown_at_end(*ramp))) begin(*ramp, S(0));
     search_from(S(1));
   }
