@@ -222,6 +222,39 @@ TEST_CASE("executor levels: a hold comes soon, and the time goes on where it was
   }
 }
 
+TEST_CASE("executor levels: a quick stop is no later than a hold, also where one waits for its brake",
+          "[executor-levels]") {
+  constexpr double share = 2;
+  const MillBlocks blocks = blocks_of(rows(2, 50));
+  // s from a hold to rest; so many ticks behind it a quick stop is asked for, none if that is below 0.
+  const auto hold = [&](double at, int quick) {
+    const auto executor = runner({.level = SmoothLevel::good, .quick_stop_share = share});
+    std::size_t fed = 0;
+    std::array<Vector3, 4> p;
+    p.fill(Vector3::Zero());
+    double acceleration = 0, jerk = 0;
+    int tick = 0, asked = static_cast<int>(at / period);
+    for (; tick < asked || executor->state() != ExecutorState::held; ++tick) {
+      REQUIRE(tick < asked + 5000);
+      feed(*executor, blocks, fed);
+      if (tick == asked) executor->feed_hold();
+      if (quick >= 0 && tick == asked + quick) executor->quick_stop();
+      p = {executor->tick(period).position, p[0], p[1], p[2]};
+      acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).norm());
+      jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
+    }
+    const double most = quick < 0 ? 1 : share;
+    CHECK(acceleration <= most * mill.limits.acceleration * period * period * (1 + 1e-5));
+    CHECK(jerk <= most * mill.limits.jerk * period * period * period * (1 + 1e-3));
+    return (tick - asked) * period;
+  };
+  for (double at = 0.1; at < 1.2; at += 0.21) {
+    INFO("hold at " << at);
+    const double held = hold(at, -1);
+    for (const int quick : {0, 2, 8}) CHECK(hold(at, quick) <= held + 1.5 * period);
+  }
+}
+
 TEST_CASE("executor levels: single steps and a pause rest just before the next block", "[executor-levels]") {
   const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
   const LevelExecutorOptions good{.level = SmoothLevel::good};
@@ -254,6 +287,39 @@ TEST_CASE("executor levels: single steps and a pause rest just before the next b
     paused->resume();
   }
   CHECK(held == 1);
+}
+
+TEST_CASE("executor levels: single steps rest once before every block, however hard braking is there",
+          "[executor-levels]") {
+  Random random;
+  for (int run = 0; run < 6; ++run) {
+    std::string text = "F" + std::to_string(random.uniform(600, 3000));
+    const int count = random.integer(4, 9);
+    double x = 0, y = 0;
+    for (int i = 0; i < count; ++i) {
+      x += random.uniform(4, 20), y += random.uniform(-15, 15);
+      text += (random.integer(0, 2) > 0 ? "G1 X" : "G3 R40 X") + std::to_string(x) + " Y" +
+              std::to_string(y) + "\n";
+    }
+    INFO(text);
+    const MillBlocks blocks = blocks_of(text);
+    const auto executor = std::make_unique<Runner>(mill, LevelExecutorOptions{.level = SmoothLevel::good});
+    std::size_t fed = 0;
+    feed(*executor, blocks, fed);
+    executor->single_step(true);
+    std::size_t pauses = 0;
+    for (int tick = 0; !executor->finished() && tick < 60000; ++tick) {
+      const auto point = executor->tick(period);
+      if (executor->state() != ExecutorState::held) continue;
+      REQUIRE(pauses < blocks.size());
+      const auto& path = blocks[pauses++].path;
+      const double least = 2 * std::sqrt(blocks[0].feed / mill.limits.jerk);  // s, to brake
+      CHECK((path.position_at(path.length()) - point.position).norm() < blocks[0].feed * least / 2);
+      executor->resume();
+    }
+    CHECK(executor->finished());
+    CHECK(pauses + 1 == blocks.size());
+  }
 }
 
 TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]") {

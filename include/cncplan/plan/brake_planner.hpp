@@ -64,8 +64,6 @@ class BrakePlanner {
   /// The longest that a hold takes: s, and times the least that a brake takes where its own begins.
   [[nodiscard]] S longest() const { return longest_; }
   [[nodiscard]] S times_least() const { return times_least_; }
-  /// What the clock shows where a brake ends.
-  [[nodiscard]] S end_of(const Brake& brake) { return clock_.end_of(brake); }
 
  private:
   static constexpr S infinity = std::numeric_limits<S>::infinity();
@@ -75,8 +73,8 @@ class BrakePlanner {
 
   // Backwards, from where it rests.
   void plan_between(S from, S to) {
-    if (!(to > from)) return brakes_.push_back({to, S(0), 0});
-    Brake next{to, S(0), 0};
+    if (!(to > from)) return brakes_.push_back({to, S(0), to, 0});
+    Brake next{to, S(0), to, 0};
     for (S least = clock_.least_brake(std::max(from, to - S(1e-3)));; least = clock_.least_brake(next.time)) {
       const S bound = most(least);
       const S wait =

@@ -4,35 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include "cncplan/core/axis_limits.hpp"
+#include "cncplan/core/interval.hpp"
 #include "cncplan/plan/clock_proof.hpp"
 #include "cncplan/state/velocity_change.hpp"
 
 namespace cncplan::plan {
-
-/// What a derivative of a length by time may be, so that vectors base + along x keep their limits: from `low`
-/// to `high`.
-template <std::floating_point S>
-struct BasicRoom {
-  S low = -std::numeric_limits<S>::infinity();
-  S high = std::numeric_limits<S>::infinity();
-
-  /// Where no x keeps the limit, the one that comes closest to it.
-  template <class V>
-  void keep(const V& base, const V& along, S limit) {
-    const S square = along.squaredNorm(), product = base.dot(along);
-    if (!(square > S(0)) || !std::isfinite(limit)) return;
-    const S root =
-        std::sqrt(std::max(product * product - square * (base.squaredNorm() - limit * limit), S(0)));
-    low = std::max(low, (-product - root) / square);
-    high = std::min(high, (-product + root) / square);
-  }
-};
 
 /// Makes brakes step by step, each of a constant jerk: the lowest that the limits leave there, as long as
 /// some other constant jerk still ends speed and acceleration together; then back to the last place from
@@ -87,9 +67,20 @@ class PathBrake {
   static constexpr S steps_in_brake = S(24);  // about
   static constexpr S within = S(0.97);        // of the limits
 
+  // What derivatives of the length by time may be.
   struct Rooms {
-    BasicRoom<S> acceleration, jerk;
+    BasicInterval<S> acceleration = BasicInterval<S>::whole(), jerk = BasicInterval<S>::whole();
   };
+  // For vectors base + along x to keep a limit. Where no x does, the one that comes closest to it is left.
+  template <class V>
+  static void keep(BasicInterval<S>& room, const V& base, const V& along, S limit) {
+    const S square = along.squaredNorm(), product = base.dot(along);
+    if (!(square > S(0)) || !std::isfinite(limit)) return;
+    const S root =
+        std::sqrt(std::max(product * product - square * (base.squaredNorm() - limit * limit), S(0)));
+    room.low = std::max(room.low, (-product - root) / square);
+    room.high = std::min(room.high, (-product + root) / square);
+  }
 
   // At a place and speed on the path.
   [[nodiscard]] Rooms rooms_at(Way way, const AxisState& state) const {
@@ -99,27 +90,27 @@ class PathBrake {
       const S s = std::clamp(planned, S(0), path.length());
       const S v = state.velocity, v2 = v * v, v3 = v2 * v;
       Rooms rooms;
-      const auto keep = [&](const auto& first, const auto& second, const auto& third,
-                            const BasicLimits<S>& own) {
-        rooms.acceleration.keep((second * v2).eval(), first, within * own.acceleration);
-        rooms.jerk.keep((second * (S(3) * v * state.acceleration) + third * v3).eval(), first,
-                        within * own.jerk);
+      const auto keep_all = [&](const auto& first, const auto& second, const auto& third,
+                                const BasicLimits<S>& own) {
+        keep(rooms.acceleration, (second * v2).eval(), first, within * own.acceleration);
+        keep(rooms.jerk, (second * (S(3) * v * state.acceleration) + third * v3).eval(), first,
+             within * own.jerk);
         // Of the jerk across the path, which no jerk along it changes.
         const S square = first.squaredNorm();
         if (!(square > S(0))) return;
         const auto across = [&](const auto& vector) {
           return (vector - first * (vector.dot(first) / square)).eval();
         };
-        rooms.acceleration.keep((across(third) * v3).eval(), (across(second) * (S(3) * v)).eval(),
-                                within * own.jerk);
+        keep(rooms.acceleration, (across(third) * v3).eval(), (across(second) * (S(3) * v)).eval(),
+             within * own.jerk);
       };
       const auto tool = tool_point(path, s, tool_);
-      keep(tool.first, tool.second, tool.third, proof_.limits().tool);
+      keep_all(tool.first, tool.second, tool.third, proof_.limits().tool);
       if (proof_.limits().axes.empty()) return rooms;
       const auto at = path.point_at(s);
       using One = Eigen::Matrix<S, 1, 1>;
       for (const auto& [i, own] : proof_.limits().axes)
-        keep(One(at.first[i]), One(at.second[i]), One(at.third[i]), own);
+        keep_all(One(at.first[i]), One(at.second[i]), One(at.third[i]), own);
       return rooms;
     });
   }

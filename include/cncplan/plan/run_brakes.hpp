@@ -44,9 +44,9 @@ class RunBrakes {
     if (way != nullptr) planner.chain().push_back(*way, rests_of_way.emplace(rests_of(*way, memory_)), {});
     planner.plan(follows ? start + uncovered_ : S(0));
     for (auto brake : planner.brakes()) {
-      // The clock runs no faster than time.
-      const bool own = way == nullptr || brake.time + brake.duration <= end || planner.end_of(brake) <= end;
+      const bool own = way == nullptr || brake.end <= end;
       brake.time -= own ? start : end;
+      brake.end -= own ? start : end;
       (own ? brakes_ : tail_).push_back(brake);
     }
     for (const Late& late : planner.late())

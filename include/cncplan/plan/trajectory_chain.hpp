@@ -124,6 +124,10 @@ class TrajectoryChain {
     return part.trajectory->path(part.trajectory->phases()[index - part.first_phase].piece);
   }
 
+  /// The trajectory that a phase is of, and the number of its first phase.
+  [[nodiscard]] const T& trajectory_of(std::size_t index) const { return *part_of(index).trajectory; }
+  [[nodiscard]] std::size_t first_phase_of(std::size_t index) const { return part_of(index).first_phase; }
+
   /// The set point where the running time is a clock's; `block` and `along` count those of all trajectories.
   [[nodiscard]] SetPoint at(BasicState<S> clock) const {
     const Part& part = part_at(clock.position);
@@ -170,6 +174,7 @@ class TrajectoryChain {
       if (next == brakes.end() || (first && !(next->time + parts_[i].start < first->time))) continue;
       first = *next;
       first->time += parts_[i].start;
+      first->end += parts_[i].start;
     }
     return first;
   }

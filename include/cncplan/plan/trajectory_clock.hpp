@@ -121,14 +121,7 @@ class TrajectoryClock {
     int work = work_in_plan;
     const auto ramp = find_change(state(), S(0), false, most, work);
     if (!ramp) return std::nullopt;
-    return Brake{shown, ramp->duration(), level_};
-  }
-  /// What the clock shows where it ends.
-  [[nodiscard]] S end_of(const Brake& brake) {
-    if (!(brake.duration > S(0))) return brake.time;
-    run_planned(brake.time);
-    const auto ramp = brake_of_level(brake.level);
-    return ramp ? shown_at_end(*ramp) : high_.from;
+    return Brake{shown, ramp->duration(), shown_at_end(*ramp), level_};
   }
   /// s, the least that a brake takes where the clock shows a time between rests, if the path went straight
   /// on: from the planned speed and acceleration, or from the feed if that is longer.
@@ -153,6 +146,17 @@ class TrajectoryClock {
     level_ = level;
     if (!ramp) return std::nullopt;
     return shown_at_end(*ramp);
+  }
+
+  /// Whether it runs at the planned speed, and passes within some seconds the last planned brake that comes
+  /// to rest before it shows a time.
+  [[nodiscard]] bool passes_last_brake_before(S shown, S within) const {
+    if (!at_planned_speed()) return false;
+    const S now = state().position;
+    const auto next = chain_.brake_after(now - same_time);
+    if (!next || next->time > now + within || next->end > shown) return false;
+    const auto behind = chain_.brake_after(next->time + same_time);
+    return !behind || behind->end > shown;
   }
 
   /// The way ahead has changed: what is driven to is looked for anew.

@@ -34,10 +34,22 @@ class LiveDriver final : public LevelDriver<M, B> {
   using typename Base::S;
   using typename Base::Vector;
   using Options = BasicLiveOptions<S>;
+  using Clock = TrajectoryClock<M, B>;
+
+  /// A part of a tick, s from its start.
+  struct Driven {
+    S start{}, duration{};
+    typename Clock::Ramp ramp;
+    S elapsed{};  ///< of the ramp, where the part begins
+
+    [[nodiscard]] BasicState<S> clock_at(const typename Clock::Chain& chain, S within) const {
+      return ramp.at(chain, elapsed + within);
+    }
+  };
 
   /// In memory that it gives back when it is destroyed.
-  static Base* make(const M& machine, const Options& options, std::size_t most_blocks,
-                    std::pmr::memory_resource* memory) {
+  static LiveDriver* make(const M& machine, const Options& options, std::size_t most_blocks,
+                          std::pmr::memory_resource* memory) {
     void* const room = memory->allocate(sizeof(LiveDriver), alignof(LiveDriver));
     try {
       return new (room) LiveDriver(machine, options, most_blocks, memory);
@@ -167,9 +179,13 @@ class LiveDriver final : public LevelDriver<M, B> {
     while (i + 1 < parts_.size() && seconds > parts_[i].start + parts_[i].duration) ++i;
     const Driven& part = parts_[i];
     const S within = std::clamp(seconds - part.start, S(0), part.duration);
-    const Point point = clock_.chain().at(part.ramp.at(clock_.chain(), part.elapsed + within));
+    const Point point = clock_.chain().at(part.clock_at(clock_.chain(), within));
     return {point.position, point.velocity, point.acceleration, point.jerk};
   }
+
+  /// What the last tick was made of, rests left out, and what its clock ran along.
+  [[nodiscard]] const FixedList<Driven, Base::most_parts>& driven() const { return parts_; }
+  [[nodiscard]] const typename Clock::Chain& chain() const { return clock_.chain(); }
 
   void restart(int line) override {
     planner_.restart(line);
@@ -184,7 +200,6 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
 
  private:
-  using Clock = TrajectoryClock<M, B>;
   using Planner = PartPlanner<M, B>;
   using Clocked = typename Planner::Clocked;
   using Shares = BasicFeedShares<S>;
@@ -194,12 +209,6 @@ class LiveDriver final : public LevelDriver<M, B> {
   static constexpr S same_time = S(1e-9);    // s
   static constexpr S time_to_plan = S(0.5);  // s of motion that is left when blocks go on without others
 
-  // A part of a tick.
-  struct Driven {
-    S start{}, duration{};
-    typename Clock::Ramp ramp;
-    S elapsed{};
-  };
   // A part that is in the chain.
   struct Seen {
     S start{}, tail_start{};  // s
@@ -344,13 +353,16 @@ class LiveDriver final : public LevelDriver<M, B> {
     held_ = true;
   }
   // Brakes so that the axes come to rest at the start of a block, or before it: a brake that has begun
-  // may give way to a faster one.
+  // may give way to a faster one. Where the search finds none now, the last planned one has to do.
   void brake_for_pause(S period) {
     if (!pauses() || held_ || stopped_) return;
     const auto pause = next_pause();
     if (!pause || clock_.next_rest() <= *pause + same_time) return;
+    const S soon = S(1.5) * period * clock_.state().velocity;
     const auto brake = clock_.brake();
-    if (brake && *brake + S(1.5) * period * clock_.state().velocity >= *pause) hold_at(*pause);
+    if (brake ? *brake + soon >= *pause
+              : clock_.passes_last_brake_before(*pause, period) || clock_.state().position + soon >= *pause)
+      hold_at(*pause);
   }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
