@@ -142,6 +142,20 @@ TEST_CASE("brakes: where only axes have limits, and where nothing limits the jer
     }
 }
 
+TEST_CASE("brakes: each tells where it comes to rest, in every run of a program", "[brakes]") {
+  const auto trajectory = planned("F1800\nG1 X20 Y1\nX40 Y0\nG4 P0.2\nG1 X20 Y10\nX0 Y9\nM0\nG1 X5\nX20 Y3\n",
+                                  {.level = SmoothLevel::good, .hold_factor = 1.5});
+  int between_rests = 0;
+  for (const auto& brake : trajectory.brakes()) {
+    CAPTURE(brake.time, brake.duration, brake.end);
+    CHECK(brake.end >= brake.time + 0.2 * brake.duration);  // the rate falls from 1 to 0
+    CHECK(brake.end <= brake.time + brake.duration);
+    if (brake.duration > 0) ++between_rests;
+  }
+  CHECK(between_rests > 20);
+  CHECK(trajectory.brakes().back().end == Approx(trajectory.duration()));
+}
+
 TEST_CASE("brakes: a bound costs time, and one that a plan cannot keep is refused", "[brakes]") {
   const std::string text = circles(3);
   const auto fastest = planned(text, {.level = SmoothLevel::best});

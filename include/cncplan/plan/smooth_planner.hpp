@@ -411,6 +411,7 @@ class SmoothPlanner {
   void add_brakes(const typename RunBrakes<M, B>::Brakes& brakes, S start) {
     for (auto brake : brakes) {
       brake.time += start;
+      brake.end += start;
       brakes_.push_back(brake);
     }
     longest_hold_ = std::max(longest_hold_, run_brakes_.longest());
