@@ -166,6 +166,12 @@ std::string event_text(const Event& event) {
                                     : fmt::format("{} {:.6g}", kind->name, event.value);
 }
 
+void refuse_periods(double period) {
+  throw support::Failure(support::Exit::bad_input,
+                         fmt::format("with its events the program takes more than {:.0e} periods of {:.6g} s",
+                                     most_periods, period));
+}
+
 double highest_feed(const std::vector<Event>& events) {
   double highest = 1.0;
   for (const Event& event : events)

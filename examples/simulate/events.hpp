@@ -21,6 +21,11 @@ struct Event {
 /// The largest share of the feed that is asked for, 1 at least.
 [[nodiscard]] double highest_feed(const std::vector<Event>& events);
 
+/// Periods after which a run is given up.
+inline constexpr double most_periods = 1e10;
+/// Throws the `Failure` that says so.
+[[noreturn]] void refuse_periods(double period);
+
 /// As its row has it: the event and its value.
 [[nodiscard]] std::string event_text(const Event& event);
 

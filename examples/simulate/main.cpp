@@ -48,8 +48,6 @@ void settle(Options& options, const support::Machine& machine) {
     refuse("--serve goes with --profile seven, --plan span and --interpolator exact only");
   if (options.compare.value_or(0.0) > 0.0 && (!as_planned || machine.kinematics != Kinematics::cartesian))
     refuse("--compare above 0 is for what --tolerance above 0 is for");
-  if (options.events && options.smooth.value_or(SmoothLevel::fast) != SmoothLevel::fast)
-    refuse("--smooth good and best are for motion without events: its speed is planned as a whole");
   if (machine.kinematics == Kinematics::tire_mold && options.tolerance_given && options.tolerance > 0.0)
     refuse(
         "--tolerance above 0 is for programs that say where the tool goes: rows name the axes, and are "

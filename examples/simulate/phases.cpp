@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "ask.hpp"
 #include "cncplan/plan/player/play.hpp"
 #include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
@@ -47,26 +48,6 @@ std::vector<plan::Span> spans_of(const Options& options, std::span<const plan::B
   return spans;
 }
 
-// Passes a request on.
-void ask(plan::Player& player, const Event& event) {
-  switch (event.request) {
-    case Request::hold:
-      return player.hold();
-    case Request::resume:
-      return player.resume();
-    case Request::feed:
-      return player.feed_override(event.value);
-    case Request::rapid:
-      return player.rapid_override(event.value);
-    case Request::stop:
-      return player.stop();
-    case Request::step:
-      return player.single_step(event.value != 0.0);
-    case Request::pause:
-      return player.pause_at(static_cast<int>(event.value));
-  }
-}
-
 }  // namespace
 
 std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(const Options& options,
@@ -84,12 +65,8 @@ std::pmr::vector<cncplan::BasicPiecePhase<double>> played(const Options& options
     requests.push_back({event.time, [&event](plan::Player& player) { ask(player, event); }});
   auto phases =
       plan::play(std::span<const plan::PlayedBlock>(blocks), std::span<const std::size_t>(cells.blocks),
-                 std::span<const plan::TimedRequest>(requests), options.period);
-  if (!phases)
-    throw support::Failure(
-        support::Exit::bad_input,
-        fmt::format("with its events the program takes more than {:.0e} periods of {:.6g} s",
-                    phases.error().bound, options.period));
+                 std::span<const plan::TimedRequest>(requests), options.period, most_periods);
+  if (!phases) refuse_periods(options.period);
   return *phases;
 }
 

@@ -18,6 +18,7 @@
 #include "cncplan/plan/player/play.hpp"
 #include "cncplan/plan/program_error.hpp"
 #include "cncplan/published/block_planning.hpp"
+#include "drive_live.hpp"
 #include "events.hpp"
 #include "phases.hpp"
 #include "plan.hpp"
@@ -71,32 +72,40 @@ template <class M>
   return std::move(*cells);
 }
 
-/// By the library's own door, at the levels good and best.
+/// At the levels good and best: by the library's own door, or live where there are events.
 template <class M>
 [[nodiscard]] Plan plan_smooth(const Options& options, const support::Machine& file, const M& machine,
                                const Program<M>& program) {
-  Progress progress(!options.quiet, 1.0, Progress::Begin::late);
-  const auto tell = [&](double share) {
-    progress.reach(share);
-    return true;
-  };
-  auto planned =
-      cncplan::plan_blocks(program.blocks, machine,
-                           {.tolerance = options.tolerance,
-                            .level = options.level(),
-                            .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree,
-                            .progress = tell});
-  progress.finish();
+  using Block = BlockOf<M>;
+  cncplan::PlanOptions planning{
+      .tolerance = options.tolerance,
+      .level = options.level(),
+      .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree};
+  auto planned = [&]() -> cncplan::Expected<cncplan::Trajectory<M, Block>, cncplan::ProgramError> {
+    if (options.events) {
+      planning.hold_factor = cncplan::LevelExecutorOptions{}.hold_factor;
+      return drive_live(std::span<const Block>(program.blocks), machine, planning,
+                        read_events(*options.events), options.period);
+    }
+    Progress progress(!options.quiet, 1.0, Progress::Begin::late);
+    planning.progress = [&](double share) {
+      progress.reach(share);
+      return true;
+    };
+    auto all = cncplan::plan_blocks(program.blocks, machine, planning);
+    progress.finish();
+    return all;
+  }();
   if (!planned) refuse(planned.error(), program.file);
   Plan result;
   result.motion_of = program.motion_of;
   result.junctions_limited = 0;
   result.other_levels = other_levels(*planned);
-  result.motion = std::make_unique<PlannedOn<M, BlockOf<M>>>(file, std::move(*planned));
+  result.motion = std::make_unique<PlannedOn<M, Block>>(file, std::move(*planned));
   return result;
 }
 
-/// On the exact path, at the level fast, or with events.
+/// On the exact path, or at the level fast.
 template <class M>
 [[nodiscard]] Plan plan_look_ahead(const Options& options, const support::Machine& file, const M& machine,
                                    const Program<M>& program) {
@@ -148,7 +157,7 @@ Plan plan(const Options& options, const support::Machine& file, const M& machine
   Plan result = [&] {
     const Stopwatch watch(seconds);
     if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
-      if (options.level() > cncplan::SmoothLevel::fast && !options.events)
+      if (options.level() > cncplan::SmoothLevel::fast)
         return detail::plan_smooth(options, file, machine, program);
     return detail::plan_look_ahead(options, file, machine, program);
   }();

@@ -105,6 +105,78 @@ TEST_CASE("all outputs of a disturbed run agree, and keep the limits") {
   CHECK(json["time_s"] > 20.05 + 0.67 + 0.7);
 }
 
+TEST_CASE(
+    "events at the levels good and best: outputs agree, limits and tolerance are kept, the end is reached") {
+  const test::Folder folder;
+  folder.write("none.csv", "t,event,value\n");
+  folder.write(
+      "e.csv",
+      "1.23,hold\n1.9,resume\n2.5,feed,0.3\n3.1,feed,90%\n4.2,rapid,50%\n5.0001,feed,0\n5.7,feed,1.3\n"
+      "7.5,hold,\n7.51,resume,\n8,step,1\n10,resume\n10,step,0\n");
+  const std::string events = " --events " + test::quoted((folder / "e.csv").string());
+  for (const std::string level : {"good", "best"}) {
+    CAPTURE(level);
+    const std::string options = "--tolerance 0.02 --smooth " + level;
+    const double planned = folder.run(test::example("pocket") + " --json " + options).json()["time_s"];
+    const auto played =
+        folder.run(test::example("pocket") + " --json " + options + " --events none.csv").json();
+    CHECK(played["time_s"].get<double>() ==
+          Approx(planned).epsilon(2e-2));  // as it comes, with bounded holds
+    CHECK(played["completed"] == true);
+    CHECK(played["level"] == level);
+    test::Asked asked;
+    asked.jerk = 1e6;  // along the programmed path, which is not driven
+    asked.exact = false;
+    const auto json = test::check_run(test::example("pocket"), options + events, asked);
+    CHECK(json["completed"] == true);
+    CHECK(json["deviation_mm"] <= 0.02 * (1 + 1e-6));
+    CHECK(json["tool_peak"]["jerk"] <= 10000 * (1 + 1e-4));
+    CHECK(json["tool_peak"]["acceleration"] <= 1000 * (1 + 1e-5));
+    CHECK(json["acceleration_jumps"] == 0);
+    CHECK(json["time_s"] > planned + 0.67 + 0.7);
+
+    REQUIRE(folder.run(test::example("pocket") + " --quiet --samples s.csv " + options + events).exit == 0);
+    const test::Table samples(folder / "s.csv");
+    double jerk = 0.0;
+    for (std::size_t i = 3; i + 1 < samples.rows(); ++i) {
+      double square = 0.0;
+      for (const char* axis : {"x", "y", "z"}) {
+        const auto& p = samples[axis];
+        square += std::pow(p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3], 2);
+      }
+      jerk = std::max(jerk, std::sqrt(square));
+    }
+    CHECK(jerk <= 10000 * 1e-9 * (1 + 1e-3));
+  }
+}
+
+TEST_CASE("events at the level good: single steps, a pause, a stop and a run without end") {
+  const test::Folder folder;
+  const std::string program = "G1 F1200 X10\nX20 Y5\nX30\nX40 Y-5\n",
+                    good = " --smooth good --tolerance 0.01";
+  folder.write("e.csv", "0,step,1\n2,resume\n4,step,0\n4,pause,4\n4,resume\n8,resume\n");
+  REQUIRE(folder.run_text(program, "--quiet --events e.csv --samples s.csv" + good).exit == 0);
+  const test::Table samples(folder / "s.csv");
+  const auto x_at = [&](double time) { return samples["x"][row_at(samples, time)]; };
+  CHECK(x_at(1.9) == Approx(10.0).margin(0.2));
+  CHECK(x_at(3.9) == Approx(20.0).margin(0.2));
+  CHECK(x_at(7.9) == Approx(30.0).margin(0.2));
+  CHECK(samples["x"].back() == Approx(40.0).margin(1e-9));
+
+  folder.write("e.csv", "1,stop\n2,resume\n");
+  const auto stopped = folder.run_text("G1 X100\nY100\n", "--json --events e.csv" + good).json();
+  CHECK(stopped["completed"] == false);
+  CHECK(stopped["time_s"].get<double>() == Approx(1.0 + braking).epsilon(1e-4));
+  folder.write("e.csv", "0,feed,0\n");
+  CHECK(folder.run_text(program, "--json --events e.csv" + good).json()["time_s"] == 0.0);
+  for (const char* events : {"0,feed,1e-8\n", "0.1,hold\n1e9,resume\n"}) {
+    folder.write("e.csv", events);
+    const auto run = folder.run_text(program, "--json --events e.csv" + good);
+    CHECK(run.exit == 2);
+    CHECK(run.err == "error: with its events the program takes more than 1e+10 periods of 0.001 s\n");
+  }
+}
+
 TEST_CASE("the same events give the same bytes") {
   const test::Folder folder;
   folder.write("e.csv", "0.5,hold\n0.9,resume\n1.5,feed,1.7\n");

@@ -65,8 +65,8 @@ class ExecutorRoom {
 /// - an override below 1 slows all of the motion, its ramps too; one above 1, 2 at most, is that of blocks
 ///   that are pushed while it holds: those that have come before go on as they are planned;
 /// - a hold comes once a change of the rate is proven: soon, with the `reserve` of the options;
-/// - `single_step` and `pause_at` rest less than two ticks before the next block, on the curve that is
-///   driven; behind its start where limits do not allow it sooner;
+/// - `single_step` and `pause_at` rest before the next block, on the curve that is driven, as near as a brake
+///   is proven or planned; behind its start where limits do not allow it sooner;
 /// - `reverse` goes back to the first rest of the parts that are kept, three behind this one;
 /// - `restart` begins where the first block of the line begins, and the axes go there first;
 /// - without `background` the work of a whole part is done in a `push`, `end_of_program` or `tick`: with it,
