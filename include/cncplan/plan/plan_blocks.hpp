@@ -2,10 +2,10 @@
 #pragma once
 
 #include <concepts>
+#include <iterator>
 #include <limits>
 #include <memory_resource>
 #include <new>
-#include <ranges>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -22,7 +22,14 @@ namespace cncplan {
 
 /// The block type of a range of blocks.
 template <class R>
-using BlockOf = std::remove_cvref_t<std::ranges::range_value_t<R>>;
+using BlockOf = std::remove_cvref_t<decltype(*std::data(std::declval<R&>()))>;
+
+/// Blocks one behind the other in memory: a vector, an array, a span.
+template <class R>
+concept BlockRange = BlockModel<BlockOf<R>> && requires(R& blocks) {
+  std::size(blocks);
+  std::end(blocks);
+};
 
 namespace plan {
 
@@ -33,7 +40,7 @@ template <class R>
   if constexpr (std::same_as<R, std::pmr::vector<BlockOf<R>>>)
     return {std::move(blocks), memory};
   else
-    return {std::ranges::begin(blocks), std::ranges::end(blocks), memory};
+    return {std::begin(blocks), std::end(blocks), memory};
 }
 
 /// What `plan_blocks` gives for blocks that it may change and keep. All memory is theirs.
@@ -85,8 +92,7 @@ template <MachineModel M, BlockModel B>
 /// why: `FallbackReason` lists it. Errors: those of `validate` for the machine and the options; a block that
 /// leaves the travel of an axis or that no limit bounds; too little of `memory`; `interrupted`, where the
 /// options' `progress` says so.
-template <std::ranges::contiguous_range R, MachineModel M>
-  requires BlockModel<BlockOf<R>>
+template <BlockRange R, MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(
     R&& blocks, const M& machine, const PlanOptions& options = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource()) try {
@@ -99,9 +105,8 @@ template <std::ranges::contiguous_range R, MachineModel M>
 
 /// The same on the exact path, with a policy of one's own for joints (`JunctionPolicy`) and a law for changes
 /// of speed.
-template <std::ranges::contiguous_range R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
+template <BlockRange R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
           plan::RampLaw<typename M::Scalar> Law = plan::SevenPhase>
-  requires BlockModel<BlockOf<R>>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
                                                                             const Policy& policy,
                                                                             const Law& law = {}) {

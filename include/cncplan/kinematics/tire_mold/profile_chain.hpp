@@ -112,20 +112,6 @@ template <std::floating_point S>
   return piece;
 }
 
-/// One end of an entity: side 0 is where it begins as drawn.
-struct End {
-  std::size_t entity{};
-  std::size_t side{};
-
-  friend bool operator==(const End&, const End&) = default;
-};
-
-/// An entity in its place and direction.
-struct Link {
-  std::size_t entity{};
-  bool turned{};
-};
-
 template <std::floating_point S>
 class Chainer {
  public:
@@ -158,6 +144,19 @@ class Chainer {
   }
 
  private:
+  // One end of an entity: side 0 is where it begins as drawn.
+  struct End {
+    std::size_t entity{};
+    std::size_t side{};
+
+    friend bool operator==(const End&, const End&) = default;
+  };
+  // An entity in its place and direction.
+  struct Link {
+    std::size_t entity{};
+    bool turned{};
+  };
+
   [[nodiscard]] BasicVector2<S> at(const End& end) const {
     const auto& piece = pieces_[end.entity];
     return end.side == 0 ? piece.start : piece.end();
