@@ -2,6 +2,7 @@
 #include "cncplan/plan/brake_planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -80,6 +81,34 @@ TEST_CASE("brakes: a hold at any instant of a plan is at rest within its bound",
           CHECK(held <= factor * least_from(trajectory, now, 0.4) + 2 * period);
         }
       }
+}
+
+TEST_CASE("brakes: under an override the bound is so many times longer", "[brakes]") {
+  for (const double share : {0.995, 0.9, 0.3}) {
+    const auto trajectory =
+        planned(circles(2), {.level = SmoothLevel::best, .reserve = 0, .hold_factor = 1.5});
+    Random random;
+    for (int i = 0; i < 12; ++i) {
+      TrajectoryExecutor executor(trajectory, mill, {.hold_factor = 1.5});
+      executor.feed_override(share);
+      const double at = random.uniform(0.3, trajectory.duration() - 0.5);
+      while (executor.clock().position < at || executor.clock().acceleration != 0) executor.tick(period);
+      CAPTURE(share, at);
+      if (executor.clock().velocity != Approx(share)) continue;  // it has not come to it yet
+      executor.feed_hold();
+      double held = 0;
+      std::array<Vector3, 4> p;
+      p.fill(executor.tick(0).position);
+      double jerk = 0;
+      for (int tick = 0; !executor.rests() && held < 3; held += period, ++tick) {
+        p = {executor.tick(period).position, p[0], p[1], p[2]};
+        if (tick >= 3) jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
+      }
+      CAPTURE(held);
+      CHECK(held <= executor.worst_hold() / share + 2 * period);
+      CHECK(jerk <= 10000 * period * period * period * (1 + 1e-3));
+    }
+  }
 }
 
 TEST_CASE("brakes: one that is planned begins within a tick, however long that is", "[brakes]") {

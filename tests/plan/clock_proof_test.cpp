@@ -94,6 +94,16 @@ Most most_of(const T& trajectory, const state::Motion& clock, const Machine<3>& 
                  clock.duration(), machine, 1e-5);
 }
 
+Machine<3> slow_axes() {
+  Machine<3> machine = mill;
+  machine.axes[0].jerk = 8000;
+  machine.axes[1].acceleration = 400;
+  return machine;
+}
+const std::string corners_and_arcs =
+    "F1800 G1 X8\nY5\nF900 X9 Y5.5\nG3 X14 Y0.5 R6\nF1500 G1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\nG1 X4 "
+    "Y0\n";
+
 }  // namespace
 
 TEST_CASE("a motion by a clock has the derivatives of the function of the function", "[clock]") {
@@ -237,13 +247,8 @@ TEST_CASE("clock: a brake along the path is refused where the plan is slower", "
 }
 
 TEST_CASE("clock: proven brakes along the path keep the limits and the planned speed", "[clock]") {
-  Machine<3> machine = mill;
-  machine.axes[0].jerk = 8000;
-  machine.axes[1].acceleration = 400;
-  const auto trajectory = planned(
-      "F1800 G1 X8\nY5\nF900 X9 Y5.5\nG3 X14 Y0.5 R6\nF1500 G1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\n"
-      "G1 X4 Y0\n",
-      with_reserve(machine, 0.1));
+  const Machine<3> machine = slow_axes();
+  const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
   Brakes brakes(trajectory, machine);
   brakes.trajectory = &trajectory;
   Random random;
@@ -273,14 +278,35 @@ TEST_CASE("clock: proven brakes along the path keep the limits and the planned s
   CHECK(refused > 30);
 }
 
+TEST_CASE("clock: a ramp at a share of its speeds passes the same places, later", "[clock]") {
+  const Machine<3> machine = slow_axes();
+  const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
+  Brakes brakes(trajectory, machine);
+  brakes.trajectory = &trajectory;
+  using Ramp = plan::ClockRamp<Machine<3>, Clocked::B>;
+  for (const double at : {0.1, 0.4, 0.9}) {
+    const auto brake = brakes.from(at, 9000, 900);
+    const state::BasicMotion<double> by_time(
+        state::BasicVelocityChange<double>({at, 1, 0}, 0, {2, 2, 20, 20, 300}).fastest());
+    for (const Ramp& ramp : {Ramp(AlongPath(brake), trajectory.phase_at(at)), Ramp(by_time)})
+      for (const double share : {0.9, 0.25}) {
+        const Ramp slower = ramp.at_share(share);
+        CHECK(slower.duration() == Approx(ramp.duration() / share));
+        CHECK(slower.ends_at_rest());
+        for (double t = 0; t < ramp.duration(); t += ramp.duration() / 17) {
+          const State own = ramp.at(brakes.chain, t), then = slower.at(brakes.chain, t / share);
+          CAPTURE(at, share, t);
+          CHECK(then.position == Approx(own.position).epsilon(1e-12));
+          CHECK(then.velocity == Approx(share * own.velocity).margin(1e-9));
+          CHECK(then.acceleration == Approx(share * share * own.acceleration).margin(1e-6));
+        }
+      }
+  }
+}
+
 TEST_CASE("clock: brakes that are made step by step keep the limits, wherever they begin", "[clock]") {
-  Machine<3> machine = mill;
-  machine.axes[0].jerk = 8000;
-  machine.axes[1].acceleration = 400;
-  const auto trajectory = planned(
-      "F1800 G1 X8\nY5\nF900 X9 Y5.5\nG3 X14 Y0.5 R6\nF1500 G1 X20 Y0\nX20.3 Y0.4\nX20.6 Y0\nX20.9 Y0.4\n"
-      "G1 X4 Y0\n",
-      with_reserve(machine, 0.1));
+  const Machine<3> machine = slow_axes();
+  const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
   Clocked clocked(trajectory, machine);
   const auto tool = tool_axes(machine);
   const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain);

@@ -104,6 +104,21 @@ class ClockRamp {
     return duration() + (place - end.position) / end.velocity;
   }
 
+  /// The same way at a share of all its speeds, above 0: it keeps the limits that it kept, if that is at
+  /// most 1.
+  [[nodiscard]] ClockRamp at_share(S share) const {
+    const S square = share * share;
+    const auto slowed = [&](const BasicAxisState<S>& state) {
+      return BasicAxisState<S>{state.position, share * state.velocity, square * state.acceleration};
+    };
+    Motion motion(slowed(motion_.start()), slowed(motion_.end()));
+    for (const auto& phase : motion_.phases())
+      motion.append({phase.duration / share, square * phase.acceleration, square * share * phase.jerk});
+    ClockRamp result = *this;
+    result.motion_ = motion;
+    return result;
+  }
+
   /// It is not asked for times before some seconds any more.
   void go_on(const Chain& chain, S elapsed) {
     if (!along_path_) return;

@@ -213,7 +213,8 @@ class ExecutorCore {
     return drive([](auto& driver) { return driver.until_change(); });
   }
   /// s: at the levels `good` and `best` with a `hold_factor`, no hold that is asked for at the planned speed
-  /// takes longer, along what has been planned since it was made or restarted. Else nothing.
+  /// takes longer, along what has been planned since it was made or restarted; at a constant override below 1
+  /// none takes longer than this over the override. Else nothing.
   [[nodiscard]] std::optional<Scalar> worst_hold() const {
     return level_ != nullptr && level_->worst_hold() > Scalar(0) ? std::optional(level_->worst_hold())
                                                                  : std::nullopt;

@@ -26,8 +26,8 @@ namespace cncplan::plan {
 /// for such a change, fast ones first, and for a faster one while one goes on. Where none is proven, the
 /// clock goes on as it does, which keeps the limits because the trajectories do. To rest it also looks for
 /// brakes along the path, which begin as hard as the place allows: what is planned there no longer counts. At
-/// the planned speed none is begun that ends later than the next planned brake, which is begun where none is
-/// found.
+/// a constant rate none is begun that ends later than the next planned brake, which is begun where none is
+/// found: so much slower as the rate is below 1.
 template <MachineModel M, BlockModel B>
 class TrajectoryClock {
  public:
@@ -148,13 +148,12 @@ class TrajectoryClock {
     return shown_at_end(*ramp);
   }
 
-  /// Whether it runs at the planned speed, and passes within some seconds the last planned brake that comes
-  /// to rest before it shows a time.
+  /// Whether it runs at a constant rate, and passes within some seconds the last planned brake that comes to
+  /// rest before it shows a time.
   [[nodiscard]] bool passes_last_brake_before(S shown, S within) const {
-    if (!at_planned_speed()) return false;
     const S now = state().position;
-    const auto next = chain_.brake_after(now - same_time);
-    if (!next || next->time > now + within || next->end > shown) return false;
+    const auto next = planned_brake();
+    if (!next || next->time > now + within * goal_ || next->end > shown) return false;
     const auto behind = chain_.brake_after(next->time + same_time);
     return !behind || behind->end > shown;
   }
@@ -220,7 +219,7 @@ class TrajectoryClock {
     change_rate(wanted, may_change);
     const bool back = heads_back();
     if (const auto brake = waits_for(wanted)) {
-      const S wait = brake->time - state().position;
+      const S wait = (brake->time - state().position) / goal_;
       if (wait > same_time) {
         const bool soon = wait < left;
         elapsed_ += soon ? wait : left;
@@ -248,13 +247,15 @@ class TrajectoryClock {
     high_ = chain_.rest_after(shown).value_or(rest_);
     low_ = chain_.rest_before(shown).value_or(rest_);
   }
-  [[nodiscard]] bool at_planned_speed() const {
-    return goal_ == S(1) && !(elapsed_ < ramp_.duration()) && !ramp_.ends_at_rest();
+  // The next planned brake, while it runs forwards at a constant rate.
+  [[nodiscard]] std::optional<Brake> planned_brake() const {
+    if (!(goal_ > S(0)) || elapsed_ < ramp_.duration() || ramp_.ends_at_rest()) return std::nullopt;
+    return chain_.brake_after(state().position - same_time);
   }
-  // The planned brake that the clock has at the latest, if it is asked to rest and has begun no other.
+  // The one that the clock has at the latest, if it is asked to rest and has begun no other.
   [[nodiscard]] std::optional<Brake> waits_for(S wanted) const {
-    if (wanted > S(0) || !at_planned_speed()) return std::nullopt;
-    const auto brake = chain_.brake_after(state().position - same_time);
+    if (wanted > S(0)) return std::nullopt;
+    const auto brake = planned_brake();
     return brake && brake->duration > S(0) && brake->time < high_.from ? brake : std::nullopt;
   }
   template <class MayChange>
@@ -265,13 +266,16 @@ class TrajectoryClock {
     if (ramp && may_change(shown_at_end(*ramp))) begin(*ramp, S(0));
     search_from(S(1));
   }
-  // What was proven once.
+  // What was proven once at the planned speed, at the rate of now.
   [[nodiscard]] std::optional<Ramp> brake_of_level(int level) const {
-    const BasicState<S> now = state();
-    if (level >= levels_along_path)
-      return Ramp(change_by_time(now, S(0), fastest_change(now.position), level));
+    const BasicState<S> planned{state().position, S(1), S(0), S(0)};
+    std::optional<Ramp> ramp;
     int work = work_in_plan;
-    return brake_along(along_path(now), level, work);
+    if (level >= levels_along_path)
+      ramp = Ramp(change_by_time(planned, S(0), fastest_change(planned.position), level));
+    else
+      ramp = brake_along(along_path(planned), level, work);
+    return ramp && goal_ < S(1) ? ramp->at_share(goal_) : ramp;
   }
   void begin(const Ramp& ramp, S goal) {
     ramp_ = ramp;
@@ -304,9 +308,8 @@ class TrajectoryClock {
     asked_ = goal;
     const bool back = now.velocity < S(0) || (now.velocity == S(0) && goal < S(0));
     S sooner = goal == goal_ ? S(0.99) * (ramp_.duration() - elapsed_) : infinity;
-    std::optional<Brake> planned;
-    if (goal == S(0) && at_planned_speed()) planned = chain_.brake_after(now.position - same_time);
-    if (planned) sooner = planned->time - now.position + planned->duration;
+    const std::optional<Brake> planned = goal == S(0) ? planned_brake() : std::nullopt;
+    if (planned) sooner = (planned->time - now.position + planned->duration) / goal_;
     const S to = now.velocity + portion_ * (goal - now.velocity);
     int work = work_in_tick;
     const auto ramp = find_change(now, to, back, sooner, work);

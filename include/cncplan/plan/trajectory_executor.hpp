@@ -74,7 +74,7 @@ class TrajectoryExecutor {
 
   /// Why the trajectory does not run, or why it was stopped; nothing where all is well.
   [[nodiscard]] std::optional<RunError> error() const { return error_; }
-  /// s: no hold from the planned speed takes longer.
+  /// s: no hold from the planned speed takes longer; at a constant override, than this over the override.
   [[nodiscard]] Scalar worst_hold() const { return worst_hold_; }
 
   // Requests. They act at the next tick.
