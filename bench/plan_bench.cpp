@@ -10,7 +10,6 @@
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/plan_program.hpp"
 #include "cncplan/plan/span_planner.hpp"
-#include "cncplan/plan/stream_planner.hpp"
 #include "plan/random_program.hpp"
 
 namespace {
@@ -37,20 +36,6 @@ bool look_ahead(const plan::BasicCells<double>& cells, std::vector<plan::Waypoin
   return plan::plan_spans(std::span<const plan::BlockCaps>(cells.caps), plan::SevenPhase{},
                           std::span(waypoints), std::back_inserter(spans))
       .has_value();
-}
-
-// The same blocks one by one through a window.
-bool plan_through(std::size_t window, const std::vector<bench::Block>& blocks, Spans& spans) {
-  const auto cells = cells_of(blocks);
-  if (!cells) return false;
-  std::vector<plan::BlockCaps> ahead(window);
-  std::vector<plan::Waypoint> first(window + 1), second(window + 1);
-  spans.clear();
-  plan::StreamPlanner<double> planner({ahead, first, second});
-  const auto out = std::back_inserter(spans);
-  for (const plan::BlockCaps& caps : cells->caps)
-    if (!planner.push(caps, out)) return false;
-  return planner.finish(out).has_value();
 }
 
 // Caps and spans over blocks in memory. An item is a block.
@@ -85,18 +70,6 @@ void plan_ball_look_ahead(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(plan_ball_look_ahead)->Name("plan/ball/look_ahead")->Unit(benchmark::kMillisecond);
-
-// The same, block by block through windows of different sizes. An item is a block.
-void plan_ball_stream(benchmark::State& state, std::size_t window) {
-  const auto blocks = ball_blocks(state);
-  Spans spans;
-  for (auto _ : state)
-    if (!plan_through(window, blocks, spans)) state.SkipWithError("the program has no plan");
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
-}
-BENCHMARK_CAPTURE(plan_ball_stream, , 256)->Name("plan/ball/stream")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(plan_ball_stream, , 16)->Name("plan/ball/stream/16")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(plan_ball_stream, , 4096)->Name("plan/ball/stream/4096")->Unit(benchmark::kMillisecond);
 
 // Programs whose caps, feeds and limits change all the time. An item is a block.
 void plan_random(benchmark::State& state) {

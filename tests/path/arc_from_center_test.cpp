@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "cncplan/path/plane_swap.hpp"
+#include "cncplan/published/plane_swap.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -32,8 +32,8 @@ TEST_CASE("Start, end and centre give the arc in the sense asked for") {
 TEST_CASE("End on the start is a full circle, in every plane, with a rise and extra turns") {
   for (const Plane plane : {Plane::xy, Plane::zx, Plane::yz, Plane::xz_printed})
     for (const int extra : {0, 1, 4}) {
-      const Vector3 start = from_plane(Vector3(3, 4, 1), plane);
-      const Vector3 end = from_plane(Vector3(3, 4, 11), plane);
+      const Vector3 start = published::from_plane(Vector3(3, 4, 1), plane);
+      const Vector3 end = published::from_plane(Vector3(3, 4, 11), plane);
       const auto arc = arc_from_center(start, end, Vector3(0, 0, 0), Turn::clockwise, plane, {}, extra);
       REQUIRE(arc);
       CHECK(arc->sweep() == Approx(-2 * pi * (extra + 1)).epsilon(1e-15));

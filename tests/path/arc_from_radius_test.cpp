@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "cncplan/path/plane_swap.hpp"
+#include "cncplan/published/plane_swap.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;
@@ -44,15 +44,15 @@ TEST_CASE("Sense and sign of the radius pick one of four arcs") {
 TEST_CASE("Each plane turns as seen from its positive third axis") {
   // A quarter turn counter-clockwise leads from the first towards the second axis.
   for (const Plane plane : {Plane::xy, Plane::zx, Plane::yz, Plane::xz_printed}) {
-    const Vector3 first = from_plane(Vector3(5, 0, 1), plane);
-    const Vector3 second = from_plane(Vector3(0, 5, 3), plane);
+    const Vector3 first = published::from_plane(Vector3(5, 0, 1), plane);
+    const Vector3 second = published::from_plane(Vector3(0, 5, 3), plane);
     const auto arc = arc_from_radius(first, second, 5.0, Turn::counterclockwise, plane);
     REQUIRE(arc);
-    CHECK((to_plane(arc->center(), plane) - Vector3(0, 0, 1)).norm() < 1e-15);
+    CHECK((published::to_plane(arc->center(), plane) - Vector3(0, 0, 1)).norm() < 1e-15);
     CHECK(arc->rise() == 2);
     CHECK(arc->sweep() == Approx(pi / 2).epsilon(1e-15));
     CHECK(arc->length() == Approx(std::hypot(2.5 * pi, 2)).epsilon(1e-15));
-    CHECK(arc->start_tangent().dot(from_plane(Vector3(0, 1, 0), plane)) > 0.9);
+    CHECK(arc->start_tangent().dot(published::from_plane(Vector3(0, 1, 0), plane)) > 0.9);
   }
 }
 

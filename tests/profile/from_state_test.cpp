@@ -6,7 +6,6 @@
 
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
-#include "cncplan/profile/stretch.hpp"
 #include "profile/state_case.hpp"
 #include "state/switching_oracle.hpp"
 #include "support/catch.hpp"
@@ -300,7 +299,6 @@ TEST_CASE("whole numbers may stand for scalars, and braces for all else") {
   CHECK(*profile::five_phase(5, {0, 0}, limits) == *profile::five_phase(5.0, {0.0, 0.0}, limits));
   CHECK(*profile::seven_phase(5, {0, 0}, {30, 1000, 10000}) ==
         *profile::seven_phase(5.0, {0.0, 0.0}, limits));
-  CHECK(*profile::stretched(5, {0, 0}, 2, limits) == *profile::stretched(5.0, {0.0, 0.0}, 2.0, limits));
   CHECK(
       profile::from_state(5, profile::BasicStartState<float>{20, 300}, 0, BasicLimits<float>{30, 1000, 10000})
           ->length() == 5.0F);

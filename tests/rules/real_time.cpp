@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <span>
 #include <string_view>
 
 #include "cncplan/gcode/reader.hpp"
@@ -25,7 +26,7 @@
 #include "cncplan/plan/laws.hpp"
 #include "cncplan/plan/live_steps.hpp"
 #include "cncplan/plan/move_to.hpp"
-#include "cncplan/plan/stream_planner.hpp"
+#include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/published/junction_table.hpp"
@@ -50,7 +51,7 @@ path::Arc helix() {
 }
 
 // Readers are set up before the machine moves; what they read then costs nothing.
-gcode::Reader reader, reader_of_stream;
+gcode::Reader reader, reader_of_plan;
 
 void read_lines() {
   std::array<gcode::Item, gcode::max_items_per_line> items;
@@ -190,15 +191,18 @@ void make_cells(gcode::Reader& program, const Take& take) {
   }
 }
 
-void stream_a_program() {
-  std::array<plan::BlockCaps, 4> window;
-  std::array<plan::Waypoint, 5> window_waypoints, held_waypoints;
-  std::array<plan::Span, 8> spans;
-  plan::StreamPlanner planner(plan::StreamMemory{window, window_waypoints, held_waypoints});
-  make_cells(reader_of_stream, [&](const ProgramBlock<Machine<3>>&, const plan::BlockCaps& caps) {
-    sink = planner.push(caps, spans.begin()).has_value() ? 1.0 : 0.0;
+void plan_a_program() {
+  std::array<plan::BlockCaps, 64> caps;
+  std::array<plan::Waypoint, 65> waypoints;
+  std::array<plan::Span, 64> spans;
+  std::size_t count = 0;
+  make_cells(reader_of_plan, [&](const ProgramBlock<Machine<3>>&, const plan::BlockCaps& cell) {
+    if (count < caps.size()) caps[count++] = cell;
   });
-  sink = planner.finish(spans.begin()).has_value() ? 1.0 : 0.0;
+  sink = plan::plan_spans(std::span<const plan::BlockCaps>(caps.data(), count), plan::SevenPhase{},
+                          std::span<plan::Waypoint>(waypoints), spans.begin())
+             ? 1.0
+             : 0.0;
 }
 
 constexpr Machine<3> stepping_mill{
@@ -246,7 +250,7 @@ constexpr std::array jobs{
     Job{"profile: five and seven phases, possible or not", plan_profiles},
     Job{"state: axes from state to state, a jog, a target beyond the travel", move_axes},
     Job{"interpolate: the samples of a helix", sample_a_block},
-    Job{"plan: G-code through look-ahead over a window", stream_a_program},
+    Job{"plan: G-code through look-ahead", plan_a_program},
     Job{"plan: G-code run, with its steps, and a jog", run_a_program},
     Job{"kinematics: joints of points and of motions, by maps", map_by_maps},
     Job{"step: the edges of a helix, simulated", step_a_block},

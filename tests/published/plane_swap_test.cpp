@@ -1,9 +1,9 @@
-#include "cncplan/path/plane_swap.hpp"
+#include "cncplan/published/plane_swap.hpp"
 
 #include "support/catch.hpp"
 
 using namespace cncplan;
-using namespace cncplan::path;
+using namespace cncplan::published;
 
 TEST_CASE("Planes swap as KK22 Table 2 says, G18 the ISO way round, and swap back") {
   const Vector3 p(1, 2, 3);

@@ -1,13 +1,12 @@
 // Coordinates within a working plane: the swap of KK22 Table 2 and its inverse.
 #pragma once
 
+#include <concepts>
+
 #include "cncplan/core/plane.hpp"
 #include "cncplan/core/vector.hpp"
 
-namespace cncplan::path {
-
-using cncplan::Plane;
-using cncplan::Turn;
+namespace cncplan::published {
 
 /// X Y Z as (first, second, third) coordinate of the plane.
 template <std::floating_point S>
@@ -27,4 +26,4 @@ template <std::floating_point S>
   return xyz;
 }
 
-}  // namespace cncplan::path
+}  // namespace cncplan::published
