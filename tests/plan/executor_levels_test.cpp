@@ -386,6 +386,52 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   CHECK(jerk.maxCoeff() <= 1e4 * period * period * period * (1 + 1e-4));
 }
 
+TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, however many blocks are held",
+          "[executor-levels]") {
+  Machine<3> machine = with_axes();
+  machine.limits.velocity = 60;
+  for (auto& axis : machine.axes) axis.velocity = 60;
+  for (const double length : {2.0, 12.0}) {
+    std::string text = "F1200\n";
+    for (int i = 1; i <= (length < 5 ? 300 : 60); ++i)
+      text += "G1 X" + std::to_string(length * i) + " Y" + std::to_string(0.03 * length * (i % 3)) + "\n";
+    const MillBlocks blocks = blocks_of(text, machine);
+    const auto executor = std::make_unique<Executor<Machine<3>, 300>>(
+        machine, LevelExecutorOptions{.level = SmoothLevel::good});
+    std::size_t fed = 0;
+    double most = 0;
+    const auto drive = [&](double seconds) {
+      double last = 0;
+      for (int i = 0; i * period < seconds && !executor->finished(); ++i) {
+        feed(*executor, blocks, fed);
+        const auto point = executor->tick(period);
+        last = point.velocity.norm();
+        most = std::max(most, last);
+        if (last > 0) CHECK(point.feed == Approx(20));
+      }
+      return last;
+    };
+    CAPTURE(length);
+    drive(1);
+    CHECK(most == Approx(20).epsilon(1e-3));
+    executor->feed_override(1.5);
+    drive(6);
+    CHECK(most == Approx(30).epsilon(1e-2));
+    executor->feed_override(1.2);  // at once
+    drive(0.3);
+    CHECK(drive(0.2) < 24 * (1 + 1e-6));
+    executor->feed_override(1.8);
+    drive(7);
+    CHECK(most > 35);
+    executor->feed_override(1);
+    run_to_end(*executor, {});
+    CHECK(executor->finished());
+    CHECK_FALSE(executor->error());
+    CHECK((executor->tick(period).position - blocks.back().path.position_at(blocks.back().path.length()))
+              .norm() < 1e-9);
+  }
+}
+
 TEST_CASE("executor levels: half of the feed takes twice the time", "[executor-levels]") {
   const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
   const auto time_at = [&](double share) {

@@ -100,6 +100,49 @@ TEST_CASE("stream: a part goes on as the one before ended", "[smooth-stream]") {
   CHECK(nothing.program().empty());
 }
 
+TEST_CASE("stream: plans that look ahead over seconds make short parts, and take the time of the whole",
+          "[smooth-stream]") {
+  test::Random random;
+  for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
+    std::string text = "F1800\n";
+    Vector3 at = Vector3::Zero();
+    for (int i = 0; i < (level == SmoothLevel::good ? 150 : 40); ++i) {
+      at += Vector3(random.uniform(3, 25), random.uniform(-10, 10), 0);
+      const bool arc = random.integer(0, 3) == 0, rapid = random.integer(0, 9) == 0;
+      text += rapid ? "G0 X" : arc ? "G2 R60 X" : "G1 X";
+      text += std::to_string(at.x()) + " Y" + std::to_string(at.y()) +
+              (random.integer(0, 14) == 0 ? "\nG4 P0.1\n" : "\n");
+    }
+    const MillBlocks blocks = blocks_of(text);
+    const auto whole = plan_blocks(blocks, mill, at_level(level, within));
+    REQUIRE(whole);
+    Stream stream(mill, at_level(level, within), 300);
+    stream.plan_ahead(4);
+    JoinedParts<MillBlock, Machine<3>> parts;
+    for (const MillBlock& block : blocks) {
+      REQUIRE(stream.push(block));
+      while (stream.has_part()) {
+        REQUIRE(stream.make_part());
+        REQUIRE(stream.ready());
+        parts.take(stream);
+      }
+    }
+    while (!stream.empty()) {
+      REQUIRE(stream.finish_part());
+      parts.take(stream);
+    }
+    const auto joined = parts.trajectory(mill);
+    check_motion(joined, blocks, mill, 40);
+    CHECK(joined.duration() < 1.01 * whole->duration());
+    double before = 0;
+    for (const double end : parts.ends()) {
+      CHECK(end - before < 10);
+      before = end;
+    }
+    CHECK(parts.ends().size() > static_cast<std::size_t>(joined.duration() / 8));
+  }
+}
+
 TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]") {
   const std::size_t held = 50;
   // Runs, a long stretch on the exact path, and one without any motion.

@@ -76,7 +76,13 @@ class SmoothStream {
     return tl::unexpected(plan::interrupted(at, "planning"));
   }
   /// Plans all that is left, to rest. Blocks that are pushed later go on from there.
-  [[nodiscard]] Expected<void, ProgramError> finish() try {
+  [[nodiscard]] Expected<void, ProgramError> finish() {
+    auto ok = finish_part();
+    while (ok && !empty()) ok = finish_part();
+    return ok;
+  }
+  /// The same, but one part only where `plan_ahead` says so.
+  [[nodiscard]] Expected<void, ProgramError> finish_part() try {
     if (const auto ok = check_machine(); !ok) return ok;
     if (const auto ok = planner_.prepare(merging_.size()); !ok) return ok;
     merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
@@ -90,13 +96,40 @@ class SmoothStream {
 
   /// Whether the next block makes it plan first.
   [[nodiscard]] bool full() const { return planner_.full(); }
-  /// Plans a part if it is full, as the next `push` would. Errors as for that.
-  [[nodiscard]] Expected<void, ProgramError> make_room() try {
-    return planner_.prepare(merging_.size() + 1);
+  /// Plans are to look ahead over about so many seconds of motion, not over all blocks that are held: parts
+  /// are shorter then where blocks are long.
+  void plan_ahead(Scalar seconds) { planner_.plan_ahead(seconds); }
+  /// Whether blocks that are held are enough for a part that looks so far ahead.
+  [[nodiscard]] bool has_part() const { return planner_.has_part(); }
+  /// Whether all that was pushed is planned.
+  [[nodiscard]] bool empty() const { return merging_.empty() && planner_.empty(); }
+  /// Plans a part, if it is full as the next `push` would. Errors as for that.
+  [[nodiscard]] Expected<void, ProgramError> make_part() try {
+    return planner_.make_part(merging_.size() + 1);
   } catch (const std::bad_alloc&) {
     return tl::unexpected(plan::no_memory());
   } catch (const plan::Interrupted& at) {
     return tl::unexpected(plan::interrupted(at, "planning"));
+  }
+
+  /// The first block, of all that were pushed, whose feed may still be raised, and the first whose may be
+  /// lowered: what is planned keeps its way to rest.
+  struct OpenFeeds {
+    std::int64_t higher{}, lower{};
+  };
+  [[nodiscard]] OpenFeeds open_feeds() const {
+    const auto [higher, lower] = planner_.open_feeds();
+    return {static_cast<std::int64_t>(higher), static_cast<std::int64_t>(lower)};
+  }
+  /// Multiplies the feeds of blocks that are held, from one on, by factor(number).
+  template <class Factor>
+  void scale_feeds(std::int64_t first, Factor&& factor) {
+    planner_.scale_feeds(first, factor);
+    auto number = static_cast<std::int64_t>(pushed_ - merging_.size());
+    for (B& block : merging_) {
+      if (number >= first && !block.rapid) block.feed *= factor(number);
+      ++number;
+    }
   }
 
   /// Whether what was planned last ends at a speed.

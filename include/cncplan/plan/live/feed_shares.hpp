@@ -5,14 +5,15 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "cncplan/core/fixed_list.hpp"
 #include "cncplan/plan/player/queue.hpp"
 
 namespace cncplan::plan {
 
-/// An override above 1 is planned into the blocks that come while it is asked for: the thread that pushes
-/// blocks scales their feeds, and the one that drives them knows by how much. Shares are at least 1.
+/// An override above 1 is planned into the blocks that have no plan yet: the thread that plans scales their
+/// feeds, and the one that drives them knows by how much. Shares are at least 1.
 template <std::floating_point S>
 class BasicFeedShares {
  public:
@@ -20,40 +21,37 @@ class BasicFeedShares {
 
   /// The thread that drives: what is asked for.
   void ask(S share) { asked_.store(share > S(1) ? share : S(1), std::memory_order_relaxed); }
-  /// The thread that pushes: the share for the next block. There is room for some changes at once; where
-  /// there is none, the share stays.
-  [[nodiscard]] S next() const {
-    return changes_.size() < room ? asked_.load(std::memory_order_relaxed) : pushed_;
+  [[nodiscard]] S asked() const { return asked_.load(std::memory_order_relaxed); }
+
+  /// The thread that plans: the share of a block, and of those that will come.
+  [[nodiscard]] S planned(std::int64_t block) const { return planned_.of(block); }
+  [[nodiscard]] S planned() const { return planned_.last(); }
+  /// There is room for some changes at once. Blocks before `oldest` are not asked for again.
+  [[nodiscard]] bool has_room(std::int64_t oldest) {
+    planned_.forget(oldest);
+    return !planned_.full() && changes_.size() < room;
   }
-  /// It was pushed with that share, and has this number.
-  void pushed(std::int64_t block, S share) {
-    if (share != pushed_ && changes_.push(Change{block, share})) pushed_ = share;
+  /// From a block on there is another share. There is room.
+  void plan(std::int64_t first, S share) {
+    changes_.push(Change{first, share});
+    planned_.change({first, share});
   }
 
   /// The thread that drives: the share of a block. Blocks before `oldest` are not asked for again.
   [[nodiscard]] S share_of(std::int64_t block, std::int64_t oldest) {
-    for (const Change* change = changes_.front(); change != nullptr && known_.push_back(*change);
-         change = changes_.front())
+    known_.forget(oldest);
+    for (const Change* change = changes_.front(); change != nullptr && !known_.full();
+         change = changes_.front()) {
+      known_.change(*change);
       changes_.pop();
-    std::size_t behind = 0;
-    while (behind < known_.size() && known_[behind].block <= oldest) ++behind;
-    if (behind > 0) {
-      before_ = known_[behind - 1].share;
-      FixedList<Change, room> rest;
-      for (std::size_t i = behind; i < known_.size(); ++i) rest.push_back(known_[i]);
-      known_ = rest;
     }
-    S share = before_;
-    for (const Change& change : known_)
-      if (change.block <= block) share = change.share;
-    return share;
+    return known_.of(block);
   }
 
   /// Forgets all; while no other thread does anything.
   void clear() {
     while (changes_.front() != nullptr) changes_.pop();
-    known_.clear();
-    before_ = pushed_ = S(1);
+    known_ = planned_ = {};
   }
 
  private:
@@ -65,11 +63,43 @@ class BasicFeedShares {
     S share = S(1);
   };
 
+  class Steps {
+   public:
+    [[nodiscard]] bool full() const { return changes_.full(); }
+    [[nodiscard]] S last() const { return of(std::numeric_limits<std::int64_t>::max()); }
+    [[nodiscard]] S of(std::int64_t block) const {
+      S share = before_;
+      for (const Change& change : changes_)
+        if (change.block <= block) share = change.share;
+      return share;
+    }
+    // Those before it stay.
+    void change(const Change& next) {
+      keep([&](const Change& one) { return one.block < next.block; });
+      changes_.push_back(next);
+    }
+    void forget(std::int64_t oldest) {
+      before_ = of(oldest);
+      keep([&](const Change& one) { return one.block > oldest; });
+    }
+
+   private:
+    template <class Keeps>
+    void keep(Keeps&& keeps) {
+      const FixedList<Change, room> all = changes_;
+      changes_.clear();
+      for (const Change& one : all)
+        if (keeps(one)) changes_.push_back(one);
+    }
+
+    FixedList<Change, room> changes_;
+    S before_ = S(1);
+  };
+
   std::atomic<S> asked_{S(1)};
-  S pushed_ = S(1);
+  Steps planned_;
   Queue<Change, room> changes_;
-  FixedList<Change, room> known_;
-  S before_ = S(1);
+  Steps known_;
 };
 
 }  // namespace cncplan::plan

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "cncplan/core/fixed_list.hpp"
-#include "cncplan/plan/live/feed_shares.hpp"
 #include "cncplan/plan/live/level_driver.hpp"
 #include "cncplan/plan/live/part_planner.hpp"
 #include "cncplan/plan/trajectory_clock.hpp"
@@ -64,15 +63,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     memory->deallocate(this, sizeof(LiveDriver), alignof(LiveDriver));
   }
 
-  bool push(const B& block) override {
-    const S share = shares_.next();
-    const std::int64_t number = planner_.pushed();
-    B scaled = block;
-    if (!block.rapid) scaled.feed *= share;
-    if (!planner_.push(scaled)) return false;
-    shares_.pushed(number, share);
-    return true;
-  }
+  bool push(const B& block) override { return planner_.push(block); }
   void end_of_program() override {
     planner_.end_of_program();
     if (!background_) planner_.plan();
@@ -88,8 +79,8 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!clock_.rests()) clock_.brake_with(std::max(share, S(1)));
   }
   void feed_override(S share) override {
-    feed_share_ = cut(share, Shares::most_share);
-    shares_.ask(feed_share_);
+    feed_share_ = cut(share, BasicFeedShares<S>::most_share);
+    planner_.shares().ask(feed_share_);
   }
   void rapid_override(S share) override { rapid_share_ = cut(share, S(1)); }
   void backwards(bool wanted) override { backwards_ = wanted; }
@@ -165,7 +156,7 @@ class LiveDriver final : public LevelDriver<M, B> {
       const S time = point.time;
       point = clock_.chain().at(clock_.state());
       point.time = time;
-      point.feed /= shares_.share_of(static_cast<std::int64_t>(point.block), oldest_block());
+      point.feed /= planner_.shares().share_of(static_cast<std::int64_t>(point.block), oldest_block());
     }
     point.words = words_;
     release();
@@ -196,13 +187,11 @@ class LiveDriver final : public LevelDriver<M, B> {
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
     passed_ = -infinity;
-    shares_.clear();
   }
 
  private:
   using Planner = PartPlanner<M, B>;
   using Clocked = typename Planner::Clocked;
-  using Shares = BasicFeedShares<S>;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
   static constexpr std::int64_t parts_behind = 3;
@@ -307,7 +296,8 @@ class LiveDriver final : public LevelDriver<M, B> {
       if (clock_.chain().block_at(now).rapid)
         share = rapid_share_;
       else
-        share = std::min(share / shares_.share_of(clock_.chain().number_at(now), oldest_block()), S(1));
+        share =
+            std::min(share / planner_.shares().share_of(clock_.chain().number_at(now), oldest_block()), S(1));
     }
     return backwards_ ? -share : share;
   }
@@ -454,7 +444,6 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool program_stop_ = true;
   int pause_line_ = 0;
   S feed_share_ = S(1), rapid_share_ = S(1);
-  Shares shares_;
   S passed_ = -infinity;  // when the block begins before which it last paused
   // Parts: the oldest that is kept, and behind the last one that was taken into the chain.
   std::int64_t oldest_ = 0, seen_ = 0;

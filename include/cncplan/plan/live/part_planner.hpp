@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "cncplan/plan/live/feed_shares.hpp"
 #include "cncplan/plan/smooth_stream.hpp"
 #include "cncplan/plan/trajectory_chain.hpp"
 
@@ -78,7 +79,8 @@ class PartPlanner {
   };
 
   static constexpr std::int64_t most_parts = 8;
-  static constexpr S time_ahead = S(1);  // s of motion behind which no more is planned yet
+  static constexpr S time_ahead = S(1);    // s of motion behind which no more is planned yet
+  static constexpr S time_in_plan = S(4);  // s of motion, about, that a plan looks ahead
 
   PartPlanner(const M& machine, const PlanOptions& options, std::size_t most_blocks,
               std::pmr::memory_resource* memory)
@@ -100,7 +102,9 @@ class PartPlanner {
     if (failed_.load(std::memory_order_relaxed)) return true;
     if (pushed_.load(std::memory_order_relaxed) == 0) start_ = block.path.position_at(S(0));
     all_planned_.store(false, std::memory_order_relaxed);
-    if (const auto ok = stream_->push(block); !ok)
+    B scaled = block;
+    if (!block.rapid) scaled.feed *= shares_.planned();
+    if (const auto ok = stream_->push(scaled); !ok)
       fail(ok.error().about);
     else
       pushed_.fetch_add(1, std::memory_order_release);
@@ -114,7 +118,7 @@ class PartPlanner {
     const Turn turn(busy_);
     if (!turn) return false;
     settle();
-    if (stream_->full() && !failed_.load(std::memory_order_relaxed)) return make_part();
+    if (due() && !failed_.load(std::memory_order_relaxed)) return make_part();
     const bool ends = ended_.load(std::memory_order_acquire) || failed_.load(std::memory_order_relaxed) ||
                       let_go_.load(std::memory_order_acquire);
     if (!ends || all_planned_.load(std::memory_order_relaxed) || !room()) return false;
@@ -131,6 +135,8 @@ class PartPlanner {
   [[nodiscard]] bool ended() const { return ended_.load(std::memory_order_acquire); }
   [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_acquire); }
   [[nodiscard]] gcode::Diagnostic fault() const { return fault_; }
+  /// By which share of its feed each block is planned.
+  [[nodiscard]] BasicFeedShares<S>& shares() { return shares_; }
   /// s, the longest that a hold takes along the parts that were planned, from the planned speed.
   [[nodiscard]] S longest_hold() const { return longest_hold_.load(std::memory_order_relaxed); }
   /// Where the first block begins, once it has been pushed.
@@ -179,7 +185,10 @@ class PartPlanner {
   void begin() {
     stream_.emplace(machine_, options_, most_blocks_, memory_);
     stream_->keep_cuts();
+    stream_->plan_ahead(time_in_plan);
+    shares_.clear();
     made_ = 0;
+    looked_at_ = -1;
     released_ = taken_ = 0;
     left_ = longest_hold_ = S(0);
     pushed_ = 0;
@@ -215,27 +224,51 @@ class PartPlanner {
     open_ = false;
   }
 
-  // A part, as no more blocks can be held; false where there is no room for it.
-  bool make_part() {
-    while (stream_->full() && !failed_.load(std::memory_order_relaxed)) {
-      if (!room()) return false;
-      if (const auto ok = stream_->make_room(); !ok) fail(ok.error().about);
-      offer();
-    }
-    return true;
+  // Whether a part can be made of the blocks that are held, whatever follows, or has to be.
+  [[nodiscard]] bool due() {
+    if (stream_->full()) return true;
+    const std::int64_t pushed = pushed_.load(std::memory_order_relaxed);
+    if (looked_at_ == pushed || !room()) return false;
+    if (stream_->has_part()) return true;
+    looked_at_ = pushed;
+    return false;
   }
 
-  // All that was pushed, to rest. What was void is planned again.
+  // Parts, as long as they are due and there is room for them; false where no more blocks can be held.
+  bool make_part() {
+    while (due() && room() && !failed_.load(std::memory_order_relaxed)) {
+      adopt_share();
+      if (const auto ok = stream_->make_part(); !ok) fail(ok.error().about);
+      if (!stream_->ready()) looked_at_ = pushed_.load(std::memory_order_relaxed);
+      offer();
+    }
+    return !stream_->full() || failed_.load(std::memory_order_relaxed);
+  }
+
+  // Blocks that have no plan take the share of their feed that is asked for. Those along which the machine is
+  // known to come to rest become no slower.
+  void adopt_share() {
+    const S share = shares_.asked();
+    const auto [higher, lower] = stream_->open_feeds();
+    if (share == shares_.planned() || !shares_.has_room(higher)) return;
+    std::int64_t first = lower;
+    while (first > higher && !(shares_.planned(first - 1) > share)) --first;
+    stream_->scale_feeds(first, [&](std::int64_t block) { return share / shares_.planned(block); });
+    shares_.plan(first, share);
+  }
+
+  // The next part of all that was pushed; the last one to rest. What was void is planned again.
   void finish() {
     let_go_.store(false, std::memory_order_relaxed);
     do {
-      if (const auto ok = stream_->finish(); !ok) {
+      adopt_share();
+      if (const auto ok = stream_->finish_part(); !ok) {
         fail(ok.error().about);
         stream_.emplace(machine_, options_, most_blocks_, memory_);  // the tail, if there is one, is driven
         break;
       }
     } while (!offer());
-    all_planned_.store(true, std::memory_order_release);
+    if (stream_->empty()) all_planned_.store(true, std::memory_order_release);
   }
 
   // What was planned; false if it is void, as the tail before it is driven.
@@ -284,9 +317,11 @@ class PartPlanner {
   std::optional<SmoothStream<M, B>> stream_;
   std::array<Part, static_cast<std::size_t>(most_parts)> parts_{};
   std::int64_t made_ = 0;
+  std::int64_t looked_at_ = -1;            // blocks pushed when no part could be made of them
   bool open_ = false;                      // the last part, and its tail is not driven
   std::optional<std::size_t> last_block_;  // in which it ends
   int skips_to_ = 0;
+  BasicFeedShares<S> shares_;
   Vector start_ = Vector::Zero();
   gcode::Diagnostic fault_{};
   std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
