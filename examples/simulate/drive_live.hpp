@@ -61,14 +61,16 @@ template <class M, class B>
     if (fed == blocks.size()) driver->end_of_program();
     driver->look(0.0);
     if (driver->failed()) return tl::unexpected(cncplan::ProgramError{driver->fault()});
-    if (driver->complete() || driver->stopped()) break;
+    if ((driver->complete() && driver->finished()) || driver->stopped()) break;
     const double next_event = event != events.end() ? event->time : infinity;
     if (std::min(time + detail::least_time_left(*driver), next_event) > most_periods * period)
       refuse_periods(period);
     while (!(static_cast<double>(ticks) * period > time)) ++ticks;
     const double next = std::min(static_cast<double>(ticks) * period, next_event);
+    const bool dwelled = driver->dwells();
     driver->advance(next - time, point);
     record.add(*driver, time);
+    if (dwelled && driver->driven().empty()) end = next - std::min(driver->rested(), next - time);
     const bool idle = driver->driven().empty() && !driver->dwells() && point.words.empty();
     idle_ticks = idle ? idle_ticks + 1 : 0;
     if (idle && (driver->asked_to_rest() || idle_ticks > most_search)) {  // nothing is ticked then
@@ -77,7 +79,6 @@ template <class M, class B>
       ticks = static_cast<std::int64_t>(next_event / period);
       continue;
     }
-    if (driver->driven().empty()) end = next - std::min(driver->rested(), next - time);
     time = next;
   }
   return record.finish(machine, end);

@@ -44,6 +44,8 @@ class LiveRecord {
   /// All of it; it rests from its last motion to a time.
   [[nodiscard]] Trajectory finish(const M& machine, double end) {
     rest_until(end);
+    const std::size_t driven = pieces_.empty() ? 0 : pieces_.back().block + 1;
+    for (std::size_t block = driven; block < blocks_.size(); ++block) pieces_.push_back({.block = block});
     Trajectory result(machine, std::move(blocks_), std::move(phases_), std::move(smoothing_),
                       std::move(pieces_));
     result.set_fallbacks(std::move(fallbacks_));
@@ -135,7 +137,8 @@ class LiveRecord {
   // Where the last motion ended, or the first one begins.
   void rest_until(double time) {
     open_.reset();
-    if (!(time - end_ > same_time) || pieces_.empty()) return;
+    if (!(time - end_ > same_time)) return;
+    if (pieces_.empty()) pieces_.push_back({});
     const bool there = !phases_.empty() && phases_.back().piece + 1 == pieces_.size();
     const double place = there ? phases_.back().phase.at(phases_.back().phase.duration).position : 0.0;
     add_phase({place, 0.0, 0.0, 0.0}, time - end_);

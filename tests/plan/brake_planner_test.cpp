@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -169,6 +170,14 @@ TEST_CASE("brakes: where only axes have limits, and where nothing limits the jer
       const double least = machine.limits.velocity < 100 ? speed / 1000 : 2 * std::sqrt(speed / 8000);
       CHECK(held <= 1.05 * least + 2 * period);
     }
+}
+
+TEST_CASE("brakes: on a measured curve they are planned in a bounded time", "[brakes]") {
+  const std::clock_t begin = std::clock();
+  const auto trajectory = planned("G17\nG1 X5 F1200\nG5 X15 Y5 I3 J0 P-3 Q0\nG1 X25\n",
+                                  {.level = SmoothLevel::good, .hold_factor = 1.5});
+  CHECK(trajectory.longest_hold() < 1);
+  CHECK((std::clock() - begin) / CLOCKS_PER_SEC < 12);  // 24 s once, 0.2 s now
 }
 
 TEST_CASE("brakes: each tells where it comes to rest, in every run of a program", "[brakes]") {

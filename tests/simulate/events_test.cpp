@@ -109,10 +109,9 @@ TEST_CASE(
     "events at the levels good and best: outputs agree, limits and tolerance are kept, the end is reached") {
   const test::Folder folder;
   folder.write("none.csv", "t,event,value\n");
-  folder.write(
-      "e.csv",
-      "1.23,hold\n1.9,resume\n2.5,feed,0.3\n3.1,feed,90%\n4.2,rapid,50%\n5.0001,feed,0\n5.7,feed,1.3\n"
-      "7.5,hold,\n7.51,resume,\n8,step,1\n10,resume\n10,step,0\n");
+  folder.write("e.csv",
+               "1.23,hold\n1.9,resume\n2.5,feed,0.3\n3.1,feed,90%\n4.2,rapid,50%\n5.0001,feed,0\n5.7,feed,1\n"
+               "7.5,hold,\n7.51,resume,\n8,step,1\n10,resume\n10,step,0\n");
   const std::string events = " --events " + test::quoted((folder / "e.csv").string());
   for (const std::string level : {"good", "best"}) {
     CAPTURE(level);
@@ -174,6 +173,33 @@ TEST_CASE("events at the level good: single steps, a pause, a stop and a run wit
     const auto run = folder.run_text(program, "--json --events e.csv" + good);
     CHECK(run.exit == 2);
     CHECK(run.err == "error: with its events the program takes more than 1e+10 periods of 0.001 s\n");
+  }
+}
+
+TEST_CASE("events at the level good end runs as they do at the level fast") {
+  struct Case {
+    const char* program;
+    const char* events;
+  };
+  const test::Folder folder;
+  for (const auto& [program, events] :
+       {Case{"G1 X10 F1200\nG4 P1.5\nG1 X20\n", "0.8,stop\n"},
+        Case{"G1 X10 F1200\nG4 P1.5\nG1 X20\n", "0.8,hold\n"},
+        Case{"G61.1\nG1 X10 F1200\nG1 X20\n", "0,step,1\n"}, Case{"G1 X10 F1200\nG4 P1\n", ""},
+        Case{"G4 P1.5\nG4 P0.5\n", ""}, Case{"G4 P1\nG1 X10 F1200\n", "0.5,hold\n"},
+        Case{"G4 P1\nG1 X10 F1200\n", "0.5,stop\n"}, Case{"G0 X20\nG1 X10 F1200\n", "0.2,rapid,0\n"},
+        Case{"G1 X10 F1200\nG4 P0.3\nM30\n", "0.1,hold\n0.5,resume\n"}}) {
+    CAPTURE(program, events);
+    folder.write("e.csv", events);
+    const auto run = [&](const std::string& level) {
+      return folder
+          .run_text(program, "--json --period 0.001 --tolerance 0.01 --events e.csv --smooth " + level)
+          .json();
+    };
+    const auto good = run("good"), fast = run("fast");
+    CHECK(good["time_s"].get<double>() == Approx(fast["time_s"].get<double>()).margin(2e-3));
+    CHECK(good["completed"] == fast["completed"]);
+    CHECK(good["end_error_mm"].get<double>() == Approx(fast["end_error_mm"].get<double>()).margin(0.02));
   }
 }
 

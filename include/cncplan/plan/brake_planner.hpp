@@ -21,7 +21,8 @@ struct BasicHoldBound {
 
 /// Plans brakes for a chain of trajectories that ends at rest. They stand so close that a hold which is asked
 /// for at the planned speed keeps the bound, if it waits for the next of them: the wait and the brake take no
-/// longer than the bound at the place where the brake begins. Where no brake is found that does, it is told.
+/// longer than the bound at the place where the brake begins, or at that where it is asked for, if that is
+/// longer. Where no brake is found that does, it is told.
 template <MachineModel M, BlockModel B>
 class BrakePlanner {
  public:
@@ -80,14 +81,31 @@ class BrakePlanner {
       const S wait =
           std::max(std::clamp(bound - next.duration, shortest_wait * bound, longest_wait * bound), tick);
       const auto before = find_before(next, wait, from);
-      const S hold = next.time - (before ? before->time : from) + next.duration;
+      const S start = before ? before->time : from, hold = next.time - start + next.duration;
       longest_ = std::max(longest_, hold);
-      times_least_ = std::max(times_least_, (hold - tick) / least);
-      if (hold > bound * (S(1) + S(1e-6))) add_late({before ? before->time : from, next.time + least / S(2)});
+      const bool keeps = !(hold > bound * (S(1) + S(1e-6)));
+      const S times = keeps ? (hold - tick) / least : times_least_between(start, next, least);
+      times_least_ = std::max(times_least_, times);
+      if (!keeps && (hold > bound_.longest || times > bound_.times_least))
+        add_late({start, next.time + least / S(2)});
       brakes_.push_back(next);
       if (!before) return;
       next = *before;
     }
+  }
+  // The most times of the least at the place where it is asked for, or where the brake begins, that a hold
+  // takes which waits for a brake from a time on.
+  [[nodiscard]] S times_least_between(S start, const Brake& brake, S least) {
+    constexpr int parts = 8;
+    S most = S(0), here = clock_.least_brake(start);
+    for (int i = 0; i < parts; ++i) {
+      const S time = start + (brake.time - start) * S(i) / S(parts);
+      const S there = clock_.least_brake(start + (brake.time - start) * S(i + 1) / S(parts));
+      const S hold = brake.time - time + brake.duration;
+      most = std::max(most, (hold - tick) / std::max(std::min(here, there), least));
+      here = there;
+    }
+    return most;
   }
   // The brake before another one: so far before it as can be, but no farther than the wait if there is one
   // that keeps the bound; else the next that is at rest sooner. Nothing where none is needed from a time on.
@@ -106,8 +124,11 @@ class BrakePlanner {
   }
   // The next brake that is at rest sooner than one that is waited for.
   [[nodiscard]] std::optional<Brake> find_sooner(const Brake& next, S wait, S from) {
-    for (S time = next.time - S(0.2) * wait; time > from; time -= S(0.2) * wait)
+    S way = S(0.2) * wait;
+    for (S time = next.time - way; time > from; time -= way) {
       if (const auto brake = clock_.find_brake(time, next.time - time + next.duration)) return brake;
+      way *= S(1.25);  // the work is bounded where there is none for long
+    }
     return std::nullopt;
   }
   [[nodiscard]] S most(S least) const { return std::min(bound_.times_least * least + tick, bound_.longest); }

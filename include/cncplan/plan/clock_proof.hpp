@@ -76,7 +76,8 @@ class ClockProof {
   [[nodiscard]] const BasicMachineLimits<S, n>& limits() const { return limits_; }
 
   /// From the start of the motion of a clock to its end, or to where it shows `until`. It goes one way. Every
-  /// interval that is looked at takes one from `work`: false too where nothing is left of it.
+  /// interval that is looked at takes one from `work`, of measured curves ten: false too where nothing is
+  /// left.
   [[nodiscard]] bool holds(const Chain& chain, const state::BasicMotion<S>& clock, bool backwards, S until,
                            int& work) const {
     const std::size_t last = backwards ? chain.first_phase() : chain.last_phase();
@@ -137,8 +138,23 @@ class ClockProof {
     const BasicJerkPhase<S>& part;
   };
 
+  // What an interval takes of the work: a curve whose length is measured takes many times as long.
+  template <class P>
+  [[nodiscard]] static int work_of(const P& path) {
+    constexpr int measured = 10;
+    if constexpr (requires { path.programmed().length(); })
+      return work_of(path.programmed());
+    else if constexpr (requires { path.line(), path.arc(); })
+      return path.line() != nullptr || path.arc() != nullptr ? 1 : measured;
+    else if constexpr (requires { path.curve(), path.parameter_at(S(0)); })
+      return measured;
+    else
+      return 1;
+  }
+
   [[nodiscard]] bool keeps(const Interval& in, S low, S high, int depth, int& work) const {
-    if (--work < 0) return false;
+    work -= in.path.visit([](const auto& path) { return work_of(path); });
+    if (work < 0) return false;
     Answer answer =
         in.path.visit([&](const auto& path) { return look(path, in.phase, in.from, in.part, low, high); });
     if (answer == Answer::yes && in.planned && !no_faster(in, *in.planned, low, high))

@@ -137,17 +137,18 @@ class TrajectoryClock {
     return std::isfinite(feed) ? std::max(now, from({S(0), feed, S(0)})) : now;
   }
 
-  /// What it shows where a change to rest ends that is proven and may begin now, fast ones first.
-  [[nodiscard]] std::optional<S> brake() {
-    const int level = level_;
-    level_ = 0;
+  /// What it shows where a change to rest ends that is proven and may begin in some seconds, before the next
+  /// rest, if nothing is asked for until then; fast ones first.
+  [[nodiscard]] std::optional<S> brake_in(S seconds) {
+    const BasicState<S> then = state_after(seconds);
+    if (!heads_back() && !(then.position < high_.from)) return std::nullopt;
+    const int level = std::exchange(level_, 0);
     int work = work_in_tick;
-    const auto ramp = find_change(state(), S(0), heads_back(), infinity, work);
+    const auto ramp = find_change(then, S(0), heads_back(), infinity, work);
     level_ = level;
     if (!ramp) return std::nullopt;
     return shown_at_end(*ramp);
   }
-
   /// Whether it runs at a constant rate, and passes within some seconds the last planned brake that comes to
   /// rest before it shows a time.
   [[nodiscard]] bool passes_last_brake_before(S shown, S within) const {

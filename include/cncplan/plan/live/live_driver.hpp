@@ -342,16 +342,16 @@ class LiveDriver final : public LevelDriver<M, B> {
     passed_ = time;
     held_ = true;
   }
-  // Brakes so that the axes come to rest at the start of a block, or before it: a brake that has begun
-  // may give way to a faster one. Where the search finds none now, the last planned one has to do.
+  // Brakes so that the axes come to rest at the start of a block, or before it: where a brake that begins a
+  // tick later would end behind it. Where the search finds none, the last planned one has to do.
   void brake_for_pause(S period) {
     if (!pauses() || held_ || stopped_) return;
     const auto pause = next_pause();
     if (!pause || clock_.next_rest() <= *pause + same_time) return;
-    const S soon = S(1.5) * period * clock_.state().velocity;
-    const auto brake = clock_.brake();
-    if (brake ? *brake + soon >= *pause
-              : clock_.passes_last_brake_before(*pause, period) || clock_.state().position + soon >= *pause)
+    const auto brake = clock_.brake_in(period);
+    if (brake ? *brake > *pause
+              : clock_.passes_last_brake_before(*pause, period) ||
+                    clock_.state_after(S(1.5) * period).position >= *pause)
       hold_at(*pause);
   }
   // When a block begins before which it is to rest: the next one that it has not rested at.
