@@ -1,6 +1,8 @@
 // Which blocks of a program are a run: smoothed as one curve at the levels `good` and `best` (set-up).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory_resource>
 #include <optional>
@@ -82,6 +84,46 @@ class RunFinder {
       const VectorN<S, n> way = (line->end() - line->start()).normalized();
       if (direction && !(way - *direction).isZero(straight)) return true;
       direction = way;
+    }
+    return false;
+  }
+
+  /// s, of blocks at their feeds.
+  [[nodiscard]] S time_of(std::size_t first, std::size_t end) const {
+    S time{};
+    for (std::size_t i = first; i < end; ++i)
+      if (moves(i)) time += blocks_[i].path.length() / speed(i);
+    return time;
+  }
+  /// Behind the first blocks of a run, of which a part can be planned that looks ahead over some seconds at
+  /// the feeds; the end of the run where the rest of it is not much longer.
+  [[nodiscard]] std::size_t enough(std::size_t first, std::size_t end, S seconds) const {
+    constexpr std::size_t least = 4;  // for a cut among them
+    if (std::isinf(seconds)) return end;
+    S time{};
+    std::size_t moving = 0, part = end;
+    for (std::size_t i = first; i < end; ++i) {
+      if (!moves(i)) continue;
+      if (part == end && moving >= least && !(time < seconds)) part = i;
+      time += blocks_[i].path.length() / speed(i);
+      ++moving;
+      if (part < end && moving >= least + least / 2 && !(time < S(1.5) * seconds)) return part;
+    }
+    return end;
+  }
+  /// Whether blocks from one on are enough for such a part, or for runs that take as long. `goes_on`: a run
+  /// that is cut goes on in the first.
+  [[nodiscard]] bool has_part(std::size_t first, bool goes_on, S seconds) const {
+    S time{};
+    for (std::size_t i = first; i < blocks_.size();) {
+      const std::size_t end = run_end(i);
+      const bool curve = (goes_on && i == first) || (end > i && worth_it(i, end));
+      if (curve && enough(i, end, seconds) < end) return true;
+      if (curve && is_open(end)) return false;
+      const std::size_t next = std::max(i + 1, end);
+      time += time_of(i, next);
+      if (!(time < seconds) && (curve || rests(next - 1))) return true;
+      i = next;
     }
     return false;
   }

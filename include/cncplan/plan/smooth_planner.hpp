@@ -78,23 +78,9 @@ class SmoothPlanner {
   /// A plan looks ahead over about so many seconds at the feeds, not over all blocks.
   void plan_ahead(S seconds) { ahead_ = seconds; }
   /// Whether there are blocks for a part that does.
-  [[nodiscard]] bool has_part() const {
-    S time{};
-    for (std::size_t i = planned_; i < blocks_.size();) {
-      const std::size_t end = runs_.run_end(i);
-      const bool curve = (cut_ && i == planned_) || (end > i && runs_.worth_it(i, end));
-      if (curve && (enough(i, end) < end)) return true;
-      if (curve && runs_.is_open(end)) return false;
-      const std::size_t next = std::max(i + 1, end);
-      time += time_of(i, next);
-      if (!(time < ahead_) && (curve || runs_.rests(next - 1))) return true;
-      i = next;
-    }
-    return false;
-  }
+  [[nodiscard]] bool has_part() const { return runs_.has_part(planned_, cut_.has_value(), ahead_); }
 
-  /// The numbers of the first block whose feed may be raised, and of the first whose may be lowered: from the
-  /// last plan's end the machine is known to come to rest.
+  /// The first blocks whose feed may be raised, and lowered: from the last plan's end there is a way to rest.
   [[nodiscard]] std::pair<std::size_t, std::size_t> open_feeds() const {
     const std::size_t higher = planned_ + (cut_ ? 1 : 0);
     return {first_source_ + higher, first_source_ + (cut_ ? std::max(known_, higher) : higher)};
@@ -102,10 +88,9 @@ class SmoothPlanner {
   /// Multiplies feeds of blocks that are held, from a number on, by factor(number).
   template <class Factor>
   void scale_feeds(std::int64_t first, Factor&& factor) {
-    for (std::size_t i = 0; i < blocks_.size(); ++i)
-      if (const auto number = static_cast<std::int64_t>(first_source_ + i);
-          number >= first && !blocks_[i].rapid)
-        blocks_[i].feed *= factor(number);
+    auto number = static_cast<std::int64_t>(first_source_);
+    for (B& block : blocks_)
+      if (number++ >= first && !block.rapid) block.feed *= factor(number - 1);
   }
   /// Whether what was planned last ends at a speed.
   [[nodiscard]] bool open() const { return cut_.has_value(); }
@@ -198,11 +183,12 @@ class SmoothPlanner {
       const bool goes_on = !all && end > i && runs_.is_open(end);
       if (!goes_on && !cut_ && (end == i || !runs_.worth_it(i, end))) {
         i = std::max(i + 1, end);
-        if (runs_.rests(i - 1) && !(time_of(planned_, i) < ahead_)) return add_fast(i);
+        if (std::isfinite(ahead_) && runs_.rests(i - 1) && !(runs_.time_of(planned_, i) < ahead_))
+          return add_fast(i);
         continue;
       }
       if (const auto ok = add_fast(i); !ok) return ok;
-      if (const std::size_t part = enough(i, end); part < end && add_part(part)) return {};
+      if (const std::size_t part = runs_.enough(i, end, ahead_); part < end && add_part(part)) return {};
       if (goes_on && blocks_.size() - i < most_ / 2) break;
       if (goes_on && add_part(end)) return {};
       if (const auto ok = add_run(end); !ok) return ok;
@@ -212,30 +198,6 @@ class SmoothPlanner {
     if (all) return add_fast(blocks_.size());
     return blocks_.size() - planned_ < most_ ? Expected<void, ProgramError>{}
                                              : add_fast(runs_.last_rest(planned_));
-  }
-
-  // s, of blocks at their feeds.
-  [[nodiscard]] S time_of(std::size_t first, std::size_t end) const {
-    if (std::isinf(ahead_)) return S(0);
-    S time{};
-    for (std::size_t i = first; i < end; ++i)
-      if (runs_.moves(i)) time += blocks_[i].path.length() / runs_.speed(i);
-    return time;
-  }
-  // Behind the first blocks of a run, of which a part can be planned that looks far enough ahead.
-  [[nodiscard]] std::size_t enough(std::size_t first, std::size_t end) const {
-    constexpr std::size_t least = 4;  // for a cut among them
-    if (std::isinf(ahead_)) return end;
-    S time{};
-    std::size_t moving = 0, part = end;
-    for (std::size_t i = first; i < end; ++i) {
-      if (!runs_.moves(i)) continue;
-      if (part == end && moving >= least && !(time < ahead_)) part = i;
-      time += blocks_[i].path.length() / runs_.speed(i);
-      ++moving;
-      if (part < end && moving >= least + least / 2 && !(time < S(1.5) * ahead_)) return part;
-    }
-    return end;
   }
 
   // Of the plan of blocks up to `end`, among those that are held.
