@@ -49,6 +49,7 @@ template <class M, class B>
   const std::unique_ptr<Driver, decltype(destroy)> driver(
       Driver::make(machine, {.plan = options}, held_blocks, std::pmr::get_default_resource()), destroy);
   driver->program_stop(false);
+  if (blocks.empty()) driver->end_of_program();
   LiveRecord<M, B> record(blocks);
   typename Driver::Point point;
   double time = 0.0, end = 0.0;
@@ -57,8 +58,8 @@ template <class M, class B>
   std::size_t fed = 0;
   for (auto event = events.begin();;) {
     for (; event != events.end() && event->time <= time; ++event) ask(*driver, *event);
-    while (fed < blocks.size() && driver->push(blocks[fed])) ++fed;
-    if (fed == blocks.size()) driver->end_of_program();
+    while (fed < blocks.size() && driver->push(blocks[fed]))
+      if (++fed == blocks.size()) driver->end_of_program();
     driver->look(0.0);
     if (driver->failed()) return tl::unexpected(cncplan::ProgramError{driver->fault()});
     if ((driver->complete() && driver->finished()) || driver->stopped()) break;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory_resource>
@@ -128,20 +127,24 @@ class LiveRecord {
       from = last.at(h);
     }
   }
+  // By rounding nothing runs back.
   void add_phase(const cncplan::State& from, double time) {
-    phases_.push_back(
-        {{end_, time, from.position, std::max(from.velocity, 0.0), from.acceleration, from.jerk},
-         pieces_.size() - 1});
+    phases_.push_back({{end_, time, std::max(from.position, place()), std::max(from.velocity, 0.0),
+                        from.acceleration, from.jerk},
+                       pieces_.size() - 1});
     end_ += time;
+  }
+  // mm of the last piece that have been driven.
+  [[nodiscard]] double place() const {
+    const bool begun = !phases_.empty() && phases_.back().piece + 1 == pieces_.size();
+    return begun ? phases_.back().phase.at(phases_.back().phase.duration).position : 0.0;
   }
   // Where the last motion ended, or the first one begins.
   void rest_until(double time) {
     open_.reset();
     if (!(time - end_ > same_time)) return;
     if (pieces_.empty()) pieces_.push_back({});
-    const bool there = !phases_.empty() && phases_.back().piece + 1 == pieces_.size();
-    const double place = there ? phases_.back().phase.at(phases_.back().phase.duration).position : 0.0;
-    add_phase({place, 0.0, 0.0, 0.0}, time - end_);
+    add_phase({place(), 0.0, 0.0, 0.0}, time - end_);
   }
 
   // The piece of a phase, and all of the trajectory that it is of but other pieces.

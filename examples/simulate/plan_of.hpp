@@ -83,7 +83,9 @@ template <class M>
       .rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree};
   auto planned = [&]() -> cncplan::Expected<cncplan::Trajectory<M, Block>, cncplan::ProgramError> {
     if (options.events) {
-      planning.hold_factor = cncplan::LevelExecutorOptions{}.hold_factor;
+      const cncplan::LevelExecutorOptions executor;  // by default
+      planning.reserve = executor.reserve;
+      planning.hold_factor = executor.hold_factor;
       return drive_live(std::span<const Block>(program.blocks), machine, planning,
                         read_events(*options.events), options.period);
     }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/plan/program.hpp"
 #include "simulate/laws.hpp"
 #include "simulate/programs.hpp"
 #include "simulate/run.hpp"
@@ -173,6 +175,37 @@ TEST_CASE("events at the level good: single steps, a pause, a stop and a run wit
     const auto run = folder.run_text(program, "--json --events e.csv" + good);
     CHECK(run.exit == 2);
     CHECK(run.err == "error: with its events the program takes more than 1e+10 periods of 0.001 s\n");
+  }
+}
+
+TEST_CASE("events at the levels good and best: samples are the set points of an executor") {
+  const std::string text = "G21 F1800\nG1 X20\nX30 Y10\nG3 X10 Y30 R20\nG4 P0.2\nG1 X0 Y20\nX0 Y0\nG0 X10\n";
+  const test::Folder folder;
+  folder.write("e.csv", "0.4,hold\n1.3,resume\n2,feed,0.5\n2.6,feed,1\n4,hold\n4.05,resume\n5,feed,0.9\n");
+  const Machine<3> machine{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+  for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(to_text(level));
+    const std::string options = " --quiet --tolerance 0.01 --samples s.csv --events e.csv --smooth ";
+    REQUIRE(folder.run_text(text, options + std::string(to_text(level))).exit == 0);
+    const test::Table samples(folder / "s.csv");
+    const auto blocks = read_text(text, machine).take_blocks();
+    Executor<Machine<3>, 300> executor(machine, LevelExecutorOptions{.level = level});
+    for (const auto& block : blocks) REQUIRE(executor.push(block));
+    executor.end_of_program();
+    double worst = 0;
+    for (std::size_t i = 1; i + 1 < samples.rows(); ++i) {
+      const std::size_t ms = i - 1;
+      if (ms == 400 || ms == 4000) executor.feed_hold();
+      if (ms == 1300 || ms == 4050) executor.resume();
+      if (ms == 2000) executor.feed_override(0.5);
+      if (ms == 2600) executor.feed_override(1);
+      if (ms == 5000) executor.feed_override(0.9);
+      const auto point = executor.tick(1e-3);
+      worst = std::max({worst, std::abs(samples["x"][i] - point.position[0]),
+                        std::abs(samples["y"][i] - point.position[1])});
+    }
+    CHECK(samples.rows() > 5000);
+    CHECK(worst < 1e-6);
   }
 }
 

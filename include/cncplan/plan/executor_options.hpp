@@ -39,7 +39,8 @@ struct BasicExecutorOptions {
   /// leave for holds. The more, the sooner a hold comes, and the longer the program takes.
   S reserve = S(0.02);
   /// How many times the least that a brake takes a hold may take, > 1; 0: no plan for it. Plans at the levels
-  /// `good` and `best` are slower where a hold would come later. Not behind a map: no bound is planned there
+  /// `good` and `best` are slower where a hold would come later. Not behind a map, where no
+  /// bound is planned.
   S hold_factor = S(1.5);
 };
 

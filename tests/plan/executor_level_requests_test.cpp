@@ -1,0 +1,264 @@
+// Requests of executors at the levels good and best: holds, steps, ways back, shares of the feed.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cncplan/plan/executor_levels.hpp"
+#include "plan/level_runner.hpp"
+#include "plan/rows_program.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+using namespace cncplan;
+using namespace cncplan::test;
+
+TEST_CASE("executor levels: a hold comes soon, and the time goes on where it was", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of(rows(3, 50));
+  const auto undisturbed = runner();
+  const double time = run_to_end(*undisturbed, blocks);
+  for (double at = 0.1; at < time - 0.3; at += 0.37) {
+    const auto executor = runner();
+    std::size_t fed = 0;
+    for (double t = 0; t < at; t += period) {
+      feed(*executor, blocks, fed);
+      executor->tick(period);
+    }
+    executor->feed_hold();
+    double hold = 0;
+    while (executor->tick(period).velocity.norm() > 0 && hold < 10) hold += period;
+    CHECK(hold < 0.4);
+    CHECK(executor->state() == ExecutorState::held);
+    executor->resume();
+    double rest = 0;
+    while (!executor->finished() && rest < 100) {
+      feed(*executor, blocks, fed);
+      executor->tick(period);
+      rest += period;
+    }
+    CHECK(at + hold + rest < time + 1);
+  }
+}
+
+TEST_CASE("executor levels: a quick stop is no later than a hold, also where one waits for its brake",
+          "[executor-levels]") {
+  constexpr double share = 2;
+  const MillBlocks blocks = blocks_of(rows(2, 50));
+  // s from a hold to rest; so many ticks behind it a quick stop is asked for, none if that is below 0.
+  const auto hold = [&](double at, int quick) {
+    const auto executor = runner({.level = SmoothLevel::good, .quick_stop_share = share});
+    std::size_t fed = 0;
+    std::array<Vector3, 4> p;
+    p.fill(Vector3::Zero());
+    double acceleration = 0, jerk = 0;
+    int tick = 0, asked = static_cast<int>(at / period);
+    for (; tick < asked || executor->state() != ExecutorState::held; ++tick) {
+      REQUIRE(tick < asked + 5000);
+      feed(*executor, blocks, fed);
+      if (tick == asked) executor->feed_hold();
+      if (quick >= 0 && tick == asked + quick) executor->quick_stop();
+      p = {executor->tick(period).position, p[0], p[1], p[2]};
+      acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).norm());
+      jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
+    }
+    const double most = quick < 0 ? 1 : share;
+    CHECK(acceleration <= most * mill.limits.acceleration * period * period * (1 + 1e-5));
+    CHECK(jerk <= most * mill.limits.jerk * period * period * period * (1 + 1e-3));
+    return (tick - asked) * period;
+  };
+  for (double at = 0.1; at < 1.2; at += 0.21) {
+    INFO("hold at " << at);
+    const double held = hold(at, -1);
+    for (const int quick : {0, 2, 8}) CHECK(hold(at, quick) <= held + 1.5 * period);
+  }
+}
+
+TEST_CASE("executor levels: single steps and a pause rest just before the next block", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
+  const LevelExecutorOptions good{.level = SmoothLevel::good};
+  const auto executor = std::make_unique<Runner>(mill, good);
+  std::size_t fed = 0;
+  feed(*executor, blocks, fed);
+  executor->single_step(true);
+  int pauses = 0;
+  for (int tick = 0; !executor->finished() && tick < 20000; ++tick) {
+    const auto point = executor->tick(period);
+    if (executor->state() != ExecutorState::held) continue;
+    ++pauses;
+    const auto& path = blocks[static_cast<std::size_t>(pauses) - 1].path;
+    CHECK((path.position_at(path.length()) - point.position).norm() < 0.3);  // 10 ms at 30 mm/s
+    executor->resume();
+  }
+  CHECK(executor->finished());
+  CHECK(pauses == 3);
+
+  const auto paused = std::make_unique<Runner>(mill, good);
+  fed = 0;
+  feed(*paused, blocks, fed);
+  paused->pause_at(3);
+  int held = 0;
+  for (int tick = 0; !paused->finished() && tick < 20000; ++tick) {
+    const auto point = paused->tick(period);
+    if (paused->state() != ExecutorState::held) continue;
+    ++held;
+    CHECK((Vector3(30, 10, 0) - point.position).norm() < 0.3);
+    paused->resume();
+  }
+  CHECK(held == 1);
+}
+
+TEST_CASE("executor levels: single steps rest once before every block, however hard braking is there",
+          "[executor-levels]") {
+  Random random;
+  for (int run = 0; run < 6; ++run) {
+    std::string text = "F" + std::to_string(random.uniform(600, 3000));
+    const int count = random.integer(4, 9);
+    double x = 0, y = 0;
+    for (int i = 0; i < count; ++i) {
+      x += random.uniform(4, 20), y += random.uniform(-15, 15);
+      text += (random.integer(0, 2) > 0 ? "G1 X" : "G3 R40 X") + std::to_string(x) + " Y" +
+              std::to_string(y) + "\n";
+    }
+    INFO(text);
+    const MillBlocks blocks = blocks_of(text);
+    const auto executor = std::make_unique<Runner>(mill, LevelExecutorOptions{.level = SmoothLevel::good});
+    std::size_t fed = 0;
+    feed(*executor, blocks, fed);
+    executor->single_step(true);
+    std::size_t pauses = 0;
+    for (int tick = 0; !executor->finished() && tick < 60000; ++tick) {
+      const auto point = executor->tick(period);
+      if (executor->state() != ExecutorState::held) continue;
+      REQUIRE(pauses < blocks.size());
+      const auto& path = blocks[pauses++].path;
+      const double least = 2 * std::sqrt(blocks[0].feed / mill.limits.jerk);  // s, to brake
+      CHECK((path.position_at(path.length()) - point.position).norm() < blocks[0].feed * least / 2);
+      executor->resume();
+    }
+    CHECK(executor->finished());
+    CHECK(pauses + 1 == blocks.size());
+  }
+}
+
+TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\nG4 P0.1\nX30 Y10\nX30 Y30\nX10\n");
+  const auto executor = runner();
+  std::size_t fed = 0;
+  feed(*executor, blocks, fed);
+  for (int tick = 0; tick < 2000; ++tick) executor->tick(period);
+  executor->reverse(true);
+  for (int tick = 0; tick < 4000; ++tick) executor->tick(period);
+  CHECK(executor->tick(period).position.norm() < 1e-9);
+  CHECK_FALSE(executor->finished());
+  executor->reverse(false);
+  for (int tick = 0; tick < 10000 && !executor->finished(); ++tick) executor->tick(period);
+  CHECK(executor->finished());
+  CHECK((executor->tick(period).position - Vector3(10, 30, 0)).norm() < 1e-9);
+}
+
+TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks that come above it",
+          "[executor-levels]") {
+  std::string text = "F600\n";  // 10 mm/s
+  for (int i = 1; i <= 600; ++i)
+    text += "G1 X" + std::to_string(0.5 * i) + " Y" + std::to_string(0.2 * std::sin(0.1 * i)) + "\n";
+  text += "G0 X310\n";
+  const MillBlocks blocks = blocks_of(text);
+  const auto executor = runner();
+  std::size_t fed = 0;
+  std::vector<Vector3> places;
+  const auto drive = [&](double seconds, auto&& look) {
+    for (int i = 0; i * period < seconds && !executor->finished(); ++i) {
+      feed(*executor, blocks, fed);
+      const auto point = executor->tick(period);
+      places.push_back(point.position);
+      look(point.velocity.norm());
+    }
+  };
+  double most = 0, last = 0;
+  const auto watch = [&](double speed) { most = std::max(most, last = speed); };
+  drive(2, watch);
+  CHECK(most == Approx(10).epsilon(1e-3));
+  test::Random random;
+  for (int i = 0; i < 1500; ++i) {  // more changes than are kept at once
+    executor->feed_override(random.uniform(1.05, 1.3));
+    drive(2 * period, watch);
+  }
+  executor->feed_override(1.5);
+  drive(10, watch);
+  CHECK(most == Approx(15).epsilon(1e-3));
+  CHECK(last == Approx(15).epsilon(0.015));  // a little less where the run is cut
+  executor->feed_override(0.8);
+  drive(0.3, [](double) {});
+  most = 0;
+  drive(12, watch);  // through blocks that are planned at 1.5 times the feed, and others
+  CHECK(most <= 8 * (1 + 1e-6));
+  CHECK(last == Approx(8).epsilon(1e-3));
+  executor->feed_override(7);  // as 2
+  most = 0;
+  drive(600, watch);
+  CHECK(executor->finished());
+  CHECK(most > 20 * (1 - 1e-3));
+  Vector3 jerk = Vector3::Zero();
+  for (std::size_t i = 3; i < places.size(); ++i)
+    jerk = jerk.cwiseMax((places[i] - 3 * places[i - 1] + 3 * places[i - 2] - places[i - 3]).cwiseAbs());
+  CHECK(jerk.maxCoeff() <= 1e4 * period * period * period * (1 + 1e-4));
+}
+
+TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, however many blocks are held",
+          "[executor-levels]") {
+  Machine<3> machine = with_axes();
+  machine.limits.velocity = 60;
+  for (auto& axis : machine.axes) axis.velocity = 60;
+  for (const double length : {2.0, 12.0}) {
+    std::string text = "F1200\n";
+    for (int i = 1; i <= (length < 5 ? 300 : 60); ++i)
+      text += "G1 X" + std::to_string(length * i) + " Y" + std::to_string(0.03 * length * (i % 3)) + "\n";
+    const MillBlocks blocks = blocks_of(text, machine);
+    const auto executor = std::make_unique<Executor<Machine<3>, 300>>(
+        machine, LevelExecutorOptions{.level = SmoothLevel::good});
+    std::size_t fed = 0;
+    double most = 0;
+    const auto drive = [&](double seconds) {
+      double last = 0;
+      for (int i = 0; i * period < seconds && !executor->finished(); ++i) {
+        feed(*executor, blocks, fed);
+        const auto point = executor->tick(period);
+        last = point.velocity.norm();
+        most = std::max(most, last);
+        if (last > 0) CHECK(point.feed == Approx(20));
+      }
+      return last;
+    };
+    CAPTURE(length);
+    drive(1);
+    CHECK(most == Approx(20).epsilon(1e-3));
+    executor->feed_override(1.5);
+    drive(6);
+    CHECK(most == Approx(30).epsilon(1e-2));
+    executor->feed_override(1.2);  // at once
+    drive(0.3);
+    CHECK(drive(0.2) < 24 * (1 + 1e-6));
+    executor->feed_override(1.8);
+    drive(7);
+    CHECK(most > 35);
+    executor->feed_override(1);
+    run_to_end(*executor, {});
+    CHECK(executor->finished());
+    CHECK_FALSE(executor->error());
+    CHECK((executor->tick(period).position - blocks.back().path.position_at(blocks.back().path.length()))
+              .norm() < 1e-9);
+  }
+}
+
+TEST_CASE("executor levels: half of the feed takes twice the time", "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
+  const auto time_at = [&](double share) {
+    const auto executor = runner();
+    executor->feed_override(share);
+    return run_to_end(*executor, blocks);
+  };
+  CHECK(time_at(0.5) == Approx(2 * time_at(1)).margin(3 * period));
+}
