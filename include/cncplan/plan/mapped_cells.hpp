@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 #include "cncplan/core/jet.hpp"
 #include "cncplan/path/mapped.hpp"
 #include "cncplan/smooth/cubic.hpp"
+#include "cncplan/smooth/enclosed_cell.hpp"
 #include "cncplan/smooth/motion_limits.hpp"
 #include "cncplan/smooth/speed_cell.hpp"
 
@@ -149,8 +148,8 @@ class MappedCells {
   template <class Add>
   void add_parts(const Cubic& piece, S feed, std::size_t block, int halvings, Add&& add) const {
     Cell cell = proven_cell(piece, feed, block);
-    const S known = known_speed(cell);
-    if (known >= place_speed(cell) || halvings == 0) {
+    const S known = smooth::known_speed(cell, *limits_, unknown);
+    if (known >= smooth::place_speed(cell, *limits_) || halvings == 0) {
       // What is no number lets nothing move.
       cell.feed = known > S(0) ? std::min(feed, known) : S(0);
       add(piece, cell);
@@ -159,36 +158,6 @@ class MappedCells {
     const S half = piece.length() / S(2);
     add_parts(piece.part(S(0), half), feed, block, halvings - 1, add);
     add_parts(piece.part(half, piece.length()), feed, block, halvings - 1, add);
-  }
-
-  // The highest speed at which the spread of each joint takes a small share of its limits.
-  [[nodiscard]] S known_speed(const Cell& cell) const {
-    S speed = std::numeric_limits<S>::infinity();
-    const S h = cell.length;
-    for (int i = 0; i < joints; ++i) {
-      const auto& own = limits_->axes[static_cast<std::size_t>(i)];
-      const S spread = cell.spread[i];
-      if (!(spread > S(0))) {
-        if (!(spread >= S(0))) return S(0);
-        continue;
-      }
-      speed = std::min({speed, std::cbrt(unknown * own.jerk / spread),
-                        std::sqrt(unknown * own.acceleration / (spread * h)),
-                        S(2) * unknown * own.velocity / (spread * h * h)});
-    }
-    return speed;
-  }
-  // About the highest speed that the other limits allow at a place.
-  [[nodiscard]] S place_speed(const Cell& cell) const {
-    S speed = cell.feed;
-    smooth::for_each_limit(*limits_, [&](const BasicLimits<S>& own, const auto& inner) {
-      const S first = inner(cell.first, cell.first), second = inner(cell.second, cell.second),
-              third = inner(cell.third, cell.third);
-      if (first > S(0)) speed = std::min(speed, own.velocity / std::sqrt(first));
-      if (second > S(0)) speed = std::min(speed, std::sqrt(own.acceleration / std::sqrt(second)));
-      if (third > S(0)) speed = std::min(speed, std::cbrt(own.jerk / std::sqrt(third)));
-    });
-    return speed;
   }
 
   std::span<const M* const> maps_;
