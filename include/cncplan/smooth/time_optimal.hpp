@@ -1,0 +1,341 @@
+// The fastest motion along a given path under limits of velocity, acceleration and jerk (set-up).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/phase_profile.hpp"
+#include "cncplan/smooth/enclosed_cell.hpp"
+#include "cncplan/smooth/plan_speed.hpp"
+
+namespace cncplan {
+
+/// How a motion along a path begins and ends, and what it is held against.
+template <std::floating_point S>
+struct BasicTimeOptimalOptions {
+  S start_velocity{};                           ///< mm/s along the path, without acceleration; 0: at rest
+  S end_velocity{};                             ///< the same at the end
+  S feed = std::numeric_limits<S>::infinity();  ///< most for the speed along the path and of the tool, mm/s
+  S gap = S(3e-4);                              ///< how far from the least time, as a share of it, about
+};
+
+using TimeOptimalOptions = BasicTimeOptimalOptions<double>;
+
+namespace smooth {
+
+/// Cells along one path, and the law of speed over them.
+template <EnclosedPath P>
+class PathSpeed {
+ public:
+  using S = typename P::Scalar;
+  static constexpr int count = P::Vector::RowsAtCompileTime;
+  using Cell = BasicSpeedCell<S, count>;
+  using Limits = BasicMotionLimits<S, count>;
+
+  /// The path must outlive it. The limits of the tool are finite.
+  PathSpeed(const P& path, const Limits& limits, const BasicTimeOptimalOptions<S>& options)
+      : path_(path), limits_(limits), ends_{options.start_velocity, options.end_velocity}, gap_(options.gap) {
+    constexpr int most_halvings = 14;
+    const std::vector<Cell> samples = this->samples();
+    along_ = tangential_limits(std::span<const Cell>(samples), limits_);
+    feed_ = std::isfinite(options.feed) ? options.feed : highest_speed(samples);
+    add_places(S(0), path.length(), most_halvings);
+  }
+
+  /// The speed along the path that its derivatives allow at one end, about.
+  [[nodiscard]] S start_limit() const { return places_.front().speed; }
+  [[nodiscard]] S end_limit() const { return places_.back().speed; }
+
+  /// No phases where no motion keeps the limits and ends. The search begins with a slow law, which may not be
+  /// found between ends at a speed; over longer cells it is sooner.
+  [[nodiscard]] std::vector<BasicPhase<S>> phases() {
+    std::vector<BasicPhase<S>> result;
+    for (coarser_ = S(1); result.empty() && coarser_ <= most_coarser; coarser_ *= S(2)) result = search();
+    return result;
+  }
+
+ private:
+  // Plans roughly, and again over cells as long as those speeds want them.
+  [[nodiscard]] std::vector<BasicPhase<S>> search() {
+    cells_.clear();
+    last_.clear();
+    cut();
+    if (cells_.size() < 3 || !plan(std::max(gap_, S(1e-2)), false)) return {};
+    cut();
+    if (!plan(gap_, true)) return {};
+    for (int tries = 0; tries < most_tries && plan_.slow_down > S(1); ++tries) {
+      lower();
+      if (!plan(gap_, true)) return {};
+    }
+    // The clock runs slower where the phases are not proven even then; ends at a speed do not allow it.
+    const S slow = plan_.slow_down;
+    if (!std::isfinite(slow) || (slow > S(1) && ends_.start + ends_.end > S(0))) return {};
+    std::vector<BasicPhase<S>> result;
+    emit_phases(std::span<const Cell>(cells_), std::span<const S>(law_), plan_.start, plan_.end,
+                [&](std::size_t cell, BasicPhase<S> phase) {
+                  phase.position += starts_[cell];
+                  result.push_back(slowed(phase, slow));
+                });
+    return result;
+  }
+
+  static constexpr S unknown = S(0.01);  // share of the limits that a spread may take
+  static constexpr S growth = S(0.15);   // of the length of cells, away from where they are short
+  static constexpr S jerk_share = S(0.03);
+  static constexpr S acceleration_share = S(0.004);
+  static constexpr S above = S(1.2);  // times the last law's speed is the most for the next one
+  static constexpr S most_coarser = S(32);
+  static constexpr int most_tries = 5;
+  static constexpr std::size_t window = 1000;
+
+  // A length of the path and the speed that it allows, about.
+  struct Place {
+    S to{}, speed{}, feed{};
+  };
+
+  // First derivatives here and there, as cells without a length.
+  [[nodiscard]] std::vector<Cell> samples() const {
+    constexpr int parts = 64;
+    std::vector<Cell> cells(parts + 1);
+    for (int i = 0; i <= parts; ++i) {
+      Cell& cell = cells[static_cast<std::size_t>(i)];
+      cell.first = path_.point_at(path_.length() * static_cast<S>(i) / static_cast<S>(parts)).first;
+      cell.feed = std::numeric_limits<S>::max();
+    }
+    return cells;
+  }
+
+  // Neither the tool nor the speed along the path is ever faster.
+  [[nodiscard]] S highest_speed(std::span<const Cell> cells) const {
+    S highest = limits_.tool.velocity;
+    for (const Cell& cell : cells)
+      if (const S speed = place_speed(cell, limits_); speed < cell.feed) highest = std::max(highest, speed);
+    return highest;
+  }
+
+  void add_places(S from, S to, int halvings) {
+    const Cell cell = enclosed_cell(path_, from, to, feed_);
+    const S known = known_speed(cell, limits_, unknown), place = place_speed(cell, limits_);
+    if (known >= place || halvings == 0) {
+      const S feed = known >= place ? feed_ : std::min(feed_, known);
+      places_.push_back({to, std::min(place, feed), feed});
+      return;
+    }
+    const S middle = from + (to - from) / S(2);
+    add_places(from, middle, halvings - 1);
+    add_places(middle, to, halvings - 1);
+  }
+
+  // Cells are a small share of the length over which speed changes by itself, at the whole jerk or at the
+  // whole acceleration, whichever takes longer.
+  [[nodiscard]] S cell_length(S speed) const {
+    return coarser_ * std::max(jerk_share * std::sqrt(speed * speed * speed / along_.jerk),
+                               acceleration_share * speed * speed / along_.acceleration);
+  }
+
+  // So short that what motion from rest comes to along it is well below what the path near by allows.
+  [[nodiscard]] S rest_length(bool at_end) const {
+    const S length = path_.length();
+    S speed = S(0.02) * feed_, rest = length;
+    for (int round = 0; round < 60; ++round, speed /= S(2)) {
+      rest = std::sqrt(speed * speed * speed / (S(4.5) * along_.jerk));
+      if (!(rest < S(0.002) * length)) continue;
+      const S reach = std::min(S(60) * rest, length);
+      const Cell cell = at_end ? enclosed_cell(path_, length - reach, length, feed_)
+                               : enclosed_cell(path_, S(0), reach, feed_);
+      if (S(2.8) * speed < S(0.6) * leisurely_speed(cell, limits_, {})) break;
+    }
+    return rest;
+  }
+
+  // Cells as long as the speeds near by want them: those of the last law, else those of the places.
+  void cut() {
+    const S length = path_.length();
+    // Lengths at knots of which none is much longer than its neighbour allows.
+    std::vector<std::pair<S, S>> sizes;
+    S before = S(0);
+    if (cells_.empty()) {
+      for (const Place& place : places_) {
+        const S size = cell_length(place.speed);
+        sizes.push_back({before, size});
+        sizes.push_back({before = place.to, size});
+      }
+    } else {
+      const BasicSpeedProblem<S, count> problem{
+          std::span<const Cell>(cells_).subspan(1, cells_.size() - 2), {}, nullptr};
+      for (std::size_t i = 0; i < problem.cells.size(); ++i) {
+        const auto speed = problem.speed(std::span<const S>(law_), i);
+        sizes.push_back({starts_[i + 1], cell_length(std::sqrt(std::max(speed.start, speed.end)))});
+        last_.push_back({starts_[i + 1] + problem.cells[i].length, std::sqrt(speed.end)});
+      }
+      sizes.push_back({length, sizes.back().second});
+    }
+    const auto begin_at = [&](std::pair<S, S>& size, S speed) {
+      if (speed > S(0)) size.second = std::min(size.second, cell_length(speed));
+    };
+    begin_at(sizes.front(), ends_.start);
+    begin_at(sizes.back(), ends_.end);
+    for (std::size_t i = 1; i < sizes.size(); ++i)
+      sizes[i].second =
+          std::min(sizes[i].second, sizes[i - 1].second + growth * (sizes[i].first - sizes[i - 1].first));
+    for (std::size_t i = sizes.size() - 1; i-- > 0;)
+      sizes[i].second =
+          std::min(sizes[i].second, sizes[i + 1].second + growth * (sizes[i + 1].first - sizes[i].first));
+
+    const bool from_rest = !(ends_.start > S(0)), to_rest = !(ends_.end > S(0));
+    const S first = from_rest ? rest_length(false) : S(0), last = to_rest ? rest_length(true) : S(0);
+    std::vector<S> knots{S(0), first};
+    std::size_t at = 0, at_place = 0;
+    const S until = length - last;
+    auto speed_near = last_speeds();
+    while (knots.back() < until) {
+      const S s = knots.back();
+      while (at + 2 < sizes.size() && sizes[at + 1].first <= s) ++at;
+      const auto [from, size] = sizes[at];
+      S step = size + growth * (s - from);
+      if (at + 1 < sizes.size())
+        step = std::min(step, sizes[at + 1].second + growth * std::abs(sizes[at + 1].first - s));
+      if (from_rest) step = std::min(step, growth * s);
+      if (to_rest) step = std::min(step, growth / (S(1) + growth) * (length - s));
+      while (at_place + 1 < places_.size() && places_[at_place].to <= s) ++at_place;
+      const S known = std::min(places_[at_place].speed, above * speed_near(s));
+      step = std::min(step, until - s);
+      const S least = std::min(S(1e-9) * length, step);
+      while (step > least && known_speed(enclosed_cell(path_, s, s + step, feed_), limits_, unknown) < known)
+        step = std::max(step * S(0.7), least);
+      knots.push_back(s + S(1.3) * step < until ? s + step : until);
+    }
+    knots.push_back(length);
+
+    cells_.clear();
+    starts_.clear();
+    at = 0;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+      while (at + 1 < places_.size() && places_[at].to < knots[i + 1]) ++at;
+      Cell& cell = cells_.emplace_back(enclosed_cell(path_, knots[i], knots[i + 1], places_[at].feed));
+      cell.feed /= S(1) + velocity_between(cell, limits_);
+      starts_.push_back(knots[i]);
+    }
+    set_skews();
+  }
+
+  // The speed of the last law at places that are asked in order; without one, infinite.
+  [[nodiscard]] auto last_speeds() const {
+    return [this, at = std::size_t{0}](S s) mutable {
+      if (last_.empty()) return std::numeric_limits<S>::infinity();
+      while (at + 2 < last_.size() && last_[at + 1].first < s) ++at;
+      const auto [from, slow] = last_[at];
+      const auto [to, fast] = last_[std::min(at + 1, last_.size() - 1)];
+      return to > from ? slow + std::clamp((s - from) / (to - from), S(0), S(1)) * (fast - slow) : slow;
+    };
+  }
+
+  // As at a constant jerk from the last law's speed at one end to that at the other.
+  void set_skews() {
+    auto speed = last_speeds();
+    for (std::size_t i = 1; i + 1 < cells_.size() && !last_.empty(); ++i) {
+      const S before = speed(starts_[i]), after = speed(starts_[i] + cells_[i].length);
+      cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
+    }
+  }
+
+  // Lowers what the cells allow whose phases break a limit.
+  void lower() {
+    const std::vector<Cell> cells = cells_;
+    emit_phases(std::span<const Cell>(cells), std::span<const S>(law_), plan_.start, plan_.end,
+                [&](std::size_t i, const BasicPhase<S>& phase) {
+                  constexpr S margin = S(1.0001);
+                  const BasicUse<S> use = use_of(phase, cells[i], limits_);
+                  const S speed = std::max(phase.velocity, phase.at(phase.duration).velocity);
+                  if (use.velocity > S(1))
+                    cells_[i].feed = std::min(cells_[i].feed, speed / (use.velocity * margin));
+                  if (use.force() > S(1))
+                    cells_[i].pace = std::min(cells_[i].pace, cells[i].pace / (use.force() * margin));
+                });
+  }
+
+  [[nodiscard]] bool plan(S gap, bool proven) {
+    const std::size_t n = cells_.size(), room = std::min(window, n) + 8;
+    std::vector<BasicPace<S>> paces(n);
+    std::vector<S> levels(n), numbers(BasicWindowMemory<S>::rooms * room);
+    std::vector<BasicPlateau<S>> plateaus(n + 4);
+    std::vector<BasicSpeedShare<S>> speeds(3 * room);
+    std::vector<BasicForceShare<S>> forces(3 * limit_count(limits_) * room);
+    law_.assign(n, S(0));
+    BasicPlanSpeedOptions<S> options;
+    options.window.gap = gap;
+    options.window.proven = proven;
+    options.window_cells = window;
+    plan_ = plan_speed<S, count>(std::span<const Cell>(cells_), limits_, options,
+                                 {paces, levels, plateaus, law_, {numbers, speeds, forces}}, ends_);
+    return std::isfinite(plan_.duration);
+  }
+
+  const P& path_;
+  Limits limits_;
+  BasicSpeedEnds<S> ends_;
+  S gap_{};
+  S coarser_ = S(1);  // by which cells are longer
+  S feed_{};
+  BasicLimits<S> along_;  // along the path, wherever it goes
+  std::vector<Place> places_;
+  std::vector<Cell> cells_;
+  std::vector<S> starts_, law_;
+  std::vector<std::pair<S, S>> last_;  // places and speeds of the last law
+  BasicSpeedPlan<S> plan_;
+};
+
+}  // namespace smooth
+
+/// The fastest motion along a path from one end to the other, under limits of the tool's vector and of each
+/// axis: phases of constant jerk along the path, which provably keep all limits everywhere. Within about
+/// `gap` of the least time. The path is smooth: its second derivative does not jump. Its parameter may be
+/// any; mm here is its unit. Limits are above 0; those of the tool, or of all the axes of X Y Z, are finite.
+///
+/// Errors: not_finite, not_positive (length, limits, feed, gap); negative, above_limit (ends);
+/// end_speed_unreachable, where no law is found between ends at a speed: near their limits there may be one.
+///
+///     const auto motion = time_optimal(path, MotionLimits<3>{.tool = mill.limits});
+///     const State along = motion->at(0.2);
+///     const auto [position, first, second, third] = path.point_at(along.position);
+template <EnclosedPath P>
+[[nodiscard]] Expected<BasicPhaseProfile<typename P::Scalar>> time_optimal(
+    const P& path, const smooth::BasicMotionLimits<typename P::Scalar, P::Vector::RowsAtCompileTime>& limits,
+    const BasicTimeOptimalOptions<typename P::Scalar>& options = {}) {
+  using S = typename P::Scalar;
+  const S length = path.length();
+  if (!std::isfinite(length)) return refusal(ErrorCode::not_finite, "length", length);
+  if (!(length > S(0))) return refusal(ErrorCode::not_positive, "length", length);
+  const auto reachable = smooth::reachable(limits);
+  for (const auto& own : reachable.axes)
+    for (const S limit : {own.velocity, own.acceleration, own.jerk})
+      if (!(limit > S(0))) return refusal(ErrorCode::not_positive, "limits of an axis", limit);
+  for (const S limit : {reachable.tool.velocity, reachable.tool.acceleration, reachable.tool.jerk}) {
+    if (!(limit > S(0))) return refusal(ErrorCode::not_positive, "limits of the tool", limit);
+    if (!std::isfinite(limit)) return refusal(ErrorCode::not_finite, "limits of the tool", limit);
+  }
+  if (!(options.feed > S(0))) return refusal(ErrorCode::not_positive, "feed", options.feed);
+  if (!(options.gap > S(0))) return refusal(ErrorCode::not_positive, "gap", options.gap);
+  if (!(options.start_velocity >= S(0)))
+    return refusal(ErrorCode::negative, "start_velocity", options.start_velocity);
+  if (!(options.end_velocity >= S(0)))
+    return refusal(ErrorCode::negative, "end_velocity", options.end_velocity);
+  smooth::PathSpeed<P> speed(path, reachable, options);
+  if (options.start_velocity >= speed.start_limit())
+    return refusal(ErrorCode::above_limit, "start_velocity", options.start_velocity, speed.start_limit());
+  if (options.end_velocity >= speed.end_limit())
+    return refusal(ErrorCode::above_limit, "end_velocity", options.end_velocity, speed.end_limit());
+  auto phases = speed.phases();
+  if (phases.empty())
+    return refusal(ErrorCode::end_speed_unreachable, "end_velocity", options.end_velocity, length);
+  return BasicPhaseProfile<S>(std::move(phases), length);
+}
+
+}  // namespace cncplan
