@@ -4,35 +4,20 @@
 #include <Clp_C_Interface.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/measured.hpp"
 #include "support/catch.hpp"
+#include "support/half_ellipse.hpp"
 
 using namespace cncplan;
 using smooth::MotionLimits;
 
 namespace {
-
-struct Ellipse {  // the upper half
-  using Scalar = double;
-  using Vector = Vector3;
-
-  double half_width{}, height{};
-
-  double parameter_end() const { return std::numbers::pi; }
-  template <class T>
-  std::array<T, 3> point(const T& u) const {
-    using std::cos, std::sin;
-    return {T(-half_width) * cos(u), T(height) * sin(u), T(0)};
-  }
-};
 
 /// The least time from a speed to the same speed under equal limits of X and Y, in b = v^2 at nodes of equal
 /// distance. Of
@@ -142,7 +127,7 @@ TEST_CASE("time optimal: half a circle and half an ellipse, as linear programs f
       path::arc_from_center(Vector3(0, 0, 0), {20, 0, 0}, {10, 0, 0}, Turn::clockwise, Plane::xy);
   REQUIRE(circle);
   check(*circle, {.velocity = 50, .acceleration = 300, .jerk = 2000}, 5);
-  const auto ellipse = path::measured(Ellipse{20, 8});
+  const auto ellipse = path::measured(test::HalfEllipse{20, 8});
   REQUIRE(ellipse);
   check(*ellipse, {.velocity = 30, .acceleration = 1000, .jerk = 1e4}, 6);
 }

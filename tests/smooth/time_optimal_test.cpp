@@ -5,15 +5,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "cncplan/interpolate/travel.hpp"
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/path/b_spline.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/measured.hpp"
+#include "cncplan/smooth/cubic.hpp"
 #include "support/catch.hpp"
+#include "support/half_ellipse.hpp"
 #include "support/random.hpp"
 
 using namespace cncplan;
@@ -24,20 +24,6 @@ namespace {
 constexpr Limits mill{.velocity = 30, .acceleration = 1000, .jerk = 1e4};
 
 static_assert(interpolate::PhasedProfile<PhaseProfile>);
-
-struct Ellipse {  // the upper half
-  using Scalar = double;
-  using Vector = Vector3;
-
-  double half_width{}, height{};
-
-  double parameter_end() const { return std::numbers::pi; }
-  template <class T>
-  std::array<T, 3> point(const T& u) const {
-    using std::cos, std::sin;
-    return {T(-half_width) * cos(u), T(height) * sin(u), T(0)};
-  }
-};
 
 MotionLimits<3> of_tool(const Limits& tool) {
   MotionLimits<3> limits;
@@ -126,7 +112,7 @@ TEST_CASE("time optimal: limits of tool and axes hold on curves, from rest and a
     for (const auto& limits : {of_tool(mill), of_axes})
       for (const double speed : {0.0, 2.0}) {
         CAPTURE(height, speed, limits.tool.velocity);
-        const auto path = path::measured(Ellipse{20, height});
+        const auto path = path::measured(test::HalfEllipse{20, height});
         REQUIRE(path);
         const auto motion = time_optimal(*path, limits, {.start_velocity = speed, .end_velocity = speed / 2});
         REQUIRE(motion);
@@ -135,8 +121,36 @@ TEST_CASE("time optimal: limits of tool and axes hold on curves, from rest and a
       }
 }
 
+TEST_CASE(
+    "time optimal: limits hold along random cubics, whose parameter is no length, from any feasible ends") {
+  test::Random random;
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(test::seed(), i);
+    PathPoint<Vector3> start;
+    start.position.setZero();
+    for (int axis = 0; axis < 3; ++axis) {
+      start.first[axis] = random.uniform(-2, 2);
+      start.second[axis] = random.uniform(-1, 1) / 5;
+      start.third[axis] = random.uniform(-1, 1) / 50;
+    }
+    const smooth::Cubic<3> path(start, random.log_uniform(0.01, 10));
+    MotionLimits<3> limits;
+    limits.tool = {random.log_uniform(5, 100), random.log_uniform(50, 5000), random.log_uniform(500, 1e5)};
+    if (random.coin())
+      for (Limits& own : limits.axes)
+        own = {limits.tool.velocity * random.uniform(0.4, 1.5),
+               limits.tool.acceleration * random.uniform(0.4, 1.5),
+               limits.tool.jerk * random.uniform(0.4, 1.5)};
+    CAPTURE(path.length(), limits.tool.velocity, limits.tool.acceleration, limits.tool.jerk);
+    const auto motion = time_optimal(path, limits);
+    REQUIRE(motion);
+    check_ends(*motion, path.length(), 0, 0);
+    check_limits(path, *motion, limits);
+  }
+}
+
 TEST_CASE("time optimal: a feed holds, and looser limits are no slower") {
-  const auto path = path::measured(Ellipse{20, 8});
+  const auto path = path::measured(test::HalfEllipse{20, 8});
   REQUIRE(path);
   const auto free = time_optimal(*path, of_tool(mill)),
              fed = time_optimal(*path, of_tool(mill), {.feed = 12});
@@ -165,4 +179,45 @@ TEST_CASE("time optimal: what cannot be is refused by name") {
   CHECK(code(of_tool(mill), {.gap = 0}).field == "gap");
   CHECK(code(of_tool(mill), {.start_velocity = 29}).code == ErrorCode::end_speed_unreachable);
   CHECK(!time_optimal(path::Line<3>({0, 0, 0}, {0, 0, 0}), of_tool(mill)));
+  PathPoint<Vector3> unknown;
+  unknown.position.setZero(), unknown.first.setOnes(), unknown.second.setZero();
+  unknown.third.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const auto motion = time_optimal(smooth::Cubic<3>(unknown, 1), of_tool(mill));
+  REQUIRE(!motion);
+  CHECK(motion.error().code == ErrorCode::not_finite);
+}
+
+TEST_CASE("time optimal: huge and tiny paths, and ends next to a limit") {
+  for (const double length : {1e-6, 1e6}) {
+    CAPTURE(length);
+    const auto motion = time_optimal(path::Line<3>({0, 0, 0}, {length, 0, 0}), of_tool(mill));
+    REQUIRE(motion);
+    const double least = length > 1 ? length / 30 + 2 * std::sqrt(30 / 1e4) : std::cbrt(32 * length / 1e4);
+    CHECK(motion->duration() >= least * (1 - 1e-9));
+    CHECK(motion->duration() < least * 1.005);
+    CHECK(motion->phases().size() < 100000);
+  }
+  for (const double speed : {1e-9, 29.9}) {
+    CAPTURE(speed);
+    const path::Line<3> line({0, 0, 0}, {50, 0, 0});
+    const auto motion = time_optimal(line, of_tool(mill), {.start_velocity = speed});
+    REQUIRE(motion);
+    check_ends(*motion, 50, speed, 0);
+    check_limits(line, *motion, of_tool(mill));
+  }
+}
+
+TEST_CASE("time optimal: a rotary axis alone, and float") {
+  MotionLimits<4> joints;
+  for (Limits& own : joints.axes) own = {.velocity = 2, .acceleration = 10, .jerk = 100};
+  const auto turn = time_optimal(path::Line<4>({0, 0, 0, 0}, {0, 0, 0, 3}), joints);
+  REQUIRE(turn);
+  CHECK(turn->duration() >= 1.8 * (1 - 1e-9));  // 3 / 2 + 2 / 10 + 10 / 100
+  CHECK(turn->duration() < 1.8 * 1.005);
+
+  smooth::BasicMotionLimits<float, 3> limits;
+  limits.tool = {30, 1000, 10000};
+  const auto line = time_optimal(path::BasicLine<float, 3>({0, 0, 0}, {10, 0, 0}), limits);
+  REQUIRE(line);
+  CHECK(std::abs(line->duration() - 0.44288F) < 0.005F * 0.44288F);
 }

@@ -23,7 +23,7 @@ struct BasicTimeOptimalOptions {
   S start_velocity{};                           ///< mm/s along the path, without acceleration; 0: at rest
   S end_velocity{};                             ///< the same at the end
   S feed = std::numeric_limits<S>::infinity();  ///< most for the speed along the path and of the tool, mm/s
-  S gap = S(3e-4);                              ///< how far from the least time, as a share of it, about
+  S gap = S(3e-4);  ///< of the solver, as a share of the time; cells of finite length add to it
 };
 
 using TimeOptimalOptions = BasicTimeOptimalOptions<double>;
@@ -53,6 +53,11 @@ class PathSpeed {
   [[nodiscard]] S start_limit() const { return places_.front().speed; }
   [[nodiscard]] S end_limit() const { return places_.back().speed; }
 
+  /// Whether the path's derivatives are known well enough for motion everywhere.
+  [[nodiscard]] bool known() const {
+    return std::all_of(places_.begin(), places_.end(), [](const Place& place) { return place.speed > S(0); });
+  }
+
   /// No phases where no motion keeps the limits and ends. The search begins with a slow law, which may not be
   /// found between ends at a speed; over longer cells it is sooner.
   [[nodiscard]] std::vector<BasicPhase<S>> phases() {
@@ -65,7 +70,6 @@ class PathSpeed {
   // Plans roughly, and again over cells as long as those speeds want them.
   [[nodiscard]] std::vector<BasicPhase<S>> search() {
     cells_.clear();
-    last_.clear();
     cut();
     if (cells_.size() < 3 || !plan(std::max(gap_, S(1e-2)), false)) return {};
     cut();
@@ -90,7 +94,8 @@ class PathSpeed {
   static constexpr S growth = S(0.15);   // of the length of cells, away from where they are short
   static constexpr S jerk_share = S(0.03);
   static constexpr S acceleration_share = S(0.004);
-  static constexpr S above = S(1.2);  // times the last law's speed is the most for the next one
+  static constexpr S above =
+      S(1.2);  // the last law's speed times this: the most that is expected of the next one
   static constexpr S most_coarser = S(32);
   static constexpr int most_tries = 5;
   static constexpr std::size_t window = 1000;
@@ -157,66 +162,12 @@ class PathSpeed {
 
   // Cells as long as the speeds near by want them: those of the last law, else those of the places.
   void cut() {
-    const S length = path_.length();
-    // Lengths at knots of which none is much longer than its neighbour allows.
-    std::vector<std::pair<S, S>> sizes;
-    S before = S(0);
-    if (cells_.empty()) {
-      for (const Place& place : places_) {
-        const S size = cell_length(place.speed);
-        sizes.push_back({before, size});
-        sizes.push_back({before = place.to, size});
-      }
-    } else {
-      const BasicSpeedProblem<S, count> problem{
-          std::span<const Cell>(cells_).subspan(1, cells_.size() - 2), {}, nullptr};
-      for (std::size_t i = 0; i < problem.cells.size(); ++i) {
-        const auto speed = problem.speed(std::span<const S>(law_), i);
-        sizes.push_back({starts_[i + 1], cell_length(std::sqrt(std::max(speed.start, speed.end)))});
-        last_.push_back({starts_[i + 1] + problem.cells[i].length, std::sqrt(speed.end)});
-      }
-      sizes.push_back({length, sizes.back().second});
-    }
-    const auto begin_at = [&](std::pair<S, S>& size, S speed) {
-      if (speed > S(0)) size.second = std::min(size.second, cell_length(speed));
-    };
-    begin_at(sizes.front(), ends_.start);
-    begin_at(sizes.back(), ends_.end);
-    for (std::size_t i = 1; i < sizes.size(); ++i)
-      sizes[i].second =
-          std::min(sizes[i].second, sizes[i - 1].second + growth * (sizes[i].first - sizes[i - 1].first));
-    for (std::size_t i = sizes.size() - 1; i-- > 0;)
-      sizes[i].second =
-          std::min(sizes[i].second, sizes[i + 1].second + growth * (sizes[i + 1].first - sizes[i].first));
-
-    const bool from_rest = !(ends_.start > S(0)), to_rest = !(ends_.end > S(0));
-    const S first = from_rest ? rest_length(false) : S(0), last = to_rest ? rest_length(true) : S(0);
-    std::vector<S> knots{S(0), first};
-    std::size_t at = 0, at_place = 0;
-    const S until = length - last;
-    auto speed_near = last_speeds();
-    while (knots.back() < until) {
-      const S s = knots.back();
-      while (at + 2 < sizes.size() && sizes[at + 1].first <= s) ++at;
-      const auto [from, size] = sizes[at];
-      S step = size + growth * (s - from);
-      if (at + 1 < sizes.size())
-        step = std::min(step, sizes[at + 1].second + growth * std::abs(sizes[at + 1].first - s));
-      if (from_rest) step = std::min(step, growth * s);
-      if (to_rest) step = std::min(step, growth / (S(1) + growth) * (length - s));
-      while (at_place + 1 < places_.size() && places_[at_place].to <= s) ++at_place;
-      const S known = std::min(places_[at_place].speed, above * speed_near(s));
-      step = std::min(step, until - s);
-      const S least = std::min(S(1e-9) * length, step);
-      while (step > least && known_speed(enclosed_cell(path_, s, s + step, feed_), limits_, unknown) < known)
-        step = std::max(step * S(0.7), least);
-      knots.push_back(s + S(1.3) * step < until ? s + step : until);
-    }
-    knots.push_back(length);
-
+    const std::vector<std::pair<S, S>> wanted = wanted_lengths();
+    remember_speeds();
+    const std::vector<S> knots = this->knots(wanted);
     cells_.clear();
     starts_.clear();
-    at = 0;
+    std::size_t at = 0;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
       while (at + 1 < places_.size() && places_[at].to < knots[i + 1]) ++at;
       Cell& cell = cells_.emplace_back(enclosed_cell(path_, knots[i], knots[i + 1], places_[at].feed));
@@ -224,6 +175,80 @@ class PathSpeed {
       starts_.push_back(knots[i]);
     }
     set_skews();
+  }
+
+  // Calls `visit(start, end, speeds)` for each cell between those of rest, with the last law in it.
+  template <class Visit>
+  void for_each_speed(Visit&& visit) const {
+    const BasicSpeedProblem<S, count> problem{
+        std::span<const Cell>(cells_).subspan(1, cells_.size() - 2), {}, nullptr};
+    for (std::size_t i = 0; i < problem.cells.size(); ++i)
+      visit(starts_[i + 1], starts_[i + 1] + problem.cells[i].length,
+            problem.speed(std::span<const S>(law_), i));
+  }
+
+  void remember_speeds() {
+    last_.clear();
+    if (cells_.empty()) return;
+    for_each_speed([&](S, S end, const BasicCellSpeed<S>& b) { last_.push_back({end, std::sqrt(b.end)}); });
+  }
+
+  // Places, and how long a cell may be there; no length is much above that of a place near by.
+  [[nodiscard]] std::vector<std::pair<S, S>> wanted_lengths() const {
+    std::vector<std::pair<S, S>> lengths;
+    if (cells_.empty()) {
+      S from = S(0);
+      for (const Place& place : places_) {
+        const S length = cell_length(place.speed);
+        lengths.push_back({from, length});
+        lengths.push_back({from = place.to, length});
+      }
+    } else {
+      for_each_speed([&](S start, S, const BasicCellSpeed<S>& b) {
+        lengths.push_back({start, cell_length(std::sqrt(std::max(b.start, b.end)))});
+      });
+      lengths.push_back({path_.length(), lengths.back().second});
+    }
+    const auto end_at = [&](std::pair<S, S>& end, S speed) {
+      if (speed > S(0)) end.second = std::min(end.second, cell_length(speed));
+    };
+    end_at(lengths.front(), ends_.start);
+    end_at(lengths.back(), ends_.end);
+    const auto limit = [](std::pair<S, S>& length, const std::pair<S, S>& near) {
+      length.second = std::min(length.second, near.second + growth * std::abs(length.first - near.first));
+    };
+    for (std::size_t i = 1; i < lengths.size(); ++i) limit(lengths[i], lengths[i - 1]);
+    for (std::size_t i = lengths.size() - 1; i-- > 0;) limit(lengths[i], lengths[i + 1]);
+    return lengths;
+  }
+
+  // Where cells begin and end: the first and the last one are for rest, or have no length. Between two places
+  // of `wanted` cells grow, as far as the third derivative is known well enough at the speeds near by.
+  [[nodiscard]] std::vector<S> knots(const std::vector<std::pair<S, S>>& wanted) const {
+    const S length = path_.length();
+    const bool from_rest = !(ends_.start > S(0)), to_rest = !(ends_.end > S(0));
+    const S until = length - (to_rest ? rest_length(true) : S(0));
+    std::vector<S> knots{S(0), from_rest ? rest_length(false) : S(0)};
+    std::size_t at = 0, at_place = 0;
+    auto speed_near = last_speeds();
+    while (knots.back() < until) {
+      const S s = knots.back();
+      while (at + 2 < wanted.size() && wanted[at + 1].first <= s) ++at;
+      S step = until - s;
+      for (const auto& [place, near] : {wanted[at], wanted[std::min(at + 1, wanted.size() - 1)]})
+        step = std::min(step, near + growth * std::abs(place - s));
+      if (from_rest) step = std::min(step, growth * s);
+      if (to_rest) step = std::min(step, growth / (S(1) + growth) * (length - s));
+      const S least = std::min(S(1e-9) * length, until - s);
+      step = std::max(step, least);
+      while (at_place + 1 < places_.size() && places_[at_place].to <= s) ++at_place;
+      const S speed = std::min(places_[at_place].speed, above * speed_near(s));
+      while (step > least && known_speed(enclosed_cell(path_, s, s + step, feed_), limits_, unknown) < speed)
+        step = std::max(step * S(0.7), least);
+      knots.push_back(s + S(1.3) * step < until ? s + step : until);
+    }
+    knots.push_back(length);
+    return knots;
   }
 
   // The speed of the last law at places that are asked in order; without one, infinite.
@@ -295,12 +320,13 @@ class PathSpeed {
 }  // namespace smooth
 
 /// The fastest motion along a path from one end to the other, under limits of the tool's vector and of each
-/// axis: phases of constant jerk along the path, which provably keep all limits everywhere. Within about
-/// `gap` of the least time. The path is smooth: its second derivative does not jump. Its parameter may be
-/// any; mm here is its unit. Limits are above 0; those of the tool, or of all the axes of X Y Z, are finite.
+/// axis: phases of constant jerk along the path, which provably keep all limits everywhere. The path is
+/// smooth: its second derivative does not jump. Its parameter may be any; mm here is its unit. Limits are
+/// above 0; those of the tool, or of all the axes of X Y Z, are finite.
 ///
-/// Errors: not_finite, not_positive (length, limits, feed, gap); negative, above_limit (ends);
-/// end_speed_unreachable, where no law is found between ends at a speed: near their limits there may be one.
+/// Errors: not_finite (length, limits, the path's derivatives); not_positive (length, limits, feed, gap);
+/// negative (ends), above_limit (ends that are not below what the path there allows); end_speed_unreachable,
+/// bound 0, where no law is found between ends at a speed. There may be one.
 ///
 ///     const auto motion = time_optimal(path, MotionLimits<3>{.tool = mill.limits});
 ///     const State along = motion->at(0.2);
@@ -328,13 +354,14 @@ template <EnclosedPath P>
   if (!(options.end_velocity >= S(0)))
     return refusal(ErrorCode::negative, "end_velocity", options.end_velocity);
   smooth::PathSpeed<P> speed(path, reachable, options);
+  if (!speed.known())
+    return refusal(ErrorCode::not_finite, "derivatives of the path", std::numeric_limits<S>::quiet_NaN());
   if (options.start_velocity >= speed.start_limit())
     return refusal(ErrorCode::above_limit, "start_velocity", options.start_velocity, speed.start_limit());
   if (options.end_velocity >= speed.end_limit())
     return refusal(ErrorCode::above_limit, "end_velocity", options.end_velocity, speed.end_limit());
   auto phases = speed.phases();
-  if (phases.empty())
-    return refusal(ErrorCode::end_speed_unreachable, "end_velocity", options.end_velocity, length);
+  if (phases.empty()) return refusal(ErrorCode::end_speed_unreachable, "end_velocity", options.end_velocity);
   return BasicPhaseProfile<S>(std::move(phases), length);
 }
 
