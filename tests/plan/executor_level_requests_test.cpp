@@ -162,9 +162,9 @@ TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]")
 TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks that come above it",
           "[executor-levels]") {
   std::string text = "F600\n";  // 10 mm/s
-  for (int i = 1; i <= 600; ++i)
+  for (int i = 1; i <= 900; ++i)
     text += "G1 X" + std::to_string(0.5 * i) + " Y" + std::to_string(0.2 * std::sin(0.1 * i)) + "\n";
-  text += "G0 X310\n";
+  text += "G0 X460\n";
   const MillBlocks blocks = blocks_of(text);
   const auto executor = runner();
   std::size_t fed = 0;
@@ -250,6 +250,46 @@ TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, how
     CHECK_FALSE(executor->error());
     CHECK((executor->tick(period).position - blocks.back().path.position_at(blocks.back().path.length()))
               .norm() < 1e-9);
+  }
+}
+
+TEST_CASE("executor levels: a share of the feed above 1 acts at once, and no feed is above it",
+          "[executor-levels]") {
+  Machine<3> machine = with_axes();
+  machine.limits.velocity = 80;
+  for (auto& axis : machine.axes) axis.velocity = 80;
+  for (const double length : {0.5, 3.0, 40.0}) {
+    std::string text = "F1200\n";
+    for (int i = 1; i * length < 400; ++i) text += "G1 X" + std::to_string(length * i) + "\n";
+    const MillBlocks blocks = blocks_of(text, machine);
+    for (const double share : {1.01, 1.2, 2.0}) {
+      CAPTURE(length, share);
+      const auto executor = std::make_unique<Executor<Machine<3>, 300>>(
+          machine, LevelExecutorOptions{.level = SmoothLevel::good});
+      std::size_t fed = 0;
+      std::array<Vector3, 4> p;
+      p.fill(Vector3::Zero());
+      double jerk = 0;
+      const auto tick = [&] {
+        feed(*executor, blocks, fed);
+        p = {executor->tick(period).position, p[0], p[1], p[2]};
+        jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
+        return (p[0] - p[1]).norm() / period;
+      };
+      for (int i = 0; i < 1000; ++i) tick();
+      const double before = tick();
+      CHECK(before == Approx(20).epsilon(1e-3));
+      executor->feed_override(share);
+      CHECK(tick() > before);
+      const double least = 2 * std::sqrt((share - 1) * 20 / machine.limits.jerk);
+      int ticks = 2;
+      while (tick() < 20 * share * (1 - 2e-3) && ticks < 10000) ++ticks;
+      CHECK(ticks * period < least + 0.02);
+      double most = 0;
+      for (int i = 0; i < 5000; ++i) most = std::max(most, tick());  // where parts are planned anew, too
+      CHECK(most <= 20 * share * (1 + 1e-6));
+      CHECK(jerk <= machine.limits.jerk * std::pow(period, 3) * (1 + 1e-4));
+    }
   }
 }
 

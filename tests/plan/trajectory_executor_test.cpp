@@ -13,6 +13,7 @@
 #include "least_brake.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
+#include "support/random.hpp"
 
 using namespace cncplan;
 using namespace cncplan::test;
@@ -25,6 +26,7 @@ constexpr double period = 1e-3;
 template <int N = 3>
 auto planned(const std::string& text, const Machine<N>& machine, SmoothLevel level = SmoothLevel::good) {
   const auto program = read_text(text, machine);
+  for (const auto& p : program.problems()) UNSCOPED_INFO(to_text(p));
   REQUIRE_FALSE(program.failed());
   auto trajectory = plan_blocks(program.blocks(), machine, {.tolerance = 0.01, .level = level});
   REQUIRE(trajectory);
@@ -123,6 +125,48 @@ TEST_CASE("trajectory executor: an override stretches the motion, but no dwell",
     run(held, 0.2);
     CHECK(held.clock().velocity == 1);
   }
+}
+
+TEST_CASE("trajectory executor: an override above 1 is taken where the limits leave room for it",
+          "[trajectory-executor]") {
+  Machine<3> machine{.limits = {.velocity = 60, .acceleration = 1000, .jerk = 10000}};
+  machine.axes[1].velocity = 40;
+  machine.axes[1].acceleration = 800;
+  machine.axes[1].jerk = 9000;
+  const auto trajectory =
+      planned("F1800 G1 X40\nY30\nX45 Y33\nG3 X60 Y20 R16\nG0 X0 Y0\nG1 X1 Y1\nX1.5 Y0.4\nX30\nY40\n",
+              machine, SmoothLevel::good);
+  const auto seed = GENERATE(range(0, 6));
+  test::Random random(static_cast<std::uint64_t>(seed));
+  const double share = seed < 2 ? 1.3 : random.uniform(1, 2);
+  CAPTURE(seed, share);
+  TrajectoryExecutor executor(trajectory, machine, {.longest_hold = 10});
+  executor.feed_override(share);
+  std::array<Vector3, 4> p;
+  p.fill(Vector3::Zero());
+  double time = 0, feed = 0;
+  while (!executor.finished() && time < 100) {
+    if (seed > 0 && random.integer(0, 200) == 0) executor.feed_hold();
+    if (seed > 0 && random.integer(0, 50) == 0) executor.resume();
+    const auto point = executor.tick(period);
+    time += period;
+    p = {point.position, p[0], p[1], p[2]};
+    const Vector3 v = (p[0] - p[1]) / period, a = (p[0] - 2 * p[1] + p[2]) / std::pow(period, 2),
+                  j = (p[0] - 3 * p[1] + 3 * p[2] - p[3]) / std::pow(period, 3);
+    CHECK(v.norm() <= 60 * (1 + 1e-9));
+    CHECK(a.norm() <= 1000 * (1 + 1e-6));
+    CHECK(j.norm() <= 10000 * (1 + 1e-4));
+    CHECK(std::abs(v.y()) <= 40 * (1 + 1e-9));
+    CHECK(std::abs(a.y()) <= 800 * (1 + 1e-6));
+    CHECK(std::abs(j.y()) <= 9000 * (1 + 1e-4));
+    if (point.line <= 4) feed = std::max(feed, point.velocity.norm());
+  }
+  CHECK(executor.finished());
+  CHECK((p[0] - trajectory.at(trajectory.duration()).position).norm() < 1e-9);
+  CHECK(feed <= 30 * share * (1 + 1e-6));
+  if (seed > 0) return;
+  CHECK(feed == Approx(30 * share).epsilon(1e-3));
+  CHECK(time < 0.9 * trajectory.duration());
 }
 
 TEST_CASE("trajectory executor: back to the start, over dwells without waiting, and forwards again",

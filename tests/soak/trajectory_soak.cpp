@@ -89,7 +89,7 @@ Case draw(std::uint64_t seed, double seconds) {
         c.requests.push_back({tick, 'f', 0});
         break;
       default:
-        c.requests.push_back({tick, 'o', random.coin() ? random.uniform(0, 1) : 1.0});
+        c.requests.push_back({tick, 'o', random.coin() ? random.uniform(0, 2) : 1.0});
     }
   }
   c.hold_factor = random.coin() ? 0 : random.uniform(1.2, 3);

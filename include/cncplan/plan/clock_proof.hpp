@@ -56,8 +56,8 @@ inline constexpr bool third_of_tool_is_constant<path::Mapped<M, path::BasicLine<
 }  // namespace detail
 
 /// Whether a trajectory keeps the limits of a machine while the rate of its clock changes: those of
-/// acceleration and jerk, of the tool's vector and of each axis. Velocities are no higher than planned, as
-/// the rate is 1 at most: of a ramp along the path, that is proven too. With the state s, v, a, j along the
+/// acceleration and jerk, of the tool's vector and of each axis. Velocities are no higher than planned where
+/// the rate is 1 at most; where it is higher they are proven as well. With the state s, v, a, j along the
 /// path by the clock, an interval of time is proven by what the axes do in its middle,
 ///
 ///     q' a + q'' v^2     and     q' j + 3 q'' v a + q''' v^3,
@@ -81,13 +81,16 @@ class ClockProof {
   [[nodiscard]] bool holds(const Chain& chain, const state::BasicMotion<S>& clock, bool backwards, S until,
                            int& work) const {
     const std::size_t last = backwards ? chain.first_phase() : chain.last_phase();
-    return holds(chain, chain, chain.phase_at(clock.start().position), last, clock, backwards, until, work);
+    return holds(chain, chain, chain.phase_at(clock.start().position), last, clock, backwards, until, S(1),
+                 work);
   }
-  /// A motion along the path by the length of `way`, within it and the phases up to `last`.
+  /// A motion along the path by the length of `way`, within it and the phases up to `last`, nowhere faster
+  /// than `most_rate` times what is planned, which is at least 1.
   [[nodiscard]] bool moves(const Chain& chain, const PhasesByLength<M, B>& way, std::size_t last,
-                           const Motion& motion, int& work) const {
+                           const Motion& motion, S most_rate, int& work) const {
     constexpr S nowhere = std::numeric_limits<S>::infinity();
-    return holds(chain, PhasesByLength<M, B>(way), way.index(), last, motion, false, nowhere, work);
+    return holds(chain, PhasesByLength<M, B>(way), way.index(), last, motion, false, nowhere, most_rate,
+                 work);
   }
 
  private:
@@ -100,7 +103,7 @@ class ClockProof {
   // Phases by time, or by length: then what comes to the end of the last one does not brake in time.
   template <class Phases, class AnyMotion>
   [[nodiscard]] bool holds(const Chain& chain, Phases&& phases, std::size_t now, std::size_t last,
-                           const AnyMotion& clock, bool backwards, S until, int& work) const {
+                           const AnyMotion& clock, bool backwards, S until, S most_rate, int& work) const {
     constexpr bool by_time = std::same_as<std::remove_cvref_t<Phases>, Chain>;
     const S sense = backwards ? S(-1) : S(1);
     BasicAxisState<S> from = clock.start();
@@ -114,7 +117,7 @@ class ClockProof {
       for (S t = S(0); t < part.duration;) {
         std::optional<BasicPhase<S>> planned;
         if (!by_time) planned = chain.phase(now);
-        const Interval in{phases.phase(now), planned, chain.path(now), from, part};
+        const Interval in{phases.phase(now), planned, most_rate, chain.path(now), from, part};
         const BasicPhase<S>& phase = in.phase;
         const S end = backwards ? std::max(phase.time, until) : std::min(phase.time + phase.duration, until);
         const S to = std::clamp(way.tau_at(sense * (end - from.position)), t, part.duration);
@@ -133,6 +136,7 @@ class ClockProof {
   struct Interval {
     BasicPhase<S> phase;
     std::optional<BasicPhase<S>> planned;
+    S most_rate;
     typename Chain::DrivenPath path;
     const BasicAxisState<S>& from;
     const BasicJerkPhase<S>& part;
@@ -159,14 +163,46 @@ class ClockProof {
         in.path.visit([&](const auto& path) { return look(path, in.phase, in.from, in.part, low, high); });
     if (answer == Answer::yes && in.planned && !no_faster(in, *in.planned, low, high))
       answer = Answer::unknown;
+    if (answer == Answer::yes && faster_than_planned(in, low, high) && !keeps_velocities(in, low, high))
+      answer = Answer::unknown;
     if (answer != Answer::unknown) return answer == Answer::yes;
     if (depth == deepest) return false;
     const S middle = low + (high - low) / S(2);
     return keeps(in, low, middle, depth + 1, work) && keeps(in, middle, high, depth + 1, work);
   }
 
-  // Whether a motion along the path is nowhere faster than planned: whether the rate of a clock that shows
-  // the planned time is 1 at most, by its Taylor series with a bound of the second derivative.
+  // Whether the rate may be above 1.
+  [[nodiscard]] static bool faster_than_planned(const Interval& in, S low, S high) {
+    return in.planned ? in.most_rate > rounding : clock_speeds(in, low, high).high > rounding;
+  }
+  // How fast a clock is, or a motion along the path.
+  [[nodiscard]] static BasicInterval<S> clock_speeds(const Interval& in, S low, S high) {
+    const BasicAxisState<S> first = in.part.after(in.from, low);
+    return speeds(first.velocity, first.acceleration, in.part.jerk, high - low);
+  }
+  // Forwards: the highest speed along the path, by the largest rate of the tool and each axis there.
+  [[nodiscard]] bool keeps_velocities(const Interval& in, S low, S high) const {
+    const auto tau_at = [&](S time) {
+      return std::clamp(in.part.after(in.from, time).position - in.phase.time, S(0), in.phase.duration);
+    };
+    const S from = tau_at(low), to = std::max(tau_at(high), from);
+    const BasicState<S> first = in.phase.at(from), last = in.phase.at(to);
+    const S speed = clock_speeds(in, low, high).high *
+                    speeds(first.velocity, first.acceleration, in.phase.jerk, to - from).high;
+    return in.path.visit([&](const auto& path) {
+      const S length = path.length();
+      const BasicPathBounds<S, n> bounds =
+          path.bounds(std::clamp(first.position, S(0), length), std::clamp(last.position, S(0), length));
+      const auto fits = [&](S rate, S limit) { return rate * speed <= limit * rounding; };
+      return fits(bounds.tool.first, limits_.tool.velocity) &&
+             std::ranges::all_of(limits_.axes, [&](const auto& axis) {
+               return fits(bounds.first[axis.axis], axis.limits.velocity);
+             });
+    });
+  }
+
+  // Whether a motion along the path has nowhere more than its highest rate: the rate of a clock that shows
+  // the planned time, by its Taylor series with a bound of the second derivative.
   [[nodiscard]] bool no_faster(const Interval& in, const BasicPhase<S>& planned, S low, S high) const {
     using Range = BasicInterval<S>;
     const BasicAxisState<S> first = in.part.after(in.from, low), last = in.part.after(in.from, high);
@@ -179,7 +215,7 @@ class ClockProof {
     if (!(speed.low > S(0))) return false;
     const Range own = speeds(first.velocity, first.acceleration, in.part.jerk, high - low);
     const Range rate(std::max(own.low, S(0)) / speed.high, own.high / speed.low);
-    if (rate.high <= S(1)) return true;
+    if (rate.high <= in.most_rate) return true;
     const Range acceleration = Range::hull(before.acceleration, behind.acceleration);
     const Range change =
         (Range::hull(first.acceleration, last.acceleration) - acceleration * rate * rate) / speed;
@@ -188,7 +224,8 @@ class ClockProof {
                          speed;
     const BasicState<S> clock = ClockRamp<M, B>::clock_of(
         {first.position, first.velocity, first.acceleration, in.part.jerk}, before, S(0));
-    return speeds(clock.velocity, clock.acceleration, second.high, high - low).high <= rounding;
+    return speeds(clock.velocity, clock.acceleration, second.high, high - low).high <=
+           in.most_rate * rounding;
   }
   // Those that are passed in a time, at a constant jerk.
   [[nodiscard]] static BasicInterval<S> speeds(S velocity, S acceleration, S jerk, S time) {

@@ -32,8 +32,9 @@ class PathBrake {
   static constexpr std::array<S, 5> shares{S(1), S(0.7), S(0.5), S(0.35), S(0.25)};
   static constexpr int levels = static_cast<int>(shares.size());
 
-  PathBrake(const Proof& proof, const std::array<int, 3>& tool, const Chain& chain)
-      : proof_(proof), tool_(tool), chain_(chain) {}
+  /// `most_rate`: how many times the planned speed it has at most, 1 or more.
+  PathBrake(const Proof& proof, const std::array<int, 3>& tool, const Chain& chain, S most_rate)
+      : proof_(proof), tool_(tool), chain_(chain), most_rate_(most_rate) {}
 
   /// From a state by the length from the start of a phase, at a level, to rest before the end of the phase
   /// `last`; nothing where none is proven with what is left of `work` (see `ClockProof`). `straight`: the
@@ -46,7 +47,8 @@ class PathBrake {
     const Motion direct(state::BasicVelocityChange<S>(from, S(0), gentle).fastest());
     const S duration = direct.duration();
     const bool in_time = !too_late(from, most_jerk);
-    if (in_time && proof_.moves(chain_, Way(chain_, phase, S(0)), last, direct, work)) return direct;
+    if (in_time && proof_.moves(chain_, Way(chain_, phase, S(0)), last, direct, most_rate_, work))
+      return direct;
     if (!std::isfinite(most_jerk) || !(duration > S(0))) return std::nullopt;
     const S longest_step =
         std::clamp(straight.acceleration_down / most_jerk, duration, S(2) * duration) / steps_in_brake;
@@ -148,7 +150,8 @@ class PathBrake {
         step.jerk += gentler * (std::min(now.jerk.high, end.jerk.high) - step.jerk);
         Motion motion(state, state);
         motion.append(step);
-        if (step.after(state, duration).velocity > S(0) && proof_.moves(chain_, way, last, motion, work))
+        if (step.after(state, duration).velocity > S(0) &&
+            proof_.moves(chain_, way, last, motion, most_rate_, work))
           return step;
         if (work < 0) return std::nullopt;
       }
@@ -186,7 +189,7 @@ class PathBrake {
       const AxisState rest{step.after(state, duration).position, S(0), S(0)};
       Motion last_step(state, rest);
       last_step.append(step);
-      if (!proof_.moves(chain_, way, last, last_step, work)) continue;
+      if (!proof_.moves(chain_, way, last, last_step, most_rate_, work)) continue;
       Motion motion(steps.start(), rest);
       for (std::size_t i = 0; i < whole; ++i) motion.append(steps.phases()[i]);
       motion.append(part, step);
@@ -198,6 +201,7 @@ class PathBrake {
   const Proof& proof_;
   const std::array<int, 3>& tool_;
   const Chain& chain_;
+  S most_rate_;
 };
 
 }  // namespace cncplan::plan

@@ -22,6 +22,10 @@ namespace cncplan::plan {
 /// A clock that shows the running time of a chain of trajectories. Its rate is 1 at the planned speed, 0 at a
 /// hold, -1 all the way back. It stands where they stand, and passes over dwells on the way back.
 ///
+/// A rate above 1 is taken for a while, where the limits leave room for it: the way there, some time at it
+/// and the way back to the planned speed are one change, which is proven as a whole. It is made longer before
+/// the way back begins.
+///
 /// A change of the rate is begun only once it is proven over all of its way (`ClockProof`). Each step looks
 /// for such a change, fast ones first, and for a faster one while one goes on. Where none is proven, the
 /// clock goes on as it does, which keeps the limits because the trajectories do. To rest it also looks for
@@ -106,8 +110,9 @@ class TrajectoryClock {
   }
 
   /// One step: dwells, leaves a rest, or drives on to the next one, at most for `left` seconds; whether more
-  /// may happen in what is left of them. `wanted()` is the rate that is asked for, `may_leave()` is asked at
-  /// rests, and `may_change(end)` before a change of the rate begins that ends where the clock shows that.
+  /// may happen in what is left of them. `wanted()` is the rate that is asked for, -1 to 2, `may_leave()` is
+  /// asked at rests, and `may_change(end, faster)` before a change of the rate begins that ends where the
+  /// clock shows that; `faster`: it takes the rate above 1.
   template <class Wanted, class MayLeave, class MayChange>
   bool step(S& left, Wanted&& wanted, MayLeave&& may_leave, MayChange&& may_change) {
     return standing_ ? leave(left, wanted, may_leave) : move(left, wanted(), may_change);
@@ -179,6 +184,13 @@ class TrajectoryClock {
   static constexpr S same_time = S(1e-9);             // s
   static constexpr S least_portion = S(0.1);
 
+  // A stretch above the planned speed: the rate that was asked for, and s from its start to its way back.
+  struct Faster {
+    static constexpr int trials = 27;
+    S asked = S(1);
+    S back_at{};
+  };
+
   [[nodiscard]] const ClockProof<M, B>& proof() const { return brakes_ ? braked_ : proof_; }
 
   // It comes to a rest, forwards or back, where a dwell is passed over.
@@ -202,7 +214,7 @@ class TrajectoryClock {
       shown_ = rest_.to - dwell_;
       if (dwell_ > S(0) || !may_leave()) return false;
     }
-    const S rate = wanted();
+    const S rate = std::min(wanted(), S(1));
     if (rate == S(0) || chain_.empty()) return false;
     const S from = rate > S(0) ? rest_.to : rest_.from;
     const auto next = rate > S(0) ? chain_.rest_after(from) : chain_.rest_before(from);
@@ -264,7 +276,7 @@ class TrajectoryClock {
     const bool stronger = std::exchange(brakes_, false);  // it was proven with the limits of the machine
     const auto ramp = brake_of_level(brake.level);
     brakes_ = stronger;
-    if (ramp && may_change(shown_at_end(*ramp))) begin(*ramp, S(0));
+    if (ramp && may_change(shown_at_end(*ramp), false)) begin(*ramp, S(0));
     search_from(S(1));
   }
   // What was proven once at the planned speed, at the rate of now.
@@ -282,6 +294,7 @@ class TrajectoryClock {
     ramp_ = ramp;
     elapsed_ = S(0);
     goal_ = goal;
+    faster_ = {};
   }
 
   void run_at(const AxisState& state) {
@@ -289,6 +302,7 @@ class TrajectoryClock {
     ramp_ = Ramp(RateMotion(state, state));
     elapsed_ = S(0);
     goal_ = state.velocity;
+    faster_ = {};
     search_from(S(1));
   }
 
@@ -301,7 +315,9 @@ class TrajectoryClock {
   template <class MayChange>
   void change_rate(S wanted, MayChange&& may_change) {
     const BasicState<S> now = state();
-    S goal = wanted;
+    if (wanted > S(1) && goal_ == S(1) && (faster_.asked > S(1) || elapsed_ >= ramp_.duration()))
+      return go_faster(now, wanted, may_change);
+    S goal = std::min(wanted, S(1));
     if (goal * now.velocity < S(0)) goal = S(0);
     const bool changes = elapsed_ < ramp_.duration();
     if (goal == goal_ && !changes) return;
@@ -311,14 +327,66 @@ class TrajectoryClock {
     S sooner = goal == goal_ ? S(0.99) * (ramp_.duration() - elapsed_) : infinity;
     const std::optional<Brake> planned = goal == S(0) ? planned_brake() : std::nullopt;
     if (planned) sooner = (planned->time - now.position + planned->duration) / goal_;
-    const S to = now.velocity + portion_ * (goal - now.velocity);
+    const S to = std::min(now.velocity + portion_ * (goal - now.velocity), S(1));
     int work = work_in_tick;
     const auto ramp = find_change(now, to, back, sooner, work);
-    if (ramp && !may_change(shown_at_end(*ramp))) return search_from(S(1));
+    if (ramp && !may_change(shown_at_end(*ramp), false)) return search_from(S(1));
     if (ramp) begin(*ramp, to);
     if (ramp || level_ == no_level) return search_from(S(1));
     if (level_ < levels) return;  // more in the next tick
     search_from(changes || planned || portion_ < least_portion ? S(1) : portion_ / S(2));
+  }
+
+  // Looks for a stretch above the planned speed that saves more time than what is left of the one that it is
+  // on, before the way back of that begins.
+  template <class MayChange>
+  void go_faster(const BasicState<S>& now, S wanted, MayChange&& may_change) {
+    constexpr S soon = S(0.02);  // s before the way back
+    const bool goes_on = elapsed_ < ramp_.duration();
+    if (goes_on &&
+        (elapsed_ > faster_.back_at || (faster_.asked == wanted && elapsed_ + soon < faster_.back_at)))
+      return;
+    const auto saved = [&](S end, S duration) { return std::min(end, high_.from) - now.position - duration; };
+    const S least = goes_on && faster_.asked <= wanted
+                        ? saved(shown_at_end(ramp_), ramp_.duration() - elapsed_) + same_time
+                        : same_time;
+    const BasicAxisLimits<S> fastest = fastest_change(now.position);
+    int work = work_in_tick;
+    for (int trial = std::exchange(trial_, 0); trial < Faster::trials; ++trial) {
+      Faster faster{.asked = wanted};
+      const RateMotion motion = faster_motion(now, fastest, trial, faster);
+      const Ramp ramp(motion);
+      const S end = shown_at_end(ramp);
+      if (!(saved(end, ramp.duration()) > least)) continue;
+      if (one_way(motion, false, std::max(wanted, now.velocity)) &&
+          proof_.holds(chain_, motion, false, high_.from, work) &&
+          may_change(std::min(end, high_.from), true)) {
+        begin(ramp, S(1));
+        faster_ = faster;
+        return;
+      }
+      if (work < 0) {
+        trial_ = trial + 1;  // more in the next tick
+        return;
+      }
+    }
+  }
+  // The highest rates, the longest stays and the fastest changes are tried first.
+  [[nodiscard]] static RateMotion faster_motion(const BasicState<S>& now, const BasicAxisLimits<S>& fastest,
+                                                int trial, Faster& faster) {
+    constexpr std::array<S, 3> portions{S(1), S(0.5), S(0.25)}, stays{S(0.1), S(0.025), S(0)};
+    constexpr std::array<int, 3> slower{3, 6, 9};  // where planned speed is constant, 3 takes all of a limit
+    const auto of = [](const auto& list, int i) { return list[static_cast<std::size_t>(i % 3)]; };
+    const S rate = S(1) + of(portions, trial / 9) * (faster.asked - S(1)), stay = of(stays, trial / 3);
+    const int level = levels_along_path + of(slower, trial);
+    const RateMotion up = change_by_time(now, rate, fastest, level);
+    const RateMotion down = change_by_time({S(0), rate, S(0), S(0)}, S(1), fastest, level);
+    faster.back_at = up.duration() + stay;
+    RateMotion motion(up.start(), {up.end().position + rate * stay + down.end().position, S(1), S(0)});
+    for (const auto& phase : up.phases()) motion.append(phase);
+    motion.append({stay, S(0), S(0)});
+    for (const auto& phase : down.phases()) motion.append(phase);
+    return motion;
   }
 
   // The next change of the rate that is proven, from where the search stands: fast ones first. Nothing where
@@ -343,7 +411,8 @@ class TrajectoryClock {
           level_ = no_level;
           return std::nullopt;
         }
-        if (one_way(motion, back) && proof().holds(chain_, motion, back, back ? low_.to : high_.from, work))
+        if (one_way(motion, back, most_rate(now.velocity)) &&
+            proof().holds(chain_, motion, back, back ? low_.to : high_.from, work))
           ramp = Ramp(motion);
       }
       if (ramp) return ramp;
@@ -360,10 +429,12 @@ class TrajectoryClock {
   struct AlongPath {
     AxisState now{};
     std::size_t phase{}, last_phase{};
+    S most_rate = S(1);
     BasicAxisLimits<S> limits;
   };
   [[nodiscard]] AlongPath along_path(const BasicState<S>& clock) const {
     AlongPath result;
+    result.most_rate = most_rate(clock.velocity);
     result.phase = chain_.phase_at(clock.position);
     result.last_phase = chain_.phase_at(high_.from);
     if (result.last_phase > result.phase && !(chain_.phase(result.last_phase).time < high_.from))
@@ -387,7 +458,7 @@ class TrajectoryClock {
     return result;
   }
   [[nodiscard]] std::optional<Ramp> brake_along(const AlongPath& along, int level, int& work) const {
-    const PathBrake<M, B> brake(proof(), tool_, chain_);
+    const PathBrake<M, B> brake(proof(), tool_, chain_, along.most_rate);
     const auto motion = brake.find(along.now, along.phase, along.last_phase, along.limits, level, work);
     if (!motion) return std::nullopt;
     return Ramp(*motion, along.phase);
@@ -423,11 +494,14 @@ class TrajectoryClock {
     return limits;
   }
 
-  // Whether the rate stays between 0 and 1, in its direction.
-  [[nodiscard]] static bool one_way(const RateMotion& motion, bool back) {
+  // How many times the planned speed a change may have that begins at a rate.
+  [[nodiscard]] S most_rate(S now) const { return std::max({S(1), faster_.asked, now}); }
+
+  // Whether the rate stays between 0 and a highest one, in its direction.
+  [[nodiscard]] static bool one_way(const RateMotion& motion, bool back, S most) {
     constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
     const auto within = [&](S rate) {
-      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= S(1) + rounding;
+      return (back ? -rate : rate) >= -rounding && (back ? -rate : rate) <= most + rounding;
     };
     AxisState state = motion.start();
     for (const auto& phase : motion.phases()) {
@@ -455,6 +529,8 @@ class TrajectoryClock {
   S asked_{};         // the one that is looked for
   S portion_ = S(1);  // of the way to it, and how slow the change: where the search goes on
   int level_ = 0;
+  Faster faster_;  // that goes on
+  int trial_ = 0;  // where the search for one goes on
 };
 
 }  // namespace cncplan::plan

@@ -44,8 +44,9 @@ using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
 /// then, or allow for longer holds. Refused as well is one that does not begin and end at rest, as a part of
 /// a `SmoothStream`, and a machine that `validate` refuses.
 ///
-/// Unlike in `Executor`, a lower override slows all of the motion, its ramps too, and the program is there as
-/// a whole. The trajectory must outlive it. Nothing is allocated once it is made.
+/// Unlike in `Executor`, a lower override slows all of the motion, its ramps too; a higher one acts where the
+/// limits leave room for it; and the program is there as a whole. The trajectory must outlive it. Nothing is
+/// allocated once it is made.
 template <MachineModel M, BlockModel B>
   requires(!MappedModel<M>)
 class TrajectoryExecutor {
@@ -82,8 +83,9 @@ class TrajectoryExecutor {
   /// Comes to rest as soon as a proven change of the rate allows; `resume` goes on, and behind M0 and M1 too.
   void feed_hold() { held_ = true; }
   void resume() { held_ = stopped_; }
-  /// Share of the planned speed, 0 to 1; 0 is a hold, and so is what is no number. Values outside are cut.
-  void feed_override(Scalar share) { share_ = share > Scalar(0) ? std::min(share, Scalar(1)) : Scalar(0); }
+  /// Share of the planned speed, 0 to 2; 0 is a hold, and so is what is no number. Values outside are cut.
+  /// Above 1 it is reached where what is planned leaves room for it: not in rapids, at corners and on ramps.
+  void feed_override(Scalar share) { share_ = share > Scalar(0) ? std::min(share, Scalar(2)) : Scalar(0); }
   /// Comes to rest as `feed_hold` does, and the program ends there.
   void stop() { held_ = stopped_ = true; }
   /// Runs back along the path, to its start if need be, or forwards again. It comes to rest in between.
@@ -114,7 +116,7 @@ class TrajectoryExecutor {
     const auto tell = [&] { return tell_words(period - left); };
     while (left > Scalar(0)) {
       const bool goes_on = clock_.step(
-          left, [this] { return wanted(); }, tell, [](const auto&) { return true; });
+          left, [this] { return wanted(); }, tell, [](Scalar, bool) { return true; });
       tell();
       if (!goes_on) break;
     }
@@ -169,7 +171,15 @@ class TrajectoryExecutor {
     return last_period_;
   }
 
-  [[nodiscard]] Scalar wanted() const { return held_ ? Scalar(0) : backwards_ ? -share_ : share_; }
+  [[nodiscard]] Scalar wanted() const {
+    if (held_) return Scalar(0);
+    const bool planned_at_most = share_ > Scalar(1) && (backwards_ || rapid());
+    const Scalar share = planned_at_most ? Scalar(1) : share_;
+    return backwards_ ? -share : share;
+  }
+  [[nodiscard]] bool rapid() const {
+    return !clock_.chain().empty() && clock_.chain().block_at(clock_.state().position).rapid;
+  }
 
   // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
   // no room for more of them: they come with the next one.

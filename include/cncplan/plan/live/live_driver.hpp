@@ -137,7 +137,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   void look(S period) override {
     take_parts();
-    planner_.left(seen_, way_end() - clock_.state().position);
+    planner_.left(seen_, (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
     let_go_where_none_come(period);
     if (background_) return;
     planner_.plan();
@@ -293,13 +293,13 @@ class LiveDriver final : public LevelDriver<M, B> {
     S share = feed_share_;
     if (!clock_.chain().empty()) {
       const S now = clock_.state().position;
-      if (clock_.chain().block_at(now).rapid)
-        share = rapid_share_;
-      else
-        share =
-            std::min(share / planner_.shares().share_of(clock_.chain().number_at(now), oldest_block()), S(1));
+      share = clock_.chain().block_at(now).rapid ? rapid_share_ : share / planned_share(now);
     }
-    return backwards_ ? -share : share;
+    return backwards_ ? -std::min(share, S(1)) : pauses() ? std::min(share, S(1)) : share;
+  }
+  // Of its feed, by which the block is planned that is driven at a time.
+  [[nodiscard]] S planned_share(S time) {
+    return planner_.shares().share_of(clock_.chain().number_at(time), oldest_block());
   }
   [[nodiscard]] std::int64_t oldest_block() const {
     return static_cast<std::int64_t>(planner_.part(oldest_).motion->trajectory.first_block());
@@ -311,13 +311,15 @@ class LiveDriver final : public LevelDriver<M, B> {
       tell_words(period - left);
       return false;
     }
-    if (tail_ahead_ && !clock_.heads_back() && clock_.state().position + left >= cut_) take_tail();
+    if (tail_ahead_ && !clock_.heads_back() &&
+        clock_.state().position + std::max(clock_.state().velocity, S(1)) * left >= cut_)
+      take_tail();
     if (!clock_.standing()) brake_for_pause(period);
     const S before = left;
     const bool stood = clock_.standing();
     const bool goes_on = clock_.step(
         left, [this] { return wanted(); }, [&] { return may_leave(period - left); },
-        [this](S end) { return may_change(end); });
+        [this](S end, bool faster) { return faster ? may_go_faster(end) : may_change(end); });
     tell_words(period - left);
     const S used = before - left;
     if (!stood && used > S(0) &&
@@ -329,6 +331,10 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   // A change of the rate that leads beyond a cut is one along the tail.
   bool may_change(S end) { return !tail_ahead_ || !(end > cut_) || take_tail(); }
+  // Above the planned speed it drives along no tail, and no block that is planned for another share.
+  bool may_go_faster(S end) {
+    return !(tail_ahead_ && end > cut_) && planned_share(end) == planned_share(clock_.state().position);
+  }
   bool may_leave(S in_tick) {
     if (!tell_words(in_tick)) return false;
     if (!held_ && pauses())
