@@ -222,7 +222,7 @@ struct Brakes : Clocked {
   bool proven(double at, const state::Motion& brake) const {
     int work = 20000;
     const plan::PhasesByLength<Machine<3>, B> way(chain, trajectory->phase_at(at), 0.0);
-    return proof.moves(chain, way, trajectory->phases().size() - 1, AlongPath(brake), work);
+    return proof.moves(chain, way, trajectory->phases().size() - 1, AlongPath(brake), 1, work);
   }
 
   const Trajectory<Machine<3>, B>* trajectory{};
@@ -309,7 +309,7 @@ TEST_CASE("clock: brakes that are made step by step keep the limits, wherever th
   const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
   Clocked clocked(trajectory, machine);
   const auto tool = tool_axes(machine);
-  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain);
+  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
   Random random;
   int found = 0, tried = 0;
   for (int i = 0; i < 200; ++i) {
@@ -354,7 +354,7 @@ TEST_CASE("clock: a brake on a straight line takes little more than the least ti
   const auto trajectory = planned("F1800 G1 X50\n", with_reserve(mill, 0.05));
   Clocked clocked(trajectory, mill);
   const auto tool = tool_axes(mill);
-  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain);
+  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
   for (double at = 0.005; at < 1.4; at += 0.03) {
     const auto now = trajectory.at(at).along;
     const std::size_t phase = trajectory.phase_at(at);
