@@ -121,7 +121,7 @@ TEST_CASE("trajectory executor: an override stretches the motion, but no dwell",
     held.feed_override(share);
     run(held, 0.1);
     CHECK(held.rests());
-    held.feed_override(7);  // no faster than planned
+    held.feed_override(7);  // 2, but the feed is the limit of the machine
     run(held, 0.2);
     CHECK(held.clock().velocity == 1);
   }
