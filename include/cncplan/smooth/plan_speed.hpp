@@ -73,6 +73,17 @@ template <std::floating_point S, int N>
   return back;
 }
 
+/// By how much velocities are lowered in a cell from the start: where it turns much, they may be higher
+/// between the three places at which the law is held to the limits than at any of them.
+template <std::floating_point S, int N>
+[[nodiscard]] S proven_pace(const BasicSpeedCell<S, N>& cell, const BasicMotionLimits<S, N>& limits) {
+  constexpr S rounding = S(1e-5);
+  if (!(cell.length > S(0))) return S(1);
+  const S sampled = sampled_use(cell, limits, {S(1), S(1), S(1)}).velocity;  // at 1 mm/s
+  const S proven = use_of({S(0), cell.length, S(0), S(1), S(0), S(0)}, cell, limits).velocity;
+  return proven > sampled * (S(1) + rounding) ? sampled / proven : S(1);
+}
+
 }  // namespace detail
 
 /// Calls `emit(cell, phase)` for the phases of a law, in order; time counts from the start, position from
@@ -130,7 +141,8 @@ template <std::floating_point S, int N>
   const auto law = memory.law.first(inner + 2);
   const auto paces = memory.paces.first(cells.size());
   const auto levels = memory.levels.first(inner);
-  for (std::size_t i = 0; i < cells.size(); ++i) paces[i] = {S(1), cells[i].pace};
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    paces[i] = {options.window.proven ? detail::proven_pace(cells[i], limits) : S(1), cells[i].pace};
   const BasicSpeedProblem<S, N> problem{cells.subspan(1, inner), paces.subspan(1, inner), &limits};
   const BasicSpeedProblem<S, N> sought{problem.cells.subspan(ends.given), problem.paces.subspan(ends.given),
                                        &limits};

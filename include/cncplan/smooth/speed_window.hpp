@@ -168,7 +168,9 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
       const BasicCellSpeed<S> b = speed_in(cell, numbers);
       const BasicUse<S> sampled = sampled_use(problem.cells[cell], *problem.limits, b);
-      if (sampled.force() < S(0.8) && sampled.velocity < S(0.99)) continue;  // far from all limits
+      const bool far_from_limits =
+          sampled.force() < S(0.8) && sampled.velocity < S(0.99) * problem.paces[cell].speed;
+      if (far_from_limits) continue;
       BasicUse<S> use;
       emit_cell(b, problem.cells[cell].shape(), [&](const BasicPhase<S>& phase) {
         use.include(use_of(phase, problem.cells[cell], *problem.limits));
