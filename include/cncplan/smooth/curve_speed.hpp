@@ -172,6 +172,15 @@ class CurveSpeed {
     return *plan;
   }
 
+  /// The time of the last plan to a place, by the band's length.
+  [[nodiscard]] S time_before(S place, const BasicSpeedPlan<S>& plan) const {
+    S time = S(0);
+    emit_phases(cells(), law(), plan.start, plan.end, [&](std::size_t cell, const BasicPhase<S>& phase) {
+      if (starts_[cell] < place) time = phase.time + phase.duration;
+    });
+    return time;
+  }
+
   /// b of the last plan in each cell of the curve.
   [[nodiscard]] std::pmr::vector<S> speeds_sq(std::size_t curve_cells) const {
     std::pmr::vector<S> sums(curve_cells, S(0), memory_), lengths(curve_cells, S(0), memory_);

@@ -36,9 +36,9 @@ struct BasicSmoothPiece {
 
 template <std::floating_point S>
 struct BasicSmoothOptions {
-  int passes = 1;          ///< of geometry, each after one of speed
   int joint_rounds = 2;    ///< of geometry and speed together
-  S joint_loss = S(0.03);  ///< of the time that is lost to the feeds: a round that costs more is taken back
+  S smooth_loss = S(0.1);  ///< of the time that is lost to the feeds: smoothing that costs more is taken back
+  S joint_loss = S(0.03);  ///< the same of a round
   BasicJointOptions<S> joint{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
@@ -146,27 +146,31 @@ class SmoothRun {
     end_.reset();
   }
 
-  // The time that the curve takes, about.
-  S coarse_time() {
+  // The speed along the curve, about.
+  BasicSpeedPlan<S> coarse_plan() {
     deviation_ = band_.settle(work_.so_far());
     speed_.take(band_, false, ends_, approach_);
-    return speed_.plan(options_.coarse_gap, false, true, work_.next(Work::coarse_speed)).duration;
+    return speed_.plan(options_.coarse_gap, false, true, work_.next(Work::coarse_speed));
   }
+  S coarse_time() { return coarse_plan().duration; }
 
   void move_curve() {
-    for (int pass = 0; pass < options_.passes; ++pass) {
-      if (!std::isfinite(coarse_time())) return;
-      // Far within them nothing is gained.
-      if (pass == 0)
-        speed_.uniform_stretches([&](std::size_t first, std::size_t last) { band_.hold(first, last); });
-      band_.smoothen(speed_.speeds_sq(band_.cell_count()), work_.next(Work::curve));
-    }
-    S time = S(0);
-    if (options_.joint_rounds > 0)
-      time = coarse_time();
-    else
+    const auto start = coarse_plan();
+    if (!std::isfinite(start.duration)) return;
+    start_time_ = speed_.time_before(end_ ? band_.cell_start(end_->cell) : band_.length(), start);
+    // Far within uniform stretches nothing is gained.
+    speed_.uniform_stretches([&](std::size_t first, std::size_t last) { band_.hold(first, last); });
+    band_.smoothen(speed_.speeds_sq(band_.cell_count()), work_.next(Work::curve));
+    if (options_.joint_rounds == 0) {
       deviation_ = band_.settle(work_.so_far());
+      return;
+    }
     const S at_feeds = time_at_feeds();
+    S time = coarse_time();
+    if (time - start.duration > options_.smooth_loss * (start.duration - at_feeds)) {
+      band_.reset();
+      time = coarse_time();
+    }
     for (int round = 0; round < options_.joint_rounds; ++round) {
       points_.assign(band_.points().begin(), band_.points().end());
       const S last = time;
@@ -278,7 +282,7 @@ class SmoothRun {
     Work() = default;
     Work(const Progress& progress, const BasicSmoothOptions<S>& options)
         : progress_(progress),
-          all_(options.passes * (coarse_speed + curve) + (options.joint_rounds > 0 ? coarse_speed : 0) +
+          all_(coarse_speed + curve + (options.joint_rounds > 0 ? coarse_speed : 0) +
                options.joint_rounds * (curve_and_speed + coarse_speed) + speed) {}
 
     [[nodiscard]] Progress next(double amount) {
@@ -312,6 +316,7 @@ class SmoothRun {
   std::pmr::vector<Vector> points_{memory_};  // before a round
   std::pmr::vector<BasicLimitedRow<S, N>> limited_{memory_};
   S deviation_{};
+  S start_time_ = std::numeric_limits<S>::infinity();  // about, on the curve that the search begins with
 };
 
 template <std::floating_point S, int N, class Seen>
@@ -382,14 +387,23 @@ auto SmoothRun<S, N, Seen>::plan(const Progress& progress) -> Plan {
   if (end_) band_.pin(end_->cell);
   move_curve();
   let_go_beyond_end();
+  const auto time = [](const Plan& plan) { return plan.speed.duration * plan.speed.slow_down; };
   Plan fastest = make_plan(true);
-  if (deviation_ <= S(1) && std::isfinite(fastest.duration)) return fastest;
-  // Where a run is cut neither curve nor speed can give way: then on the curve of which it was known.
+  const bool works = deviation_ <= S(1) && std::isfinite(fastest.duration);
+  if (works && time(fastest) <= start_time_) return fastest;
+  // On the curve that the search began with: that is faster, or neither curve nor speed can give way where
+  // the run is cut, which is known to work there.
+  points_.assign(band_.points().begin(), band_.points().end());
   band_.reset();
   deviation_ = band_.settle(work_.so_far());
-  fastest = make_plan(true);
-  if (!std::isfinite(fastest.duration)) fastest = make_plan(false);
-  return fastest;
+  Plan at_start = make_plan(true);
+  if (works && !(time(at_start) < time(fastest))) {
+    band_.set_points(points_);
+    deviation_ = band_.settle(work_.so_far());
+    return fastest;
+  }
+  if (!std::isfinite(at_start.duration)) return make_plan(false);
+  return at_start;
 }
 
 template <std::floating_point S, int N, class Seen>
