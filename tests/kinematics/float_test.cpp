@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "cncplan/junction/deviation.hpp"
 #include "cncplan/kinematics/cartesian.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
@@ -42,7 +43,8 @@ Summary summary(const std::vector<B>& blocks, const M& machine) {
               .template cast<double>());
     origin += length;
   }
-  const auto trajectory = plan_blocks(blocks, machine, {.tolerance = 0});
+  using S = typename M::Scalar;
+  const auto trajectory = plan_blocks(blocks, machine, junction::BasicDeviation<S>{S(0.01)});
   REQUIRE(trajectory);
   result.duration = static_cast<double>(trajectory->duration());
   return result;

@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "cncplan/junction/deviation.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 #include "cncplan/path/arc_from_center.hpp"
@@ -105,7 +106,7 @@ TEST_CASE("axes keep their limits over wall, kink and corners", "[motion]") {
   }
   CHECK(kinks == 4);
   CHECK(resting == kinks);
-  const auto trajectory = plan_blocks(program.blocks(), machine, {.tolerance = 0});
+  const auto trajectory = plan_blocks(program.blocks(), machine, junction::Deviation{0.01});
   REQUIRE(trajectory);
   const auto piece = [&](const auto& point) {
     return trajectory->program()[point.block].path.template as<plan::WallPath>()->curve().map.piece;
@@ -139,7 +140,8 @@ TEST_CASE("axes keep their limits over wall, kink and corners", "[motion]") {
     const auto blocks = trajectory->blocks();
     for (std::size_t i = 1; i < blocks.size(); ++i)
       if (blocks[i - 1].line != blocks[i].line) CHECK(blocks[i].entry == 0);
-    const auto passing = plan_blocks(on_wall(sidewall, art, false).blocks(), machine, {.tolerance = 0});
+    const auto passing =
+        plan_blocks(on_wall(sidewall, art, false).blocks(), machine, junction::Deviation{0.01});
     REQUIRE(passing);
     CHECK(passing->duration() < trajectory->duration());
   }
@@ -154,7 +156,8 @@ TEST_CASE("every sample of the plan stands on the wall, and C goes on without a 
   REQUIRE(arc);
   const auto program = on_wall(
       sidewall, {line({60, 0, 0.5}, {100, 0, 0.5}), *arc, line({100, 0, 0.5}, {80, -30, 0.5})}, false);
-  const auto trajectory = plan_blocks(program.blocks(), test::wall_machine<double>(), {.tolerance = 0});
+  const auto trajectory =
+      plan_blocks(program.blocks(), test::wall_machine<double>(), junction::Deviation{0.01});
   REQUIRE(trajectory);
   const TireMold machine{.tool_length = 20.8};
   double off_wall = 0, jump = 0, last = 0, highest = 0;
@@ -282,7 +285,7 @@ TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[
         Approx(std::abs(40 * -41 + 80 * 20) / std::hypot(80, 41)));  // by cross product
   CHECK(refused.error().bound == 1.0);
 
-  const auto trajectory = plan_blocks(wanted, machine, {.tolerance = 0});
+  const auto trajectory = plan_blocks(wanted, machine, junction::Deviation{0.01});
   REQUIRE(trajectory);
   const auto worst = measure(*trajectory, 1e-3,
                              [](const auto& before, const auto& after) { return before.line == after.line; });

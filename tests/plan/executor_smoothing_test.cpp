@@ -76,13 +76,13 @@ test::ExecutorFaults held_at(int hold, const std::vector<B>& blocks, double tole
 }  // namespace
 
 TEST_CASE("within a tolerance no request makes three axes jump at a joint", "[executor]") {
-  disturb(test::slow_axes<double>, "", 100);
+  disturb(test::slow_axes<double>, "", 30);
 }
 TEST_CASE("within a tolerance no request makes six axes jump at a joint", "[executor]") {
-  disturb(test::six_axes, "ACU", 40);
+  disturb(test::six_axes, "ACU", 8);
 }
 TEST_CASE("within a tolerance no request makes axes jump at a joint in float", "[executor]") {
-  disturb(test::slow_axes<float>, "", 400, 1e-3, 4e-5);
+  disturb(test::slow_axes<float>, "", 120, 1e-3, 4e-5);
 }
 TEST_CASE("a hold goes on over a cell that is as short as rounding", "[executor]") {
   const auto blocks = test::blocks_of({"F1095", "G2 X0.004397 Y-0.019868 I-0.408014 J-0.100729",

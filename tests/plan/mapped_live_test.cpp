@@ -277,10 +277,8 @@ TEST_CASE("under a map: an executor at the level good does not rest between bloc
 }
 
 TEST_CASE("under a map: an executor at the level good under random requests", "[mapped-live]") {
-  for (int i = 0; i < 3; ++i) {
-    live<Polar>(SmoothLevel::good, true);
-    live<FiveAxes>(SmoothLevel::good, true);
-  }
+  live<Polar>(SmoothLevel::good, true);
+  live<FiveAxes>(SmoothLevel::good, true);
 }
 
 TEST_CASE("under a map: the tool and joints are jogged amid a program at every level", "[mapped-live]") {

@@ -5,7 +5,7 @@ separate_arguments(flags UNIX_COMMAND "${FLAGS}")
 file(GLOB headers RELATIVE ${INCLUDE} ${INCLUDE}/cncplan/core/*.hpp)
 
 function(compile header options result said)
-  execute_process(COMMAND ${CXX} -x c++ -std=c++20 ${options} -fsyntax-only ${flags} ${INCLUDE}/${header}
+  execute_process(COMMAND ${CXX} -x c++ -std=c++20 ${options} -fsyntax-only -Wfatal-errors ${flags} ${INCLUDE}/${header}
     RESULT_VARIABLE failed ERROR_VARIABLE text OUTPUT_QUIET)
   set(${result} ${failed} PARENT_SCOPE)
   set(${said} "${text}" PARENT_SCOPE)

@@ -56,7 +56,7 @@ TEST_CASE("real programs keep limits and tolerance") {
 
 TEST_CASE("random programs keep limits and tolerance") {
   Random random;
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 6; ++i) {
     HostOptions options;
     options.velocity = random.log_uniform(5.0, 100.0);
     options.acceleration = random.log_uniform(200.0, 3000.0);

@@ -496,7 +496,7 @@ TEST_CASE("the queue says when it is full, and takes some more") {
 
 TEST_CASE("random requests at random instants") {
   const char* const count = std::getenv("CNCPLAN_TP_SEQUENCES");
-  const int sequences = count != nullptr ? std::atoi(count) : 40;
+  const int sequences = count != nullptr ? std::atoi(count) : 20;
   const auto first = cncplan::test::seed();
   for (int k = 0; k < sequences; ++k) {
     Random random(first + static_cast<std::uint64_t>(k));
