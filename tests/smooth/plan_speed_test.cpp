@@ -118,6 +118,34 @@ TEST_CASE("cells with a pace of their own keep to its share of the limits, and o
   CHECK(fast > l.jerk * 0.9);
 }
 
+TEST_CASE("motion may begin and end faster than the search does on bends") {
+  // Round a circle at speeds that take 0.7 of the acceleration; the search begins with half of it.
+  const Limits l{30, 1000, 1e5};
+  const double curvature = 7, step = 0.01, length = 8;
+  std::vector<SpeedCell<3>> cells;
+  const auto add = [&](double h, double s) {
+    const double c = std::cos(curvature * s), d = std::sin(curvature * s);
+    cells.push_back({h, l.velocity, Vector3(c, d, 0), curvature * Vector3(-d, c, 0),
+                     -curvature * curvature * Vector3(c, d, 0), Vector3::Zero(), 0});
+  };
+  add(0, 0);
+  for (int i = 0; i < length / step; ++i) add(step, i * step);
+  add(0, length);
+  MotionLimits<3> limits;
+  limits.tool = l;
+  Memory memory(cells.size());
+  for (const auto& [start, end] : {std::pair(10.0, 10.0), std::pair(10.0, 6.0), std::pair(6.0, 10.0)})
+    for (const bool fastest : {false, true}) {
+      CAPTURE(start, end, fastest);
+      const auto plan =
+          plan_speed<double, 3>(cells, limits, {{5e-4}, 400, fastest}, memory.spans(), {start, end});
+      CHECK(plan.use.slow_down() <= 1);
+      const double best = length / std::sqrt(l.acceleration / curvature);
+      CHECK(plan.duration > best);
+      CHECK(plan.duration < (fastest ? 1.05 : 1.6) * best);
+    }
+}
+
 TEST_CASE("next to rest cells may be of any lengths") {
   const Limits l{30, 1000, 1e4};
   const double best = seven_phases(20, l);

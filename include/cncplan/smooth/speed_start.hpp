@@ -98,6 +98,24 @@ class Plateaus {
       if (fit == Fit::joined) i = std::min(i + 1, size_ - 1);
     }
   }
+  /// The first plateau, or the last one, stays, for motion has its speed there: it becomes longer, until
+  /// there is room for the ramp down to a lower neighbour.
+  void lengthen(bool last) {
+    while (size_ > 1) {
+      BasicPlateau<S>& own = all_[last ? size_ - 1 : 0];
+      BasicPlateau<S>& next = all_[last ? size_ - 2 : 1];
+      const S need = ramp_down(own, next);
+      if (!(need > own.to - own.from)) return;
+      const S of_next = size_ > 2 ? ramp_down(next, all_[last ? size_ - 3 : 2]) : S(0);
+      const bool fits = own.to - own.from + next.to - next.from > need + of_next;
+      if (last)
+        own.from = next.to = fits ? own.to - need : next.from;
+      else
+        own.to = next.from = fits ? own.from + need : next.to;
+      if (fits) return;
+      erase(last ? size_ - 2 : 1);
+    }
+  }
   [[nodiscard]] std::span<const BasicPlateau<S>> all() const { return all_.first(size_); }
 
  private:
@@ -141,6 +159,11 @@ class Plateaus {
       erase(i);
     }
     return Fit::joined;
+  }
+  // The length of the ramp to a plateau that is lower.
+  [[nodiscard]] S ramp_down(const BasicPlateau<S>& from, const BasicPlateau<S>& to) const {
+    if (!(to.speed_sq < from.speed_sq)) return S(0);
+    return BasicGentleRamp<S>(to.speed_sq, from.speed_sq, limits_).length();
   }
   void erase(std::size_t i) {
     for (std::size_t k = i + 1; k < size_; ++k) all_[k - 1] = all_[k];
@@ -230,6 +253,8 @@ BasicGentleEnds<S> gentle_law(const BasicSpeedProblem<S, N>& problem, std::span<
     if (cell >= from.cells()) plateaus.push({levels[cell], low, at});
   }
   plateaus.push({comes, at, length});
+  if (!start.from_rest()) plateaus.lengthen(false);
+  if (!end.from_rest()) plateaus.lengthen(true);
   const auto all = plateaus.all();
   std::size_t index = 0;
   const auto value = [&](S s) {
