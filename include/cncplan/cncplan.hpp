@@ -298,6 +298,7 @@
 #include "cncplan/smooth/speed_law.hpp"
 #include "cncplan/smooth/speed_start.hpp"
 #include "cncplan/smooth/speed_window.hpp"
+#include "cncplan/smooth/spline_through.hpp"
 #include "cncplan/smooth/time_optimal.hpp"
 #include "cncplan/smooth/uniform.hpp"
 #include "cncplan/state/axis_motions.hpp"
