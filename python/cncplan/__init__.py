@@ -15,10 +15,11 @@ from ._core import version as __version__
 from ._errors import Error
 from ._executor import Executor
 from ._machine import Axis, Machine
-from ._motion import Motion, Profile, ProfileState, State, move_to, profile, reach_velocity
+from ._motion import (CurveMotion, Motion, Profile, ProfileState, State, move_to, profile, reach_velocity,
+                      time_optimal)
 from ._program import Program, read_program, write_gcode
 from ._trajectory import Peaks, Samples, SetPoint, Trajectory, plan_blocks, plan_file, plan_text
 
-__all__ = ["Axis", "Block", "Error", "Executor", "Machine", "Motion", "Peaks", "Profile", "ProfileState", "Program",
-           "Samples", "SetPoint", "State", "Trajectory", "arc", "curve", "line", "move_to", "plan_blocks", "plan_file",
-           "plan_text", "profile", "reach_velocity", "read_program", "write_gcode"]
+__all__ = ["Axis", "Block", "CurveMotion", "Error", "Executor", "Machine", "Motion", "Peaks", "Profile", "ProfileState",
+           "Program", "Samples", "SetPoint", "State", "Trajectory", "arc", "curve", "line", "move_to", "plan_blocks",
+           "plan_file", "plan_text", "profile", "reach_velocity", "read_program", "time_optimal", "write_gcode"]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import Error, choice, integer, kind, not_negative, number, row
+from ._errors import Error, choice, integer, kind, not_negative, number, row, rows
 from ._machine import Machine, core_of
 
 _SYNCHRONIZATIONS = ("time", "phase", "none")
@@ -141,6 +141,66 @@ class Profile:
         """The motion at t seconds, or at n instants."""
         found = self._core.at(_times(t))
         return ProfileState(*(array[0].item() if np.ndim(t) == 0 else array for array in found))
+
+
+class CurveMotion:
+    """The motion of axes along a smooth curve through points, from 0 to `duration`."""
+
+    def __init__(self, core: Any, axes: int) -> None:
+        self._core = core
+        self._axes = axes
+
+    @property
+    def duration(self) -> float:
+        """s"""
+        return self._core.duration()
+
+    @property
+    def parameters(self) -> np.ndarray:
+        """(n,) the curve's parameter at each of the points, from 0 on."""
+        return self._core.knots()
+
+    @property
+    def phases(self) -> np.ndarray:
+        """The phases of constant jerk of the curve's parameter, as a structured array: as `Profile.phases`."""
+        return np.asarray(self._core.phases()).view(PHASE_DTYPE)
+
+    def along(self, t: float | Sequence[float] | np.ndarray) -> ProfileState:
+        """The curve's parameter and its time derivatives at t seconds, or at n instants."""
+        found = self._core.along(_times(t))
+        return ProfileState(*(array[0].item() if np.ndim(t) == 0 else array for array in found))
+
+    def at(self, t: float | Sequence[float] | np.ndarray) -> State:
+        """All axes at t seconds: arrays of shape (axes,), or (n, axes) for n instants."""
+        found = self._core.at(_times(t), self._axes)
+        return State(*(array[0] if np.ndim(t) == 0 else array for array in found))
+
+
+def time_optimal(points: Sequence[Sequence[float]] | np.ndarray, machine: Machine, *,
+                 parameters: Sequence[float] | np.ndarray | None = None, start: float = 0.0, end: float = 0.0,
+                 gap: float = 3e-4) -> CurveMotion:
+    """The fastest motion of a machine's axes along the cubic spline through points, under the limits of velocity,
+    acceleration and jerk of the tool and of each axis, which it provably keeps everywhere.
+
+    The spline is natural: its second derivative is 0 at both ends.
+
+    Parameters
+    ----------
+    points : (n, axes)
+        Two at least, of all axes of the machine; mm and rad.
+    machine : Machine
+        The tool or all of X, Y, Z need limits, and each other axis that moves.
+    parameters : (n,), optional
+        Where the points are on the curve, ascending, of any unit. Without them as far apart as the points.
+    start, end : float
+        Velocities of the parameter at both ends, without acceleration; 0: at rest.
+    gap : float
+        How far from the least time the search may end, as a share of it, > 0.
+    """
+    given = rows(points, "points", (None, len(machine)))
+    at = [] if parameters is None else rows(parameters, "parameters", (len(given),)).tolist()
+    return CurveMotion(_core.time_optimal(core_of(machine), given, at, not_negative(start, "start"),
+                                          not_negative(end, "end"), number(gap, "gap")), len(machine))
 
 
 def profile(length: float, start: float = 0.0, end: float = 0.0, *, velocity: float, acceleration: float,

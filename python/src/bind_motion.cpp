@@ -7,9 +7,12 @@
 
 #include "bindings.hpp"
 #include "cncplan/path/b_spline_through.hpp"
+#include "cncplan/plan/curve_limits.hpp"
 #include "cncplan/plan/move_to.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
+#include "cncplan/smooth/spline_through.hpp"
+#include "cncplan/smooth/time_optimal.hpp"
 #include "fault.hpp"
 
 namespace cncplan::python {
@@ -31,6 +34,55 @@ RoomyMachine roomy(const AnyMachine& from) {
 
 using Rows = std::array<std::vector<double>, 3>;
 
+using Spline = smooth::SplineThrough<room>;
+
+/// The fastest motion along a curve of its own.
+struct CurveMotion {
+  Spline curve;
+  PhaseProfile along;
+
+  CurveMotion(const AnyMachine& machine, const Numbers& points, const std::vector<double>& parameters,
+              const TimeOptimalOptions& options)
+      : curve(curve_through(points, parameters)),
+        along(value_of(time_optimal(curve, plan::motion_limits(roomy(machine)), options))) {}
+
+ private:
+  static Spline curve_through(const Numbers& points, const std::vector<double>& parameters) {
+    std::vector<Spline::Vector> given(static_cast<std::size_t>(points.shape(0)), Spline::Vector::Zero());
+    for (py::ssize_t i = 0; i < points.shape(0); ++i)
+      for (py::ssize_t axis = 0; axis < points.shape(1); ++axis)
+        given[static_cast<std::size_t>(i)][axis] = points.data()[i * points.shape(1) + axis];
+    return value_of(Spline::make(given, parameters));
+  }
+};
+
+// Position, velocity and acceleration of axes, (n, axes) each: those of row i by `write(i, three rows)`.
+template <class Write>
+py::tuple states_at(std::size_t n, std::size_t axes, const Write& write) {
+  std::array<Numbers, 3> out;
+  for (Numbers& array : out)
+    array = Numbers(std::vector<py::ssize_t>{static_cast<py::ssize_t>(n), static_cast<py::ssize_t>(axes)});
+  for (std::size_t i = 0; i < n; ++i)
+    write(i, out[0].mutable_data() + i * axes, out[1].mutable_data() + i * axes,
+          out[2].mutable_data() + i * axes);
+  return py::make_tuple(out[0], out[1], out[2]);
+}
+
+// Motion along a path: position, velocity, acceleration and jerk, (n,) each.
+template <class P>
+py::tuple along_at(const P& profile, const Numbers& times) {
+  const std::vector<py::ssize_t> shape{times.size()};
+  Numbers s(shape), v(shape), a(shape), j(shape);
+  for (py::ssize_t i = 0; i < times.size(); ++i) {
+    const State state = profile.at(times.data()[i]);
+    s.mutable_data()[i] = state.position;
+    v.mutable_data()[i] = state.velocity;
+    a.mutable_data()[i] = state.acceleration;
+    j.mutable_data()[i] = state.jerk;
+  }
+  return py::make_tuple(s, v, a, j);
+}
+
 States states_of(const Rows& rows) { return {places_of(rows[0]), places_of(rows[1]), places_of(rows[2])}; }
 
 }  // namespace
@@ -45,17 +97,13 @@ void bind_motion(py::module_& module) {
              return array_of(durations);
            })
       .def("at", [](const AxesMove& move, const Numbers& times, std::size_t axes) {
-        const auto n = static_cast<std::size_t>(times.size());
-        std::array<Numbers, 3> out;
-        for (Numbers& array : out)
-          array = Numbers(std::vector<py::ssize_t>{times.size(), static_cast<py::ssize_t>(axes)});
-        for (std::size_t row = 0; row < n; ++row) {
-          const States state = move.at(times.data()[row]);
-          std::copy_n(state.position.begin(), axes, out[0].mutable_data() + row * axes);
-          std::copy_n(state.velocity.begin(), axes, out[1].mutable_data() + row * axes);
-          std::copy_n(state.acceleration.begin(), axes, out[2].mutable_data() + row * axes);
-        }
-        return py::make_tuple(out[0], out[1], out[2]);
+        return states_at(static_cast<std::size_t>(times.size()), axes,
+                         [&](std::size_t i, double* position, double* velocity, double* acceleration) {
+                           const States state = move.at(times.data()[i]);
+                           std::copy_n(state.position.begin(), axes, position);
+                           std::copy_n(state.velocity.begin(), axes, velocity);
+                           std::copy_n(state.acceleration.begin(), axes, acceleration);
+                         });
       });
   module.def("move_to", [](const AnyMachine& machine, const Rows& from, const Rows& to, int synchronization,
                            double minimum_duration) {
@@ -77,23 +125,46 @@ void bind_motion(py::module_& module) {
              const auto phases = made.phases();
              return bytes_of(std::vector<Phase>(phases.begin(), phases.end()));
            })
-      .def("at", [](const profile::BasicProfile<double>& made, const Numbers& times) {
-        const std::vector<py::ssize_t> shape{times.size()};
-        Numbers s(shape), v(shape), a(shape), j(shape);
-        for (py::ssize_t i = 0; i < times.size(); ++i) {
-          const State state = made.at(times.data()[i]);
-          s.mutable_data()[i] = state.position;
-          v.mutable_data()[i] = state.velocity;
-          a.mutable_data()[i] = state.acceleration;
-          j.mutable_data()[i] = state.jerk;
-        }
-        return py::make_tuple(s, v, a, j);
-      });
+      .def("at", &along_at<profile::BasicProfile<double>>);
   module.def("profile", [](double length, double start, double end, double velocity, double acceleration,
                            double jerk, bool five) {
     const Limits limits{velocity, acceleration, jerk};
     return value_of(five ? profile::five_phase(length, {start, end}, limits)
                          : profile::seven_phase(length, {start, end}, limits));
+  });
+
+  py::class_<CurveMotion>(module, "CurveMotion")
+      .def("duration", [](const CurveMotion& motion) { return motion.along.duration(); })
+      .def("knots",
+           [](const CurveMotion& motion) {
+             const auto knots = motion.curve.knots();
+             return array_of({knots.begin(), knots.end()});
+           })
+      .def("phases",
+           [](const CurveMotion& motion) {
+             const auto phases = motion.along.phases();
+             return bytes_of(std::vector<Phase>(phases.begin(), phases.end()));
+           })
+      .def("along",
+           [](const CurveMotion& motion, const Numbers& times) { return along_at(motion.along, times); })
+      .def("at", [](const CurveMotion& motion, const Numbers& times, std::size_t axes) {
+        return states_at(static_cast<std::size_t>(times.size()), axes,
+                         [&](std::size_t i, double* position, double* velocity, double* acceleration) {
+                           const State along = motion.along.at(times.data()[i]);
+                           const double v = along.velocity, a = along.acceleration;
+                           const auto there = motion.curve.point_at(along.position);
+                           const Spline::Vector first = there.first * v,
+                                                second = there.second * (v * v) + there.first * a;
+                           std::copy_n(there.position.data(), axes, position);
+                           std::copy_n(first.data(), axes, velocity);
+                           std::copy_n(second.data(), axes, acceleration);
+                         });
+      });
+  module.def("time_optimal", [](const AnyMachine& machine, const Numbers& points,
+                                const std::vector<double>& parameters, double start, double end, double gap) {
+    const py::gil_scoped_release released;
+    return CurveMotion(machine, points, parameters,
+                       {.start_velocity = start, .end_velocity = end, .gap = gap});
   });
 
   // Pieces of the spline through points, (n - 1, 4, 3): control points of Bezier curves.

@@ -2,6 +2,8 @@
 
 import dataclasses
 import math
+import os
+import time
 
 import numpy as np
 import pytest
@@ -9,6 +11,8 @@ from conftest import LEVELS, LIMITS, ROOT
 
 import cncplan
 from cncplan import Axis, Machine, State
+
+SEED = int(os.environ.get("CNCPLAN_SEED", time.time_ns() % 10**9))
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -259,3 +263,76 @@ def test_written_blocks(mill):
         cncplan.write_gcode(cncplan.curve([[0, 0, 0], [1, 1, 0], [2, 0, 0]]), mill)
     with pytest.raises(TypeError):
         cncplan.write_gcode(blocks)
+
+
+def largest(motion, machine_limits):
+    """Shares of the limits of each axis, by differences of positions."""
+    t = np.linspace(0, motion.duration, 20001)
+    p = motion.at(t).position
+    step = t[1]
+    return [(np.abs(np.diff(p, order, axis=0)).max(axis=0) / step**order / limit).max()
+            for order, limit in enumerate(machine_limits, 1)]
+
+
+def test_time_optimal_on_a_line_is_the_profile(mill):
+    motion = cncplan.time_optimal([[0, 0, 0], [30, 40, 0]], mill)
+    alone = cncplan.profile(50, velocity=LIMITS["velocity"], acceleration=LIMITS["acceleration"], jerk=LIMITS["jerk"])
+    assert motion.duration == pytest.approx(alone.duration, rel=2e-3) and motion.duration >= alone.duration * (1 - 1e-9)
+    assert motion.parameters.tolist() == [0, 50]
+    end = motion.at(motion.duration)
+    assert np.allclose(end.position, [30, 40, 0], atol=1e-9) and np.allclose(end.velocity, 0, atol=1e-6)
+    assert motion.phases["duration"].sum() == pytest.approx(motion.duration)
+
+
+def test_time_optimal_of_joints():
+    joints = [Axis(letter, velocity=180, acceleration=720, jerk=7200) for letter in "ABC"]
+    slides = [Axis(letter, velocity=200, acceleration=2000, jerk=20000) for letter in "XYZ"]
+    arm = Machine(axes=slides + joints)
+    rng = np.random.default_rng(SEED)
+    points = np.cumsum(rng.uniform(-1, 1, (9, 6)) * [40, 40, 40, 1, 1, 1], axis=0)
+    at = np.cumsum(rng.uniform(0.5, 2, 9))
+    motion = cncplan.time_optimal(points, arm, parameters=at)
+    limits = [np.array([200] * 3 + [math.radians(180)] * 3), np.array([2000] * 3 + [math.radians(720)] * 3),
+              np.array([20000] * 3 + [math.radians(7200)] * 3)]
+    shares = largest(motion, limits)
+    assert max(shares) < 1 + 1e-3 and max(shares) > 0.98, f"seed {SEED}"
+    assert motion.parameters == pytest.approx(at - at[0])
+    # It goes through each of its points.
+    t = np.linspace(0, motion.duration, 200001)
+    u, p = motion.along(t).s, motion.at(t).position
+    for knot, point in zip(motion.parameters, points, strict=True):
+        assert np.abs(p[np.searchsorted(u, knot).clip(max=len(u) - 1)] - point).max() < 1e-2
+    # A looser limit costs no time, and half of the velocity does.
+    faster = Machine(axes=slides + [Axis(letter, velocity=180, acceleration=720, jerk=14400) for letter in "ABC"])
+    assert cncplan.time_optimal(points, faster, parameters=at).duration < motion.duration * 1.001
+    slower = Machine(axes=slides + [Axis(letter, velocity=20, acceleration=720, jerk=7200) for letter in "ABC"])
+    assert cncplan.time_optimal(points, slower, parameters=at).duration > motion.duration * 1.1
+
+
+def test_time_optimal_begins_and_ends_at_speeds(mill):
+    points = [[0, 0, 0], [10, 4, 0], [20, 0, 1], [30, 5, 0]]
+    rests = cncplan.time_optimal(points, mill)
+    moves = cncplan.time_optimal(points, mill, start=5, end=8)
+    assert moves.duration < rests.duration
+    assert moves.along(0).v == pytest.approx(5) and moves.along(moves.duration).v == pytest.approx(8)
+
+
+def test_time_optimal_refuses(mill):
+    for points, code in (([[0, 0, 0]], "below_limit"), ([[0, 0, 0], [0, 0, 0]], "not_positive")):
+        with pytest.raises(cncplan.Error) as caught:
+            cncplan.time_optimal(points, mill)
+        assert caught.value.code == code
+    for parameters in ([0, 0], [1, 0]):
+        with pytest.raises(cncplan.Error):
+            cncplan.time_optimal([[0, 0, 0], [1, 0, 0]], mill, parameters=parameters)
+    with pytest.raises(cncplan.Error):
+        cncplan.time_optimal([[0, 0, 0], [1, 0, 0]], mill, start=1e6)
+    with pytest.raises(cncplan.Error):
+        cncplan.time_optimal([[0, 0, 0], [1, 0, 0]], mill, gap=0)
+    with pytest.raises(cncplan.Error):
+        cncplan.time_optimal([[0, 0, 0, 0], [0, 0, 0, 1]],
+                             Machine(**LIMITS, axes=[Axis("X"), Axis("Y"), Axis("Z"), Axis("A")]))  # A has no limits
+    with pytest.raises(TypeError):
+        cncplan.time_optimal("points", mill)
+    with pytest.raises(cncplan.Error):
+        cncplan.time_optimal([[0, 0], [1, 0]], mill)
