@@ -16,9 +16,9 @@ using smooth::SplineThrough;
 
 namespace {
 
-constexpr int axes = 6;
-using Vector = VectorN<double, axes>;
-using Spline = SplineThrough<axes>;
+constexpr int joints = 6;
+using Vector = VectorN<double, joints>;
+using Spline = SplineThrough<joints>;
 
 std::vector<Vector> random_points(test::Random& random, int count) {
   std::vector<Vector> points(static_cast<std::size_t>(count));
@@ -31,7 +31,7 @@ std::vector<Vector> random_points(test::Random& random, int count) {
 // goes through the points and does not bend at both ends.
 Vector dense(const std::vector<Vector>& points, const std::vector<double>& knots, double u) {
   const auto n = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n + 2, n + 2), values = Eigen::MatrixXd::Zero(n + 2, axes);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n + 2, n + 2), values = Eigen::MatrixXd::Zero(n + 2, joints);
   const auto powers = [&](double at, auto&& row) {
     row(0) = 1;
     row(1) = at;
@@ -83,7 +83,7 @@ TEST_CASE("a spline's derivatives are those of its positions, and its enclosures
     const auto all = spline->enclosure(from, to);
     const double u = random.uniform(from, to), h = 1e-4;
     const auto at = spline->point_at(u);
-    for (int axis = 0; axis < axes; ++axis) {
+    for (int axis = 0; axis < joints; ++axis) {
       const auto& own = all[static_cast<std::size_t>(axis)];
       constexpr double rounding = 1e-9;
       const auto holds = [&](const Interval& interval, double x) {
@@ -126,7 +126,7 @@ TEST_CASE("a spline of six joints is driven in the least time that its limits al
   test::Random random;
   const auto spline = Spline::make(random_points(random, 8));
   REQUIRE(spline);
-  smooth::MotionLimits<axes> limits;
+  smooth::MotionLimits<joints> limits;
   for (auto& own : limits.axes) own = {random.uniform(1, 3), random.uniform(5, 10), random.uniform(50, 100)};
   const auto motion = time_optimal(*spline, limits);
   REQUIRE(motion);
@@ -135,7 +135,7 @@ TEST_CASE("a spline of six joints is driven in the least time that its limits al
   double most = 0;
   for (double t = 0; t + 3 * step <= motion->duration(); t += step) {
     const Vector a = place(t), b = place(t + step), c = place(t + 2 * step), d = place(t + 3 * step);
-    for (int axis = 0; axis < axes; ++axis) {
+    for (int axis = 0; axis < joints; ++axis) {
       const Limits& own = limits.axes[static_cast<std::size_t>(axis)];
       most =
           std::max({most, std::abs(b[axis] - a[axis]) / step / own.velocity,
