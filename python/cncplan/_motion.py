@@ -39,6 +39,11 @@ def _times(t: Any) -> np.ndarray:
     return times
 
 
+def _state_at(core: Any, t: float | Sequence[float] | np.ndarray, axes: int) -> State:
+    found = core.at(_times(t), axes)
+    return State(*(array[0] if np.ndim(t) == 0 else array for array in found))
+
+
 class Motion:
     """The motion of all axes, from 0 to `duration`."""
 
@@ -59,10 +64,7 @@ class Motion:
     def at(self, t: float | Sequence[float] | np.ndarray) -> State:
         """All axes at t seconds: arrays of shape (axes,), or (n, axes) for n instants. Behind the end they keep
         the velocity that they have come to."""
-        position, velocity, acceleration = self._core.at(_times(t), self._axes)
-        if np.ndim(t) == 0:
-            return State(position[0], velocity[0], acceleration[0])
-        return State(position, velocity, acceleration)
+        return _state_at(self._core, t, self._axes)
 
 
 def _rows(state: Any, name: str, machine: Machine) -> list[list[float]]:
@@ -120,6 +122,10 @@ class ProfileState:
     j: Any
 
 
+def _along(found: tuple[np.ndarray, ...], t: float | Sequence[float] | np.ndarray) -> ProfileState:
+    return ProfileState(*(array[0].item() if np.ndim(t) == 0 else array for array in found))
+
+
 class Profile:
     """A change of position along a path, between two speeds."""
 
@@ -139,8 +145,7 @@ class Profile:
 
     def at(self, t: float | Sequence[float] | np.ndarray) -> ProfileState:
         """The motion at t seconds, or at n instants."""
-        found = self._core.at(_times(t))
-        return ProfileState(*(array[0].item() if np.ndim(t) == 0 else array for array in found))
+        return _along(self._core.at(_times(t)), t)
 
 
 class CurveMotion:
@@ -167,13 +172,11 @@ class CurveMotion:
 
     def along(self, t: float | Sequence[float] | np.ndarray) -> ProfileState:
         """The curve's parameter and its time derivatives at t seconds, or at n instants."""
-        found = self._core.along(_times(t))
-        return ProfileState(*(array[0].item() if np.ndim(t) == 0 else array for array in found))
+        return _along(self._core.along(_times(t)), t)
 
     def at(self, t: float | Sequence[float] | np.ndarray) -> State:
         """All axes at t seconds: arrays of shape (axes,), or (n, axes) for n instants."""
-        found = self._core.at(_times(t), self._axes)
-        return State(*(array[0] if np.ndim(t) == 0 else array for array in found))
+        return _state_at(self._core, t, self._axes)
 
 
 def time_optimal(points: Sequence[Sequence[float]] | np.ndarray, machine: Machine, *,
