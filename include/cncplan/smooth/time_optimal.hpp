@@ -46,7 +46,10 @@ class PathSpeed {
     const std::vector<Cell> samples = this->samples();
     along_ = tangential_limits(std::span<const Cell>(samples), limits_);
     feed_ = std::isfinite(options.feed) ? options.feed : highest_speed(samples);
-    add_places(S(0), path.length(), most_halvings);
+    if constexpr (requires { path.knots(); }) breaks_.assign(path.knots().begin(), path.knots().end());
+    breaks_.push_back(path.length());
+    for (S from = S(0); const S to : breaks_)
+      if (to > from) add_places(std::exchange(from, to), to, most_halvings);
   }
 
   /// The speed along the path that its derivatives allow at one end, about.
@@ -229,12 +232,14 @@ class PathSpeed {
     const bool from_rest = !(ends_.start > S(0)), to_rest = !(ends_.end > S(0));
     const S until = length - (to_rest ? rest_length(true) : S(0));
     std::vector<S> knots{S(0), from_rest ? rest_length(false) : S(0)};
-    std::size_t at = 0, at_place = 0;
+    std::size_t at = 0, at_place = 0, at_break = 0;
     auto speed_near = last_speeds();
     while (knots.back() < until) {
       const S s = knots.back();
       while (at + 2 < wanted.size() && wanted[at + 1].first <= s) ++at;
-      S step = until - s;
+      while (breaks_[at_break] <= s) ++at_break;
+      const S end = std::min(until, breaks_[at_break]);
+      S step = end - s;
       for (const auto& [place, near] : {wanted[at], wanted[std::min(at + 1, wanted.size() - 1)]})
         step = std::min(step, near + growth * std::abs(place - s));
       if (from_rest) step = std::min(step, growth * s);
@@ -245,7 +250,7 @@ class PathSpeed {
       const S speed = std::min(places_[at_place].speed, above * speed_near(s));
       while (step > least && known_speed(enclosed_cell(path_, s, s + step, feed_), limits_, unknown) < speed)
         step = std::max(step * S(0.7), least);
-      knots.push_back(s + S(1.3) * step < until ? s + step : until);
+      knots.push_back(s + S(1.3) * step < end ? s + step : end);
     }
     knots.push_back(length);
     return knots;
@@ -309,7 +314,8 @@ class PathSpeed {
   S gap_{};
   S coarser_ = S(1);  // by which cells are longer
   S feed_{};
-  BasicLimits<S> along_;  // along the path, wherever it goes
+  BasicLimits<S> along_;   // along the path, wherever it goes
+  std::vector<S> breaks_;  // where the third derivative jumps, and the end
   std::vector<Place> places_;
   std::vector<Cell> cells_;
   std::vector<S> starts_, law_;
@@ -321,8 +327,9 @@ class PathSpeed {
 
 /// The fastest motion along a path from one end to the other, under limits of the tool's vector and of each
 /// axis: phases of constant jerk along the path, which provably keep all limits everywhere. The path is
-/// smooth: its second derivative does not jump. Its parameter may be any; mm here is its unit. Limits are
-/// above 0; those of the tool, or of all the axes of X Y Z, are finite.
+/// smooth: its second derivative does not jump. Where its third one does, and a function `knots()` of it says
+/// so by the parameters in order, motion needs no lower speed. Its parameter may be any; mm here is its unit.
+/// Limits are above 0; those of the tool, or of all the axes of X Y Z, are finite.
 ///
 /// Errors: not_finite (length, limits, the path's derivatives); not_positive (length, limits, feed, gap);
 /// negative (ends), above_limit (ends that are not below what the path there allows); end_speed_unreachable,
