@@ -13,6 +13,7 @@ from ._errors import Error, choice, integer, kind, not_negative, number, row, ro
 from ._machine import Machine, core_of
 
 _SYNCHRONIZATIONS = ("time", "phase", "none")
+_MOST_AXES = 9
 PHASE_DTYPE = np.dtype([("time", "f8"), ("duration", "f8"), ("position", "f8"), ("velocity", "f8"),
                         ("acceleration", "f8"), ("jerk", "f8")])
 
@@ -179,20 +180,24 @@ class CurveMotion:
         return _state_at(self._core, t, self._axes)
 
 
-def time_optimal(points: Sequence[Sequence[float]] | np.ndarray, machine: Machine, *,
+def time_optimal(points: Sequence[Sequence[float]] | np.ndarray, machine: Machine | None = None, *,
+                 velocity: float | Sequence[float] | None = None,
+                 acceleration: float | Sequence[float] | None = None, jerk: float | Sequence[float] | None = None,
                  parameters: Sequence[float] | np.ndarray | None = None, start: float = 0.0, end: float = 0.0,
                  gap: float = 3e-4) -> CurveMotion:
-    """The fastest motion of a machine's axes along the cubic spline through points, under the limits of velocity,
-    acceleration and jerk of the tool and of each axis, which it provably keeps everywhere.
+    """The fastest motion along the cubic spline through points, under limits of velocity, acceleration and jerk,
+    which it provably keeps everywhere: those of a machine, of its tool and of each axis, or limits of axes alone.
 
     The spline is natural: its second derivative is 0 at both ends.
 
     Parameters
     ----------
     points : (n, axes)
-        Two at least, of all axes of the machine; mm and rad.
-    machine : Machine
+        Two at least, of all axes, nine at most; mm and rad.
+    machine : Machine, optional
         The tool or all of X, Y, Z need limits, and each other axis that moves.
+    velocity, acceleration, jerk : float or (axes,)
+        Instead of a machine: limits of all axes, or of each; mm, rad and s.
     parameters : (n,), optional
         Where the points are on the curve, ascending, of any unit. Without them as far apart as the points.
     start, end : float
@@ -200,10 +205,20 @@ def time_optimal(points: Sequence[Sequence[float]] | np.ndarray, machine: Machin
     gap : float
         How far from the least time the search may end, as a share of it, > 0.
     """
-    given = rows(points, "points", (None, len(machine)))
+    own = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    missing = [name for name, value in own.items() if value is None]
+    if len(missing) != (0 if machine is None else 3):
+        raise TypeError("limits: expected a machine, or velocity, acceleration and jerk")
+    given = rows(points, "points", (None, None if machine is None else len(machine)))
+    axes = given.shape[1]
+    if axes > _MOST_AXES:
+        raise Error(f"points: {axes} axes are more than {_MOST_AXES}", "above_limit", "points", float(axes),
+                    float(_MOST_AXES))
+    limits: Any = core_of(machine) if machine is not None else [
+        row([value] * axes if np.ndim(value) == 0 else value, name, axes) for name, value in own.items()]
     at = [] if parameters is None else rows(parameters, "parameters", (len(given),)).tolist()
-    return CurveMotion(_core.time_optimal(core_of(machine), given, at, not_negative(start, "start"),
-                                          not_negative(end, "end"), number(gap, "gap")), len(machine))
+    return CurveMotion(_core.time_optimal(limits, given, at, not_negative(start, "start"),
+                                          not_negative(end, "end"), number(gap, "gap")), axes)
 
 
 def profile(length: float, start: float = 0.0, end: float = 0.0, *, velocity: float, acceleration: float,

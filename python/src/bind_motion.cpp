@@ -41,10 +41,9 @@ struct CurveMotion {
   Spline curve;
   PhaseProfile along;
 
-  CurveMotion(const AnyMachine& machine, const Numbers& points, const std::vector<double>& parameters,
-              const TimeOptimalOptions& options)
-      : curve(curve_through(points, parameters)),
-        along(value_of(time_optimal(curve, plan::motion_limits(roomy(machine)), options))) {}
+  CurveMotion(const smooth::MotionLimits<room>& limits, const Numbers& points,
+              const std::vector<double>& parameters, const TimeOptimalOptions& options)
+      : curve(curve_through(points, parameters)), along(value_of(time_optimal(curve, limits, options))) {}
 
  private:
   static Spline curve_through(const Numbers& points, const std::vector<double>& parameters) {
@@ -55,6 +54,14 @@ struct CurveMotion {
     return value_of(Spline::make(given, parameters));
   }
 };
+
+// Of each axis, without any of the tool.
+smooth::MotionLimits<room> limits_of(const Rows& rows) {
+  smooth::MotionLimits<room> limits;
+  for (std::size_t i = 0; i < limits.axes.size(); ++i)
+    limits.axes[i] = i < rows[0].size() ? Limits{rows[0][i], rows[1][i], rows[2][i]} : Limits{1, 1, 1};
+  return limits;
+}
 
 // Position, velocity and acceleration of axes, (n, axes) each: those of row i by `write(i, three rows)`.
 template <class Write>
@@ -160,12 +167,22 @@ void bind_motion(py::module_& module) {
                            std::copy_n(second.data(), axes, acceleration);
                          });
       });
-  module.def("time_optimal", [](const AnyMachine& machine, const Numbers& points,
-                                const std::vector<double>& parameters, double start, double end, double gap) {
+  const auto along_curve = [](const smooth::MotionLimits<room>& limits, const Numbers& points,
+                              const std::vector<double>& parameters, double start, double end, double gap) {
     const py::gil_scoped_release released;
-    return CurveMotion(machine, points, parameters,
+    return CurveMotion(limits, points, parameters,
                        {.start_velocity = start, .end_velocity = end, .gap = gap});
-  });
+  };
+  module.def("time_optimal",
+             [along_curve](const AnyMachine& machine, const Numbers& points,
+                           const std::vector<double>& parameters, double start, double end, double gap) {
+               return along_curve(plan::motion_limits(roomy(machine)), points, parameters, start, end, gap);
+             });
+  module.def("time_optimal",
+             [along_curve](const Rows& limits, const Numbers& points, const std::vector<double>& parameters,
+                           double start, double end, double gap) {
+               return along_curve(limits_of(limits), points, parameters, start, end, gap);
+             });
 
   // Pieces of the spline through points, (n - 1, 4, 3): control points of Bezier curves.
   module.def("spline_through", [](const Numbers& points) {

@@ -297,6 +297,8 @@ def test_time_optimal_of_joints():
     shares = largest(motion, limits)
     assert max(shares) < 1 + 1e-3 and max(shares) > 0.98, f"seed {SEED}"
     assert motion.parameters == pytest.approx(at - at[0])
+    alone = cncplan.time_optimal(points, velocity=limits[0], acceleration=limits[1], jerk=limits[2], parameters=at)
+    assert alone.duration == pytest.approx(motion.duration, rel=1e-9)
     # It goes through each of its points.
     t = np.linspace(0, motion.duration, 200001)
     u, p = motion.along(t).s, motion.at(t).position
@@ -317,7 +319,26 @@ def test_time_optimal_begins_and_ends_at_speeds(mill):
     assert moves.along(0).v == pytest.approx(5) and moves.along(moves.duration).v == pytest.approx(8)
 
 
+def test_time_optimal_of_any_number_of_axes():
+    for axes in (1, 2, 7, 9):
+        points = np.linspace(0, 1, 4)[:, None] * np.ones(axes)  # a straight line, all axes alike
+        motion = cncplan.time_optimal(points, velocity=2, acceleration=[10] * axes, jerk=100)
+        alone = cncplan.profile(1, velocity=2, acceleration=10, jerk=100)
+        assert alone.duration * (1 - 1e-9) <= motion.duration < alone.duration * 1.003
+        assert motion.at(motion.duration).position == pytest.approx(np.ones(axes))
+        assert motion.at([0, 0.1]).velocity.shape == (2, axes)
+
+
 def test_time_optimal_refuses(mill):
+    line = [[0, 0, 0], [1, 0, 0]]
+    for limits in ({}, {"velocity": 1}, {"machine": mill, "velocity": 1, "acceleration": 1, "jerk": 1}):
+        with pytest.raises(TypeError):
+            cncplan.time_optimal(line, **limits)
+    for wrong in (0, -1, math.nan, [1, 1]):
+        with pytest.raises(cncplan.Error):
+            cncplan.time_optimal(line, velocity=wrong, acceleration=1, jerk=1)
+    with pytest.raises(cncplan.Error):
+        cncplan.time_optimal(np.zeros((3, 10)), velocity=1, acceleration=1, jerk=1)
     for points, code in (([[0, 0, 0]], "below_limit"), ([[0, 0, 0], [0, 0, 0]], "not_positive")):
         with pytest.raises(cncplan.Error) as caught:
             cncplan.time_optimal(points, mill)

@@ -22,7 +22,7 @@ def test_code_of_the_page(tmp_path, monkeypatch):
     assert len(names["positions"]) > 1000
 
 
-@pytest.mark.parametrize("name", ["cycle_time", "corner", "kk22", "jerk_and_tolerance", "controller"])
+@pytest.mark.parametrize("name", ["cycle_time", "corner", "kk22", "jerk_and_tolerance", "controller", "joints"])
 def test_examples(tmp_path, name):
     pytest.importorskip("matplotlib")
     done = subprocess.run([sys.executable, ROOT / "python/examples" / f"{name}.py", "--out", tmp_path / "new"], check=True,
