@@ -313,7 +313,7 @@ class SmoothRun {
   std::optional<End> end_;  // where it will be cut
   Work work_;
   BasicApproach<S, N> approach_{memory_};
-  std::pmr::vector<Vector> points_{memory_};  // before a round
+  std::pmr::vector<Vector> points_{memory_};  // to come back to
   std::pmr::vector<BasicLimitedRow<S, N>> limited_{memory_};
   S deviation_{};
   S start_time_ = std::numeric_limits<S>::infinity();  // about, on the curve that the search begins with
@@ -387,9 +387,13 @@ auto SmoothRun<S, N, Seen>::plan(const Progress& progress) -> Plan {
   if (end_) band_.pin(end_->cell);
   move_curve();
   let_go_beyond_end();
-  const auto time = [](const Plan& plan) { return plan.speed.duration * plan.speed.slow_down; };
+  // Infinite where a plan cannot be driven.
+  const auto time = [](const Plan& plan) {
+    return plan.deviation <= S(1) && std::isfinite(plan.duration) ? plan.speed.duration * plan.speed.slow_down
+                                                                  : std::numeric_limits<S>::infinity();
+  };
   Plan fastest = make_plan(true);
-  const bool works = deviation_ <= S(1) && std::isfinite(fastest.duration);
+  const bool works = std::isfinite(time(fastest));
   if (works && time(fastest) <= start_time_) return fastest;
   // On the curve that the search began with: that is faster, or neither curve nor speed can give way where
   // the run is cut, which is known to work there.
