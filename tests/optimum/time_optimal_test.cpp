@@ -11,6 +11,7 @@
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/measured.hpp"
+#include "cncplan/smooth/spline_through.hpp"
 #include "support/catch.hpp"
 #include "support/half_ellipse.hpp"
 
@@ -130,4 +131,11 @@ TEST_CASE("time optimal: half a circle and half an ellipse, as linear programs f
   const auto ellipse = path::measured(test::HalfEllipse{20, 8});
   REQUIRE(ellipse);
   check(*ellipse, {.velocity = 30, .acceleration = 1000, .jerk = 1e4}, 6);
+}
+
+TEST_CASE("time optimal: a spline of which the third derivative jumps, as linear programs find it") {
+  const std::vector<Vector3> points{{0, 0, 0}, {12, 9, 0}, {25, 7, 0}, {31, -6, 0}, {45, -2, 0}};
+  const auto spline = smooth::SplineThrough<3>::make(points);
+  REQUIRE(spline);
+  check(*spline, {.velocity = 60, .acceleration = 400, .jerk = 2500}, 5);
 }

@@ -288,6 +288,7 @@ def test_time_optimal_of_joints():
     joints = [Axis(letter, velocity=180, acceleration=720, jerk=7200) for letter in "ABC"]
     slides = [Axis(letter, velocity=200, acceleration=2000, jerk=20000) for letter in "XYZ"]
     arm = Machine(axes=slides + joints)
+    print(f"CNCPLAN_SEED={SEED}")  # pytest shows it where the test fails
     rng = np.random.default_rng(SEED)
     points = np.cumsum(rng.uniform(-1, 1, (9, 6)) * [40, 40, 40, 1, 1, 1], axis=0)
     at = np.cumsum(rng.uniform(0.5, 2, 9))
@@ -295,7 +296,7 @@ def test_time_optimal_of_joints():
     limits = [np.array([200] * 3 + [math.radians(180)] * 3), np.array([2000] * 3 + [math.radians(720)] * 3),
               np.array([20000] * 3 + [math.radians(7200)] * 3)]
     shares = largest(motion, limits)
-    assert max(shares) < 1 + 1e-3 and max(shares) > 0.98, f"seed {SEED}"
+    assert max(shares) < 1 + 1e-3 and max(shares) > 0.98
     assert motion.parameters == pytest.approx(at - at[0])
     alone = cncplan.time_optimal(points, velocity=limits[0], acceleration=limits[1], jerk=limits[2], parameters=at)
     assert alone.duration == pytest.approx(motion.duration, rel=1e-9)
