@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "cncplan/plan/move_to.hpp"
+#include "cncplan/move_to.hpp"
 #include "support/random.hpp"
 
 namespace cncplan::bench {

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "../examples/generate/programs.hpp"
+#include "cncplan/block_builder.hpp"
+#include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/gcode/read_program.hpp"
 #include "cncplan/junction/deviation.hpp"
-#include "cncplan/plan/block_builder.hpp"
-#include "cncplan/plan/cells.hpp"
 
 namespace cncplan::bench {
 
 inline const Machine<3> mill{.limits = {.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0}};
 /// Corners by the tool's deviation, 0.01 mm.
-inline constexpr plan::JointRules<double, junction::Deviation> joint_rules{{0.01}, 0.01, 0.0};
+inline constexpr detail::JunctionRules<double, junction::Deviation> junction_rules{{0.01}, 0.01, 0.0};
 
 /// The program that CNCPLAN_BALL names; else a sphere finished in 35000 short moves.
 inline const std::string& ball() {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ball.hpp"
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 #include "latencies.hpp"
 #include "support/random.hpp"
 

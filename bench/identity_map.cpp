@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cncplan/kinematics/cartesian.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 
 namespace {
 

@@ -7,9 +7,9 @@
 
 #include "ball.hpp"
 #include "buffer.hpp"
-#include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/detail/speed/laws.hpp"
+#include "cncplan/detail/speed/span_planner.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/random_program.hpp"
 
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using namespace cncplan;
 using bench::ball;
 
-using Spans = std::vector<plan::Span>;
+using Spans = std::vector<detail::Span>;
 
 std::vector<bench::Block> ball_blocks(benchmark::State& state) {
   std::vector<bench::Block> blocks;
@@ -26,26 +26,27 @@ std::vector<bench::Block> ball_blocks(benchmark::State& state) {
 }
 
 auto cells_of(const std::vector<bench::Block>& blocks) {
-  return plan::make_cells(std::span(blocks), bench::mill, bench::joint_rules);
+  return detail::make_cells(std::span(blocks), bench::mill, bench::junction_rules);
 }
 
 // Looks ahead over all cells.
-bool look_ahead(const plan::BasicCells<double>& cells, std::vector<plan::Waypoint>& waypoints, Spans& spans) {
+bool look_ahead(const detail::BasicCells<double>& cells, std::vector<detail::ConstrainedJunction>& junctions,
+                Spans& spans) {
   spans.clear();
-  waypoints.resize(cells.caps.size() + 1);
-  return plan::plan_spans(std::span<const plan::BlockCaps>(cells.caps), plan::SevenPhase{},
-                          std::span(waypoints), std::back_inserter(spans))
+  junctions.resize(cells.segments.size() + 1);
+  return detail::plan_spans(std::span<const detail::SegmentLimits>(cells.segments), detail::SevenPhase{},
+                            std::span(junctions), std::back_inserter(spans))
       .has_value();
 }
 
 // Caps and spans over blocks in memory. An item is a block.
 void plan_ball(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
-  std::vector<plan::Waypoint> waypoints;
+  std::vector<detail::ConstrainedJunction> junctions;
   Spans spans;
   for (auto _ : state) {
     const auto cells = cells_of(blocks);
-    if (!cells || !look_ahead(*cells, waypoints, spans)) state.SkipWithError("the program has no plan");
+    if (!cells || !look_ahead(*cells, junctions, spans)) state.SkipWithError("the program has no plan");
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
@@ -63,30 +64,31 @@ BENCHMARK(plan_ball_cells)->Name("plan/ball/cells")->Unit(benchmark::kMillisecon
 void plan_ball_look_ahead(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
   const auto cells = cells_of(blocks);
-  std::vector<plan::Waypoint> waypoints;
+  std::vector<detail::ConstrainedJunction> junctions;
   Spans spans;
   for (auto _ : state)
-    if (!cells || !look_ahead(*cells, waypoints, spans)) state.SkipWithError("the program has no plan");
+    if (!cells || !look_ahead(*cells, junctions, spans)) state.SkipWithError("the program has no plan");
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(plan_ball_look_ahead)->Name("plan/ball/look_ahead")->Unit(benchmark::kMillisecond);
 
-// Programs whose caps, feeds and limits change all the time. An item is a block.
+// Programs whose segments, feeds and limits change all the time. An item is a block.
 void plan_random(benchmark::State& state) {
   test::Random random(1);
-  std::vector<std::vector<plan::BlockCaps>> programs;
+  std::vector<std::vector<detail::SegmentLimits>> programs;
   std::int64_t blocks = 0;
   for (int i = 0; i < 100; ++i) {
     programs.push_back(test::random_program(random, test::LimitSpread::wide, 4000));
     blocks += static_cast<std::int64_t>(programs.back().size());
   }
-  std::vector<plan::Waypoint> waypoints(4001);
-  std::vector<plan::Span> spans;
+  std::vector<detail::ConstrainedJunction> junctions(4001);
+  std::vector<detail::Span> spans;
   for (auto _ : state)
     for (const auto& program : programs) {
       spans.clear();
-      const auto planned = plan::plan_spans(std::span<const plan::BlockCaps>(program), plan::SevenPhase{},
-                                            std::span(waypoints), std::back_inserter(spans));
+      const auto planned =
+          detail::plan_spans(std::span<const detail::SegmentLimits>(program), detail::SevenPhase{},
+                             std::span(junctions), std::back_inserter(spans));
       if (!planned) state.SkipWithError("a program has no plan");
     }
   state.SetItemsProcessed(state.iterations() * blocks);

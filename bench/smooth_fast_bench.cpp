@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "ball.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 
 namespace {
 
@@ -31,7 +31,8 @@ void smooth_ball_sizes(benchmark::State& state) {
   if (program.failed()) return state.SkipWithError("the program does not read");
   const std::span<const bench::Block> blocks(program.blocks());
   for (auto _ : state)
-    benchmark::DoNotOptimize(plan::smoothing(blocks, bench::mill, plan::smoothing_rules<double>(options)));
+    benchmark::DoNotOptimize(
+        detail::smoothing(blocks, bench::mill, detail::smoothing_rules<double>(options)));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
 }
 BENCHMARK(smooth_ball_sizes)->Name("smooth/ball/sizes")->Unit(benchmark::kMillisecond);

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "cncplan/core/fixed_memory.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 
 namespace {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "ball.hpp"
-#include "cncplan/plan/move_to.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/move_to.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "latencies.hpp"
 #include "support/random.hpp"
 

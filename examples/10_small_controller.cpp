@@ -2,8 +2,8 @@
 // once, and so does an override of 150 %. Compiled with -fno-exceptions -fno-rtti; once it runs (reader and
 // executor are made before main) there is no allocation.
 #include <array>
-#include <cncplan/plan/block_reader.hpp>
-#include <cncplan/plan/executor.hpp>
+#include <cncplan/block_reader.hpp>
+#include <cncplan/executor.hpp>
 #include <cstdio>
 #include <string_view>
 

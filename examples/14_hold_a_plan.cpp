@@ -5,8 +5,8 @@
 // rest from holds at several instants.
 #include <cstdio>
 
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/trajectory_executor.hpp"
 
 int main() {
   const char* text = "G21 G90 F1800\nG1 X20\nY20\nX25 Y22\nG3 X30 Y10 R12\nG1 X0 Y0\n";

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cncplan/core/fixed_memory.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/smooth_stream.hpp"
 
 int main() {
   std::string text = "G21 G90 F1800\n";

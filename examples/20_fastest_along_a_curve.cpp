@@ -26,7 +26,7 @@ struct Swing {
 int main() {
   const auto path = path::measured(Swing{});  // by its length in the space of the joints
   if (!path) return std::printf("%s\n", to_text(path.error()).c_str()), 1;
-  smooth::MotionLimits<6> limits;  // rad/s, rad/s^2, rad/s^3
+  MotionLimits<6> limits;  // rad/s, rad/s^2, rad/s^3
   limits.axes = {{{2, 8, 60}, {2, 8, 60}, {2, 8, 60}, {3, 20, 200}, {3, 20, 200}, {4, 30, 300}}};
   const auto motion = time_optimal(*path, limits);
   if (!motion) return std::printf("%s\n", to_text(motion.error()).c_str()), 1;

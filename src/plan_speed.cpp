@@ -1,7 +1,7 @@
 // Speeds over cells of a curve, whatever machine they are planned for.
 #include "cncplan/compiled/smooth.hpp"
 
-namespace cncplan::smooth {
+namespace cncplan::detail {
 
 CNCPLAN_PLAN_SPEED(, 1)
 CNCPLAN_PLAN_SPEED(, 2)
@@ -13,4 +13,4 @@ CNCPLAN_PLAN_SPEED(, 7)
 CNCPLAN_PLAN_SPEED(, 8)
 CNCPLAN_PLAN_SPEED(, 9)
 
-}  // namespace cncplan::smooth
+}  // namespace cncplan::detail

@@ -1,9 +1,9 @@
 // Smoothing of curves, whatever path they come from.
 #include "cncplan/compiled/smooth.hpp"
 
-namespace cncplan::smooth {
+namespace cncplan::detail {
 
 CNCPLAN_SMOOTH_CURVES(, 3)
 CNCPLAN_SMOOTH_CURVES(, 6)
 
-}  // namespace cncplan::smooth
+}  // namespace cncplan::detail

@@ -1,9 +1,9 @@
 // Smoothing of runs on machines without a map.
 #include "cncplan/compiled/smooth.hpp"
 
-namespace cncplan::smooth {
+namespace cncplan::detail {
 
 CNCPLAN_SMOOTH_RUNS(, 3)
 CNCPLAN_SMOOTH_RUNS(, 6)
 
-}  // namespace cncplan::smooth
+}  // namespace cncplan::detail

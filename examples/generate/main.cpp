@@ -10,11 +10,11 @@
 #include <sstream>
 #include <string>
 
+#include "cncplan/arc_words.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/gcode/read_program.hpp"
 #include "cncplan/gcode/stream_lines.hpp"
 #include "cncplan/gcode/writer.hpp"
-#include "cncplan/plan/arc_words.hpp"
 #include "programs.hpp"
 #include "support/arguments.hpp"
 #include "support/failure.hpp"
@@ -41,13 +41,13 @@ std::string rewritten(std::istream& program, const std::string& name, const std:
   const auto arcs_written = [&](const gcode::Item& item) {
     const auto* motion = std::get_if<gcode::Motion>(&item);
     if (motion == nullptr) return write(item);
-    if (arcs == "split") return plan::split_by_radius(*motion, write);
+    if (arcs == "split") return split_by_radius(*motion, write);
     if (arcs == "lines") {
-      if (const auto done = plan::split_into_lines(*motion, degrees * std::numbers::pi / 180.0, write); !done)
+      if (const auto done = split_into_lines(*motion, degrees * std::numbers::pi / 180.0, write); !done)
         throw Failure(Exit::bad_input, gcode::to_text(name, {done.error(), motion->line, motion->column}));
       return;
     }
-    write(arcs == "radius" ? plan::by_radius(*motion) : plan::by_center(*motion).value_or(*motion));
+    write(arcs == "radius" ? by_radius(*motion) : by_center(*motion).value_or(*motion));
   };
   const auto read = gcode::read_program(gcode::StreamLines(program), reader, arcs_written);
   if (!read) throw Failure(Exit::bad_input, gcode::to_text(name, read.error()));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cncplan/core/limits.hpp"
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 #include "support/gnuplot.hpp"
 #include "support/machine_file.hpp"
 

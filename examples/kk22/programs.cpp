@@ -21,7 +21,7 @@ using namespace cncplan;
 namespace {
 
 using Table = MappedMachine<kinematics::PolarMap>;
-using TablePath = plan::TablePath<kinematics::PolarMap, MillBlock::Path>;
+using TablePath = cncplan::TablePath<kinematics::PolarMap, MillBlock::Path>;
 using TableBlock = cncplan::Block<3, TablePath>;
 
 // What the paper says of a program: minutes, and Table 4's errors of the servo axes, root mean square and
@@ -72,8 +72,8 @@ std::vector<TableBlock> on_table(const std::vector<MillBlock>& blocks, double sm
   std::vector<TableBlock> result;
   double table = 0.0;
   for (const MillBlock& block : blocks) {
-    const auto followed = plan::follow_table(
-        block.path, kinematics::PolarMap{}, smallest_radius, table, [&](const TablePath& path) {
+    const auto followed =
+        follow_table(block.path, kinematics::PolarMap{}, smallest_radius, table, [&](const TablePath& path) {
           result.push_back({.path = path, .feed = block.feed, .rapid = block.rapid});
         });
     if (!followed)

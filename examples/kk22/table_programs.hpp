@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "cncplan/plan/block_builder.hpp"
+#include "cncplan/block_builder.hpp"
 #include "generate/programs.hpp"
 
 namespace kk22 {

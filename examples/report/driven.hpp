@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cncplan/core/state.hpp"
-#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/detail/speed/motion_table.hpp"
 #include "report/channel_point.hpp"
 #include "report/limited_by.hpp"
 
@@ -39,7 +39,7 @@ class Driven {
   /// those of the axes X, Y and Z, not of the tip.
   [[nodiscard]] virtual bool is_direct(std::size_t piece) const = 0;
   /// The speed that the program asks for; not finite where it asks for none.
-  [[nodiscard]] virtual double wanted_speed(std::size_t piece) const = 0;
+  [[nodiscard]] virtual double requested_speed(std::size_t piece) const = 0;
   /// What stands in the way of a higher speed, of each phase.
   [[nodiscard]] virtual std::vector<LimitedBy> limited_by() const = 0;
   /// The tool and the axes where a piece has been travelled so far.

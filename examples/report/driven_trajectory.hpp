@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/tool.hpp"
+#include "cncplan/tool.hpp"
 #include "report/driven.hpp"
 #include "report/limits_of_phases.hpp"
 #include "report/motion_data.hpp"
@@ -37,7 +37,7 @@ class DrivenTrajectory : public Base {
   [[nodiscard]] bool is_direct(std::size_t piece) const override {
     return cncplan::is_direct(driven_.program()[driven_.block_of(piece)].path);
   }
-  [[nodiscard]] double wanted_speed(std::size_t piece) const override {
+  [[nodiscard]] double requested_speed(std::size_t piece) const override {
     return wanted_speed_of(driven_, piece);
   }
   [[nodiscard]] std::vector<LimitedBy> limited_by() const override { return report::limited_by(driven_); }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cncplan/core/in_space.hpp"
-#include "cncplan/plan/block_checks.hpp"
-#include "cncplan/plan/tool.hpp"
+#include "cncplan/detail/block_checks.hpp"
+#include "cncplan/tool.hpp"
 #include "report/limited_by.hpp"
 
 namespace report {
@@ -18,7 +18,7 @@ template <class T>
 [[nodiscard]] double wanted_speed_of(const T& trajectory, std::size_t piece) {
   const auto& own = trajectory.program()[trajectory.block_of(piece)];
   const auto& machine = trajectory.machine();
-  return cncplan::plan::wanted_speed(own, machine, cncplan::length_of(own.path, machine));
+  return cncplan::detail::requested_speed(own, machine, cncplan::length_of(own.path, machine));
 }
 
 namespace detail {

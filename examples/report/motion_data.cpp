@@ -39,7 +39,7 @@ std::uint32_t index_in(std::vector<double>& table, const Values& values) {
     line.push_back(std::max(place.line, 0));
     kind.push_back(static_cast<std::int64_t>(place.kind));
     offset.push_back(index_in(data.offsets, place.offset));
-    wanted.push_back(index_in(data.wanted, std::array{driven.wanted_speed(i)}));
+    wanted.push_back(index_in(data.wanted, std::array{driven.requested_speed(i)}));
     counted.push_back(driven.counts(i) ? 1 : 0);
     direct.push_back(driven.is_direct(i) ? 1 : 0);
     path.add(driven.piece_length(i), [&](double s) { return driven.channels(i, s); });
@@ -84,7 +84,7 @@ void add_samples(MotionData& data, const Driven& driven, const PlaceOf& place_of
     samples.velocity.push_back(static_cast<float>(here.along.velocity));
     samples.acceleration.push_back(static_cast<float>(here.along.acceleration));
     samples.jerk.push_back(static_cast<float>(here.along.jerk));
-    samples.wanted.push_back(static_cast<float>(driven.wanted_speed(here.piece)));
+    samples.wanted.push_back(static_cast<float>(driven.requested_speed(here.piece)));
     samples.travelled.push_back(here.along.position);
     samples.line.push_back(static_cast<std::uint32_t>(std::max(place.line, 0)));
     samples.offset.push_back(index_in(data.offsets, place.offset));

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/detail/speed/motion_table.hpp"
 #include "report/grids.hpp"
 #include "report/limited_by.hpp"
 #include "report/packed.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cncplan/executor.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
-#include "cncplan/plan/executor.hpp"
 #include "serve/live_machine.hpp"
 
 namespace serve {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ask.hpp"
-#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/executor_levels.hpp"
 #include "events.hpp"
 #include "live_record.hpp"
 
@@ -21,7 +21,7 @@ namespace detail {
 
 /// s, in which all that is planned is dwelled, or driven at the clock's rate if that is constant.
 template <class M, class B>
-[[nodiscard]] double least_time_left(const cncplan::plan::LiveDriver<M, B>& driver) {
+[[nodiscard]] double least_time_left(const cncplan::detail::LiveDriver<M, B>& driver) {
   if (driver.dwells()) return driver.until_change();
   if (driver.stands() || driver.driven().empty()) return 0.0;
   const auto& last = driver.driven()[driver.driven().size() - 1];
@@ -40,8 +40,7 @@ template <class M, class B>
 [[nodiscard]] cncplan::Expected<cncplan::Trajectory<M, B>, cncplan::ProgramError> drive_live(
     std::span<const B> blocks, const M& machine, const cncplan::PlanOptions& options,
     const std::vector<Event>& events, double period) {
-  namespace plan = cncplan::plan;
-  using Driver = plan::LiveDriver<M, B>;
+  using Driver = cncplan::detail::LiveDriver<M, B>;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr std::size_t held_blocks = 300;
   constexpr int most_search = 1000;  // ticks in which a change of the rate is looked for

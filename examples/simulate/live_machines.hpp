@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "cncplan/executor_levels.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
-#include "cncplan/plan/executor_levels.hpp"
 #include "machine.hpp"
 #include "serve.hpp"
 #include "serve/live_executor.hpp"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cncplan/core/state.hpp"
-#include "cncplan/plan/live/live_driver.hpp"
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/detail/executor/live_driver.hpp"
+#include "cncplan/trajectory.hpp"
 
 namespace simulate {
 
@@ -21,7 +21,7 @@ namespace simulate {
 template <class M, class B>
 class LiveRecord {
  public:
-  using Driver = cncplan::plan::LiveDriver<M, B>;
+  using Driver = cncplan::detail::LiveDriver<M, B>;
   using Trajectory = cncplan::Trajectory<M, B>;
 
   explicit LiveRecord(std::span<const B> programmed)

@@ -6,16 +6,16 @@
 #include <string>
 #include <type_traits>
 
+#include "cncplan/block.hpp"
+#include "cncplan/block_builder.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/row.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
+#include "cncplan/machine.hpp"
 #include "cncplan/path/measured.hpp"
 #include "cncplan/path/spline.hpp"
-#include "cncplan/plan/block_builder.hpp"
-#include "cncplan/plan/machine.hpp"
-#include "cncplan/plan/machine_block.hpp"
-#include "cncplan/plan/set_point.hpp"
-#include "cncplan/plan/table_path.hpp"
+#include "cncplan/set_point.hpp"
+#include "cncplan/table_path.hpp"
 #include "support/machine_file.hpp"
 #include "tool_path.hpp"
 
@@ -65,7 +65,7 @@ struct BlockType {
 };
 template <>
 struct BlockType<Table> {
-  using Type = cncplan::Block<3, cncplan::plan::TablePath<cncplan::kinematics::PolarMap, ToolPath>>;
+  using Type = cncplan::Block<3, cncplan::TablePath<cncplan::kinematics::PolarMap, ToolPath>>;
 };
 template <>
 struct BlockType<Rows> {

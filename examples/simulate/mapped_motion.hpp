@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "cncplan/plan/block_builder.hpp"
-#include "cncplan/plan/machine.hpp"
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/block_builder.hpp"
+#include "cncplan/machine.hpp"
+#include "cncplan/trajectory.hpp"
 #include "planned.hpp"
 #include "support/machine_file.hpp"
 

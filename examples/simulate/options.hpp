@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cncplan/core/limits.hpp"
-#include "cncplan/plan/orientation.hpp"
-#include "cncplan/plan/smooth_level.hpp"
+#include "cncplan/orientation.hpp"
+#include "cncplan/smooth_level.hpp"
 #include "junction_choice.hpp"
 #include "serve/address.hpp"
 #include "support/arguments.hpp"

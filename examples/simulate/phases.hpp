@@ -4,9 +4,9 @@
 #include <memory_resource>
 #include <vector>
 
-#include "cncplan/plan/cells.hpp"
-#include "cncplan/plan/motion_table.hpp"
-#include "cncplan/plan/player/played.hpp"
+#include "cncplan/detail/executor/motion_set_point.hpp"
+#include "cncplan/detail/speed/cells.hpp"
+#include "cncplan/detail/speed/motion_table.hpp"
 #include "events.hpp"
 #include "options.hpp"
 
@@ -14,11 +14,11 @@ namespace simulate {
 
 /// What drives cells from end to end. Throws `Failure` for what cannot be planned.
 [[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
-    const Options& options, const cncplan::plan::BasicCells<double>& cells);
+    const Options& options, const cncplan::detail::BasicCells<double>& cells);
 /// The program played: nothing is known of the events before they come, but how far the feed goes. `blocks`:
-/// the cells as a player takes them. Throws `Failure` for what does not end.
+/// the cells as a motion executor takes them. Throws `Failure` for what does not end.
 [[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> played(
-    const Options& options, const cncplan::plan::BasicCells<double>& cells,
-    const std::vector<cncplan::plan::PlayedBlock>& blocks, const std::vector<Event>& events);
+    const Options& options, const cncplan::detail::BasicCells<double>& cells,
+    const std::vector<cncplan::detail::MotionBlock>& blocks, const std::vector<Event>& events);
 
 }  // namespace simulate

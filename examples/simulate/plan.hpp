@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "cncplan/plan/fallback.hpp"
+#include "cncplan/fallback.hpp"
 #include "measures.hpp"
 #include "options.hpp"
 #include "planned.hpp"

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "cncplan/compiled.hpp"
+#include "cncplan/detail/curve/merge_lines.hpp"
+#include "cncplan/detail/executor/simulate_motion.hpp"
+#include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
-#include "cncplan/plan/cells.hpp"
-#include "cncplan/plan/merge_lines.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/player/play.hpp"
-#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/program_error.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "drive_live.hpp"
 #include "events.hpp"
@@ -37,20 +37,20 @@ namespace detail {
 }
 
 template <class B, class M>
-[[nodiscard]] double wanted_speed(const B& block, const M& machine) {
-  return cncplan::plan::wanted_speed(block, machine, cncplan::length_of(block.path, machine));
+[[nodiscard]] double requested_speed(const B& block, const M& machine) {
+  return cncplan::detail::requested_speed(block, machine, cncplan::length_of(block.path, machine));
 }
 
 /// Joints between motions that are slower than the feeds on both sides.
 template <class M>
-[[nodiscard]] std::size_t count_limited(const cncplan::plan::BasicCells<double>& cells, const M& machine,
+[[nodiscard]] std::size_t count_limited(const cncplan::detail::BasicCells<double>& cells, const M& machine,
                                         const Program<M>& program) {
   std::size_t count = 0;
-  for (std::size_t i = 1; i < cells.caps.size(); ++i) {
+  for (std::size_t i = 1; i < cells.segments.size(); ++i) {
     const std::size_t before = cells.blocks[i - 1], after = cells.blocks[i];
     if (program.motion_of[before] != program.motion_of[after] &&
-        cells.caps[i].entry < std::min(wanted_speed(program.blocks[before], machine),
-                                       wanted_speed(program.blocks[after], machine)))
+        cells.segments[i].entry < std::min(requested_speed(program.blocks[before], machine),
+                                           requested_speed(program.blocks[after], machine)))
       ++count;
   }
   return count;
@@ -58,17 +58,17 @@ template <class M>
 
 /// Blocks as they are driven, and cut into cells.
 template <class M>
-[[nodiscard]] cncplan::plan::BasicCells<double> cells_of(
+[[nodiscard]] cncplan::detail::BasicCells<double> cells_of(
     const Options& options, const M& machine, const Program<M>& program, std::span<const BlockOf<M>> blocks,
-    const cncplan::plan::BasicSmoothing<double, M::axis_count>& smoothing) {
-  namespace plan = cncplan::plan;
-  const plan::JointRules<double, JunctionChoice> rules{
+    const cncplan::detail::BasicSmoothing<double, M::axis_count>& smoothing) {
+  const cncplan::detail::JunctionRules<double, JunctionChoice> rules{
       options.junction, options.corner_tolerance,
       options.rotary_tolerance * cncplan::gcode::radians_per_degree};
   const bool whole = options.planning == Planning::block || options.interpolator == Interpolator::constant;
-  auto cells = whole ? plan::make_cells<cncplan::published::WholeBlocks>(blocks, machine, rules, smoothing)
-                     : plan::make_cells(blocks, machine, rules, smoothing);
-  if (!cells) refuse(plan::error_in(blocks, cells.error()), program.file);
+  auto cells =
+      whole ? cncplan::detail::make_cells<cncplan::published::WholeBlocks>(blocks, machine, rules, smoothing)
+            : cncplan::detail::make_cells(blocks, machine, rules, smoothing);
+  if (!cells) refuse(cncplan::detail::error_in(blocks, cells.error()), program.file);
   return std::move(*cells);
 }
 
@@ -111,7 +111,6 @@ template <class M>
 template <class M>
 [[nodiscard]] Plan plan_look_ahead(const Options& options, const support::Machine& file, const M& machine,
                                    const Program<M>& program) {
-  namespace plan = cncplan::plan;
   using Block = BlockOf<M>;
   using Trajectory = cncplan::Trajectory<M, Block>;
   // A mill's paths are smoothed; a table's and rows R Z A C are driven exactly.
@@ -122,10 +121,10 @@ template <class M>
   typename Trajectory::Smoothing smoothing;
   if constexpr (smoothed)
     if (options.tolerance > 0.0) {
-      const plan::SmoothingRules<double> within{
+      const cncplan::detail::SmoothingRules<double> within{
           options.tolerance, options.rotary_tolerance * cncplan::gcode::radians_per_degree};
-      cncplan::merge_lines(std::span(driven), machine, within);
-      smoothing = plan::smoothing(std::span<const Block>(driven), machine, within);
+      cncplan::detail::merge_lines(std::span(driven), machine, within);
+      smoothing = cncplan::detail::smoothing(std::span<const Block>(driven), machine, within);
     }
   std::pmr::vector<cncplan::BasicPiecePhase<double>> phases;
   if (options.events) {  // limits are made for the highest feed
@@ -138,7 +137,8 @@ template <class M>
       if (block.rapid) return rapid_speed(machine);
       return std::isfinite(block.feed) ? block.feed : feed_speed(machine);
     };
-    const auto blocks = plan::played_blocks(std::span<const Block>(program.blocks), cells, feed_of);
+    const auto blocks =
+        cncplan::detail::motion_blocks(std::span<const Block>(program.blocks), cells, feed_of);
     phases = played(options, cells, blocks, events);
   } else {
     const auto cells = cells_of(options, machine, program, std::span<const Block>(driven), smoothing);

@@ -9,7 +9,7 @@
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/state.hpp"
 #include "cncplan/core/vector.hpp"
-#include "cncplan/plan/motor_edge.hpp"
+#include "cncplan/motor_edge.hpp"
 #include "cncplan/step/backend.hpp"
 #include "cncplan/step/drive.hpp"
 #include "per_axis.hpp"

@@ -10,11 +10,11 @@
 
 #include "channels_of.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/follow_steps.hpp"
+#include "cncplan/junction_jumps.hpp"
 #include "cncplan/path/map.hpp"
-#include "cncplan/plan/follow_steps.hpp"
-#include "cncplan/plan/joint_jumps.hpp"
-#include "cncplan/plan/peaks.hpp"
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/peaks.hpp"
+#include "cncplan/trajectory.hpp"
 #include "machine.hpp"
 #include "planned.hpp"
 #include "report/channels.hpp"
@@ -68,7 +68,7 @@ class PlannedOn final : public report::DrivenTrajectory<cncplan::Trajectory<M, B
   [[nodiscard]] bool completed() const override { return trajectory_.completed(); }
   [[nodiscard]] PlanPeaks peaks() const override {
     const auto inside = cncplan::peaks(trajectory_);
-    const auto joints = cncplan::joint_jumps(trajectory_);
+    const auto joints = cncplan::junction_jumps(trajectory_);
     return {
         own(inside.velocity), own(inside.acceleration), own(inside.jerk), own(joints.velocity), inside.tool,
         inside.along,         joints.accelerations};

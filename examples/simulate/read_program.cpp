@@ -11,8 +11,8 @@
 #include <utility>
 #include <variant>
 
+#include "cncplan/detail/block_checks.hpp"
 #include "cncplan/gcode/controls.hpp"
-#include "cncplan/plan/block_checks.hpp"
 #include "read_items.hpp"
 #include "support/failure.hpp"
 
@@ -152,7 +152,7 @@ class Builder {
       begin_table(block.path.start());
       const std::size_t first = program_.blocks.size();
       bool within = true;
-      const auto followed = cncplan::plan::follow_table(
+      const auto followed = cncplan::follow_table(
           block.path, cncplan::kinematics::PolarMap{}, machine_.smallest_radius, table_,
           [&](const auto& part) { within = within && add(copy(block, typename BlockOf<M>::Path(part))); });
       if (!followed) refuse_radius(followed.error().value, motion.line, motion.column);
@@ -169,13 +169,13 @@ class Builder {
   }
 
   bool add(const BlockOf<M>& block) {
-    const auto within = cncplan::plan::within_travel(block.path, machine_);
+    const auto within = cncplan::detail::within_travel(block.path, machine_);
     if (!within) {
       // A stop beyond the travel is told of with the motion that went there.
       if (block.path.length() > 0.0 || problems_.found().empty()) refuse_travel(block, within.error());
       return false;
     }
-    if (const auto limited = cncplan::plan::limited(block, machine_); !limited) {
+    if (const auto limited = cncplan::detail::limited(block, machine_); !limited) {
       problems_.add(cncplan::gcode::Diagnostic{limited.error(), block.line, block.column, {}});
       return false;
     }
@@ -205,8 +205,7 @@ class Builder {
       begin_table(at);
       using cncplan::kinematics::PolarMap;
       const cncplan::path::Part<ToolPath> here(block.path, 0.0, 0.0);
-      add(copy(block,
-               cncplan::plan::TablePath<PolarMap, ToolPath>(PolarMap{{at.x(), at.y(), table_}}, here)));
+      add(copy(block, cncplan::TablePath<PolarMap, ToolPath>(PolarMap{{at.x(), at.y(), table_}}, here)));
     } else {
       add(copy(block, *block.path.line()));
     }
@@ -217,7 +216,7 @@ class Builder {
     if (std::exchange(table_begun_, true)) return;
     const cncplan::Axis& axis = machine_.axes[2];
     if (std::isfinite(axis.low) || std::isfinite(axis.high))
-      table_ = cncplan::plan::first_table_angle(at.x(), at.y(), axis.low, axis.high);
+      table_ = cncplan::first_table_angle(at.x(), at.y(), axis.low, axis.high);
   }
 
   void refuse_radius(double radius, int line, int column) {

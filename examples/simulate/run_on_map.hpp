@@ -13,7 +13,7 @@
 
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "mapped_motion.hpp"
 #include "maps/maps.hpp"
 #include "options.hpp"

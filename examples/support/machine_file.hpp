@@ -14,8 +14,8 @@
 #include "cncplan/core/limits.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/machine.hpp"
-#include "cncplan/plan/orientation.hpp"
+#include "cncplan/machine.hpp"
+#include "cncplan/orientation.hpp"
 #include "cncplan/step/drive.hpp"
 
 namespace support {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/motor_edge.hpp"
+#include "cncplan/motor_edge.hpp"
 #include "cncplan/step/edge.hpp"
 #include "cncplan/step/vcd.hpp"
 #include "support/machine_file.hpp"

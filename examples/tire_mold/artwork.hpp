@@ -8,9 +8,11 @@
 
 namespace tire_mold {
 
+using namespace cncplan::tire_mold;  // the library's part of it
+
 /// One motion of the artwork, in its own coordinates.
 struct Move {
-  cncplan::plan::ArtworkPath segment;
+  ArtworkPath segment;
   double feed{};  ///< mm/s; 0 for a feed move without any F so far
   bool rapid{};
   bool exact_stop{};

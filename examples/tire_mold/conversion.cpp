@@ -14,7 +14,6 @@ namespace {
 
 using namespace cncplan;
 using Joints = VectorN<double, 4>;
-using plan::WallPart;
 
 // G2, G3 and the splines G5 to G5.3 and G6.2, which become straight rows.
 bool is_curve_code(double code) { return code == 2 || code == 3 || std::floor(code) == 5 || code == 6.2; }
@@ -97,7 +96,7 @@ class Converter {
         add(move, *joints, rows);
         return;
       }
-      add(move, plan::wall_joints(parts.front(), 0.0, table_.added), rows);
+      add(move, wall_joints(parts.front(), 0.0, table_.added), rows);
     }
     row_start_ = 0.0;
     row_length_ = length_of_rows(segment);
@@ -112,18 +111,18 @@ class Converter {
   }
 
   void add_by_tolerance(const Move& move, const WallPart& part, std::vector<Joints>& rows) {
-    const auto division = plan::divide(part, options_.tolerance);
+    const auto division = divide(part, options_.tolerance);
     result_.chord_error = std::max(result_.chord_error, division.error);
     const double end = part.parameter_end(), width = end / division.rows;
     for (int k = 1; k <= division.rows; ++k) {
       const double u = k == division.rows ? end : width * k;
-      add(move, plan::wall_joints(part, u, (*here_)[3]), rows);
+      add(move, wall_joints(part, u, (*here_)[3]), rows);
     }
   }
 
   // The length of fixed rows along a move: K17 measures on the surface, so moves up and down are not cut.
   // Arcs that stand upright count in full.
-  [[nodiscard]] double length_of_rows(const plan::ArtworkPath& segment) const {
+  [[nodiscard]] double length_of_rows(const ArtworkPath& segment) const {
     const Vector3 way = segment.derivative(0.0);
     const bool upright = segment.arc() != nullptr && segment.arc()->plane() != Plane::xy;
     const double share = upright ? 1.0 : std::hypot(way.x(), way.y()) / way.norm();
@@ -132,7 +131,7 @@ class Converter {
 
   // K17 cuts at whole multiples of the length, and leaves the last cut out: the last row of a move is longer
   // than the others, and a move of less than two lengths is one row.
-  [[nodiscard]] double cuts_of(const plan::ArtworkPath& segment) const {
+  [[nodiscard]] double cuts_of(const ArtworkPath& segment) const {
     return std::floor(segment.length() / row_length_ + cut_rounding) - 1.0;
   }
 
@@ -150,7 +149,7 @@ class Converter {
       const double u = part.artwork.parameter_at(cut());
       row(u, cut_joints(part, u));
     }
-    if (to_end) row(part.to, plan::wall_joints(part, part.to - part.from, (*here_)[3]));
+    if (to_end) row(part.to, wall_joints(part, part.to - part.from, (*here_)[3]));
   }
 
   // K17 writes its cuts into the flat program, with that program's decimals, before it maps them.
@@ -159,21 +158,21 @@ class Converter {
     const double scale = std::pow(10.0, options_.decimals);
     for (double& coordinate : point) coordinate = std::round(coordinate * scale) / scale;
     auto joints = sidewall_.joints(point);
-    if (!joints) return plan::wall_joints(part, u - part.from, (*here_)[3]);  // rounded off the wall's end
+    if (!joints) return wall_joints(part, u - part.from, (*here_)[3]);  // rounded off the wall's end
     (*joints)[3] = kinematics::near_turn((*joints)[3], (*here_)[3]);
     return *joints;
   }
 
-  // As plan::chord_error, for a row that may cross from one piece of the profile to the next.
-  [[nodiscard]] double wall_error(const plan::ArtworkPath& artwork, const Joints& joints, double to) const {
+  // As chord_error, for a row that may cross from one piece of the profile to the next.
+  [[nodiscard]] double wall_error(const ArtworkPath& artwork, const Joints& joints, double to) const {
     const kinematics::TireMold machine{.tool_length = sidewall_.tool_length()};
     double worst = 0.0;
     for (int k = 1; k < 8; ++k) {
       const double share = k / 8.0;
       const double u = row_start_ + share * (to - row_start_);
-      const WallPart on{artwork, sidewall_.map(sidewall_.piece_at(plan::radius_at(artwork, u))), 0.0, to};
+      const WallPart on{artwork, sidewall_.map(sidewall_.piece_at(radius_at(artwork, u))), 0.0, to};
       const Vector3 tip = machine.forward(*here_ + share * (joints - *here_)).position;
-      worst = std::max(worst, plan::off_wall(on, u, tip));
+      worst = std::max(worst, off_wall(on, u, tip));
     }
     return worst;
   }
@@ -289,7 +288,7 @@ class Converter {
   const Machine& machine_;
   const Options& options_;
   TableTurns table_;
-  plan::WallCutter cutter_;
+  WallCutter cutter_;
   BasicJointLimits<double, 4> limits_;
   std::size_t index_ = 0;
   std::optional<Joints> here_;
@@ -310,8 +309,8 @@ bool leads_to_mold(const Move& move) {
   return way.x() != 0.0 || way.y() != 0.0;
 }
 
-plan::ArtworkPath first_way(const plan::ArtworkPath& segment, const kinematics::Sidewall& sidewall,
-                            const Machine& machine, const Options& options) {
+ArtworkPath first_way(const ArtworkPath& segment, const kinematics::Sidewall& sidewall,
+                      const Machine& machine, const Options& options) {
   const Vector3 start = segment.start(), end = segment.end();
   const double from = std::hypot(start.x(), start.y()), to = std::hypot(end.x(), end.y());
   const double entry = std::max(sidewall.start_radius(), smallest_radius(machine));

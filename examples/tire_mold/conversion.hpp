@@ -35,9 +35,8 @@ struct TableTurns {
 
 /// What is mapped of the first move: its end; with `--approach`, if it is straight, its way from where it
 /// comes over the profile. It begins on the origin's axis, so its radius grows evenly.
-[[nodiscard]] cncplan::plan::ArtworkPath first_way(const cncplan::plan::ArtworkPath& segment,
-                                                   const cncplan::kinematics::Sidewall& sidewall,
-                                                   const Machine& machine, const Options& options);
+[[nodiscard]] ArtworkPath first_way(const ArtworkPath& segment, const cncplan::kinematics::Sidewall& sidewall,
+                                    const Machine& machine, const Options& options);
 
 /// Says where and why a segment cannot be mapped.
 [[noreturn]] void refuse_move(const Artwork& artwork, std::size_t line, const Move& move,

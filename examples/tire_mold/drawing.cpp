@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cncplan/plan/tire_mold/wall_cutter.hpp"
+#include "cncplan/tire_mold/wall_cutter.hpp"
 #include "dxf.hpp"
 #include "support/failure.hpp"
 
@@ -198,7 +198,7 @@ kinematics::ProfileChain profile_of(const std::string& file, const kinematics::C
   if (!chain) throw Failure(Exit::bad_input, sentence(file, chain.error(), drawing));
   for (std::size_t i = 0; i + 1 < chain->pieces.size(); ++i) {
     const double angle = kinematics::kink_angle(chain->pieces[i], chain->pieces[i + 1]);
-    if (std::abs(angle) < plan::WallCutter::smooth_angle) continue;
+    if (std::abs(angle) < cncplan::tire_mold::WallCutter::smooth_angle) continue;
     const Origin& before = drawing.origins[chain->entities[i]];
     const Origin& behind = drawing.origins[chain->entities[i + 1]];
     fmt::print(

@@ -76,7 +76,7 @@ report::Report html_report(const Options& options, const kinematics::Sidewall& s
     return report::channel_point(machine, channels, report::tip_point(options.tool_length, axes), axes);
   };
   const auto place_of = [&](std::size_t i) {
-    const plan::WallBlock& block = motion.program()[i];
+    const WallBlock& block = motion.program()[i];
     return report::Place{block.line, block.rapid ? junction::Kind::rapid : junction::Kind::line};
   };
   const Peaks& peaks = measures.peaks;

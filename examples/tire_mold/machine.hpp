@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 #include "support/machine_file.hpp"
 
 namespace tire_mold {

@@ -26,9 +26,9 @@ cncplan::Block<3> flat_block(const Move& move, int line) {
           .column = move.column};
 }
 
-plan::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall& sidewall,
-                             const Machine& machine, const Options& options, double table) {
-  plan::WallProgram program(sidewall, smallest_radius(machine), table);
+cncplan::tire_mold::WallProgram program_of(const Artwork& artwork, const kinematics::Sidewall& sidewall,
+                                           const Machine& machine, const Options& options, double table) {
+  cncplan::tire_mold::WallProgram program(sidewall, smallest_radius(machine), table);
   bool over_mold = false;
   for (std::size_t i = 0; i < artwork.lines.size(); ++i) {
     const Line& line = artwork.lines[i];
@@ -65,8 +65,8 @@ Motion plan_motion(const WallProgram& program, const Artwork& artwork, const Mac
 }
 
 std::array<double, 3> flat_point(const Motion& motion, const Sample& sample) {
-  const plan::WallPath& path = *motion.program()[sample.block].path.as<plan::WallPath>();
-  const plan::WallPart& part = path.curve();
+  const WallPath& path = *motion.program()[sample.block].path.as<WallPath>();
+  const WallPart& part = path.curve();
   auto flat = part.flat(path.parameter_at(sample.along.position - motion.start_length(sample.block)));
   if (part.kink) {  // whose radii are the angle turned
     const double radius = std::hypot(flat[0], flat[1]);

@@ -16,14 +16,14 @@
 namespace tire_mold {
 
 /// Without a block where there is nothing over the mold.
-using Motion = cncplan::Trajectory<cncplan::Machine<4>, cncplan::plan::WallBlock>;
+using Motion = cncplan::Trajectory<cncplan::Machine<4>, WallBlock>;
 using Sample = Motion::SetPoint;
 using Peaks = cncplan::BasicPeaks<double, 4>;
 
 /// The artwork from its first point on as blocks of the machine, the table turned on by whole turns into its
 /// travel where that is possible. Throws `Failure` for what cannot be mapped.
 struct WallProgram {
-  std::vector<cncplan::plan::WallBlock> blocks;
+  std::vector<WallBlock> blocks;
   TableTurns table;
 };
 [[nodiscard]] WallProgram wall_program(const Artwork& artwork, const cncplan::kinematics::Sidewall& sidewall,

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cncplan/kinematics/tire_mold/profile_piece.hpp"
-#include "cncplan/plan/smooth_level.hpp"
+#include "cncplan/smooth_level.hpp"
 #include "support/arguments.hpp"
 
 namespace tire_mold {

@@ -18,7 +18,7 @@ using Bound = BasicInterval<double>;
 
 // By how much the wall stretches flat ways about a part, at most: along the profile and round the table, as
 // the normal is neither. Intervals bound it, `margin` mm beside the part too.
-double stretch(const plan::WallPart& part, const FlatPart& flat, double margin) {
+double stretch(const WallPart& part, const FlatPart& flat, double margin) {
   using Jet = BasicJet<Bound>;
   constexpr int cells = 8;  // bounds of a whole part would be wide
   double most = 1.0;
@@ -36,7 +36,7 @@ double stretch(const plan::WallPart& part, const FlatPart& flat, double margin) 
 }
 
 // The greatest way of what counts as length (the tip; over a kink the holder), for a mm of the artwork.
-double rate(const plan::WallPart& part, const FlatPart& flat) {
+double rate(const WallPart& part, const FlatPart& flat) {
   constexpr int places = 8;
   double greatest = 0.0;
   for (int i = 0; i <= places; ++i) {
@@ -52,8 +52,8 @@ double rate(const plan::WallPart& part, const FlatPart& flat) {
   return greatest;
 }
 
-SmoothBlock smooth_block(const plan::WallBlock& block, const Machine& machine, double tolerance) {
-  const plan::WallPart& part = block.path.as<plan::WallPath>()->curve();
+SmoothBlock smooth_block(const WallBlock& block, const Machine& machine, double tolerance) {
+  const WallPart& part = block.path.as<WallPath>()->curve();
   const double from = part.artwork.length_at(part.from), to = part.artwork.length_at(part.to);
   const FlatPart flat(part.artwork, from, to);
   const double fastest =
@@ -75,7 +75,7 @@ SmoothMotion plan_smooth(const WallProgram& program, const Artwork& artwork, con
   for (std::size_t i = 0; i < planned.axes.size(); ++i) planned.axes[i] = machine.axis(i);
   std::vector<SmoothBlock> blocks;
   blocks.reserve(program.blocks.size());
-  for (const plan::WallBlock& block : program.blocks)
+  for (const WallBlock& block : program.blocks)
     blocks.push_back(smooth_block(block, machine, options.tolerance));
   auto motion = plan_blocks(blocks, planned, {.tolerance = options.tolerance, .level = *options.smooth});
   if (motion) return std::move(*motion);

@@ -10,7 +10,7 @@
 namespace tire_mold {
 
 /// A part of the artwork over one piece of the wall, flat; its length is that of the artwork.
-using FlatPart = cncplan::path::Part<cncplan::plan::ArtworkPath>;
+using FlatPart = cncplan::path::Part<ArtworkPath>;
 using SmoothBlock =
     cncplan::BasicBlock<double, 4, cncplan::path::Mapped<cncplan::kinematics::SidewallMap, FlatPart>>;
 using SmoothMotion =

@@ -7,7 +7,7 @@
 #include <new>
 #include <optional>
 
-#include <cncplan/plan/executor.hpp>
+#include <cncplan/executor.hpp>
 
 #include "part_blocks.hpp"
 #include "planned_part.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include <cncplan/plan/machine.hpp>
-#include <cncplan/plan/machine_block.hpp>
+#include <cncplan/block.hpp>
+#include <cncplan/machine.hpp>
 
 #include "move_path.hpp"
 #include "part.hpp"

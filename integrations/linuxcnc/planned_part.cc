@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include <cncplan/plan/executor_levels.hpp>
-#include <cncplan/plan/player/queue.hpp>
+#include <cncplan/executor_levels.hpp>
+#include <cncplan/core/queue.hpp>
 
 #include "part_blocks.hpp"
 
@@ -142,7 +142,7 @@ class Planned final : public PlannedPart {
     stage_.store(Stage::free, std::memory_order_release);
   }
 
-  plan::Queue<Block<N>, waiting_blocks> blocks_;
+  Queue<Block<N>, waiting_blocks> blocks_;
   std::optional<LevelExecutor> executor_;
   std::atomic<Stage> stage_{Stage::free};
   std::atomic<bool> leaves_{false};

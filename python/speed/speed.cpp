@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "interruption.hpp"
 #include "sized/planner.hpp"
 

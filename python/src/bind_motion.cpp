@@ -6,13 +6,13 @@
 #include <span>
 
 #include "bindings.hpp"
+#include "cncplan/move_to.hpp"
 #include "cncplan/path/b_spline_through.hpp"
-#include "cncplan/plan/curve_limits.hpp"
-#include "cncplan/plan/move_to.hpp"
+#include "cncplan/path/spline_through.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
-#include "cncplan/smooth/spline_through.hpp"
-#include "cncplan/smooth/time_optimal.hpp"
+#include "cncplan/time_optimal.hpp"
+#include "cncplan/tool.hpp"
 #include "fault.hpp"
 
 namespace cncplan::python {
@@ -34,15 +34,15 @@ RoomyMachine roomy(const AnyMachine& from) {
 
 using Rows = std::array<std::vector<double>, 3>;
 
-using Spline = smooth::SplineThrough<room>;
+using Spline = path::SplineThrough<room>;
 
 /// The fastest motion along a curve of its own.
 struct CurveMotion {
   Spline curve;
   PhaseProfile along;
 
-  CurveMotion(const smooth::MotionLimits<room>& limits, const Numbers& points,
-              const std::vector<double>& parameters, const TimeOptimalOptions& options)
+  CurveMotion(const MotionLimits<room>& limits, const Numbers& points, const std::vector<double>& parameters,
+              const TimeOptimalOptions& options)
       : curve(curve_through(points, parameters)), along(value_of(time_optimal(curve, limits, options))) {}
 
  private:
@@ -56,8 +56,8 @@ struct CurveMotion {
 };
 
 // Of each axis, without any of the tool.
-smooth::MotionLimits<room> limits_of(const Rows& rows) {
-  smooth::MotionLimits<room> limits;
+MotionLimits<room> limits_of(const Rows& rows) {
+  MotionLimits<room> limits;
   for (std::size_t i = 0; i < limits.axes.size(); ++i)
     limits.axes[i] = i < rows[0].size() ? Limits{rows[0][i], rows[1][i], rows[2][i]} : Limits{1, 1, 1};
   return limits;
@@ -167,7 +167,7 @@ void bind_motion(py::module_& module) {
                            std::copy_n(second.data(), axes, acceleration);
                          });
       });
-  const auto along_curve = [](const smooth::MotionLimits<room>& limits, const Numbers& points,
+  const auto along_curve = [](const MotionLimits<room>& limits, const Numbers& points,
                               const std::vector<double>& parameters, double start, double end, double gap) {
     const py::gil_scoped_release released;
     return CurveMotion(limits, points, parameters,
@@ -176,7 +176,7 @@ void bind_motion(py::module_& module) {
   module.def("time_optimal",
              [along_curve](const AnyMachine& machine, const Numbers& points,
                            const std::vector<double>& parameters, double start, double end, double gap) {
-               return along_curve(plan::motion_limits(roomy(machine)), points, parameters, start, end, gap);
+               return along_curve(motion_limits(roomy(machine)), points, parameters, start, end, gap);
              });
   module.def("time_optimal",
              [along_curve](const Rows& limits, const Numbers& points, const std::vector<double>& parameters,

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "blocks.hpp"
-#include "cncplan/plan/plan_options.hpp"
-#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan_options.hpp"
+#include "cncplan/program_error.hpp"
 #include "interruption.hpp"
 #include "machine.hpp"
 

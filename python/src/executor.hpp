@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "blocks.hpp"
-#include "cncplan/plan/executor_options.hpp"
-#include "cncplan/plan/executor_state.hpp"
-#include "cncplan/plan/plan_options.hpp"
-#include "cncplan/plan/player/jog.hpp"
-#include "cncplan/plan/program_error.hpp"
-#include "cncplan/plan/set_point.hpp"
+#include "cncplan/executor_options.hpp"
+#include "cncplan/executor_state.hpp"
+#include "cncplan/jog.hpp"
+#include "cncplan/plan_options.hpp"
+#include "cncplan/program_error.hpp"
+#include "cncplan/set_point.hpp"
 #include "machine.hpp"
 
 namespace cncplan::python {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "cncplan/plan/program_error.hpp"
+#include "cncplan/program_error.hpp"
 
 namespace cncplan::python {
 

@@ -9,7 +9,7 @@
 
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 #include "support/machine_file.hpp"
 
 namespace cncplan::python {

@@ -13,7 +13,7 @@
 
 #include "bindings.hpp"
 #include "cncplan/path/map.hpp"
-#include "cncplan/plan/program.hpp"
+#include "cncplan/program.hpp"
 #include "cncplan/version.hpp"
 #include "fault.hpp"
 #include "interruption.hpp"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/block_builder.hpp"
-#include "cncplan/plan/program_error.hpp"
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/block_builder.hpp"
+#include "cncplan/program_error.hpp"
+#include "cncplan/trajectory.hpp"
 #include "report/report.hpp"
 #include "trajectory.hpp"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cncplan/gcode/motion.hpp"
-#include "cncplan/plan/plan_options.hpp"
-#include "cncplan/plan/program_error.hpp"
+#include "cncplan/plan_options.hpp"
+#include "cncplan/program_error.hpp"
 #include "machine.hpp"
 
 namespace cncplan::python {

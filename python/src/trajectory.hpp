@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "blocks.hpp"
-#include "cncplan/plan/plan_options.hpp"
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/plan_options.hpp"
+#include "cncplan/trajectory.hpp"
 #include "machine.hpp"
 
 namespace cncplan::python {

@@ -1,5 +1,5 @@
 // Small linear systems: what is known by construction, in long double.
-#include "cncplan/core/least_squares.hpp"
+#include "cncplan/core/detail/least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cncplan/core/long_length.hpp"
+#include "cncplan/core/detail/long_length.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // A path seen without its type: a path whose every answer says what it was asked.
-#include "cncplan/core/path_view.hpp"
+#include "cncplan/core/detail/path_view.hpp"
 
 #include <type_traits>
 

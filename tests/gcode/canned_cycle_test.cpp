@@ -1,6 +1,6 @@
 // Canned cycles as LinuxCNC makes them: expected steps were written down from its documentation and from what
 // its rs274 prints; linuxcnc_test.cpp runs it where it is installed.
-#include "cncplan/gcode/canned_cycle.hpp"
+#include "cncplan/gcode/detail/canned_cycle.hpp"
 
 #include <string>
 

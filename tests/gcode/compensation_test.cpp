@@ -1,4 +1,4 @@
-#include "cncplan/gcode/compensation.hpp"
+#include "cncplan/gcode/detail/compensation.hpp"
 
 #include <cmath>
 #include <iomanip>

@@ -1,4 +1,4 @@
-#include "cncplan/gcode/language/expression.hpp"
+#include "cncplan/gcode/detail/expression.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "cncplan/gcode/modal.hpp"
+#include "cncplan/gcode/detail/modal.hpp"
 
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "cncplan/gcode/scanner.hpp"
+#include "cncplan/gcode/detail/scanner.hpp"
 
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/gcode/spline_pieces.hpp"
+#include "cncplan/gcode/detail/spline_pieces.hpp"
 #include "cncplan/gcode/writer.hpp"
 #include "cncplan/path/spline.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-#include "cncplan/interpolate/travel.hpp"
+#include "cncplan/interpolate/detail/travel.hpp"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "cncplan/kinematics/azimuth.hpp"
+#include "cncplan/kinematics/detail/azimuth.hpp"
 
 #include <optional>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "maps/maps.hpp"
 #include "support/catch.hpp"
 

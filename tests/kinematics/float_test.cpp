@@ -7,10 +7,10 @@
 #include "cncplan/kinematics/cartesian.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/table_path.hpp"
-#include "cncplan/plan/tire_mold/wall_program.hpp"
-#include "cncplan/plan/tire_mold/wall_rows.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/table_path.hpp"
+#include "cncplan/tire_mold/wall_program.hpp"
+#include "cncplan/tire_mold/wall_rows.hpp"
 #include "laws.hpp"
 #include "machine.hpp"
 #include "support/random.hpp"
@@ -65,7 +65,7 @@ template <class S>
 Summary on_the_wall() {
   const auto chain = test::wall<S>();
   const BasicSidewall<S> sidewall(chain.pieces, S(50), S(20.8));
-  plan::BasicWallProgram<S> program(sidewall, S(1));
+  tire_mold::BasicWallProgram<S> program(sidewall, S(1));
   for (const auto& segment : test::wall_artwork<S>())
     REQUIRE(program.append({.path = segment, .feed = S(60)}));
   return summary(program.blocks(), test::wall_machine<S>());
@@ -73,12 +73,13 @@ Summary on_the_wall() {
 
 template <class S>
 Summary round_the_table() {
-  using Path = plan::TablePath<BasicPolarMap<S>, plan::BasicArtworkPath<S>>;
+  using Path = cncplan::TablePath<BasicPolarMap<S>, tire_mold::BasicArtworkPath<S>>;
   std::vector<BasicBlock<S, 3, Path>> blocks;
   S table{};
   for (const auto& segment : test::wall_artwork<S>())
-    REQUIRE(plan::follow_table(segment, BasicPolarMap<S>{}, S(1), table,
-                               [&](const Path& path) { blocks.push_back({.path = path, .feed = S(60)}); }));
+    REQUIRE(cncplan::follow_table(segment, BasicPolarMap<S>{}, S(1), table, [&](const Path& path) {
+      blocks.push_back({.path = path, .feed = S(60)});
+    }));
   return summary(blocks, test::table_machine<S>());
 }
 
@@ -147,11 +148,12 @@ TEST_CASE("float: a program round the table as in double", "[float]") {
 TEST_CASE("float: rows of a part keep the tolerance", "[float]") {
   const auto chain = test::wall<float>();
   const BasicSidewall<float> sidewall(chain.pieces, 50, 20.8F);
-  plan::BasicWallCutter<float> cutter(sidewall, 1);
-  std::vector<plan::BasicWallPart<float>> parts;
-  REQUIRE(cutter.cut(plan::BasicArtworkPath<float>(path::BasicLine<float>({60, 0, 0}, {0, 110, 0})), parts));
+  tire_mold::BasicWallCutter<float> cutter(sidewall, 1);
+  std::vector<tire_mold::BasicWallPart<float>> parts;
+  REQUIRE(
+      cutter.cut(tire_mold::BasicArtworkPath<float>(path::BasicLine<float>({60, 0, 0}, {0, 110, 0})), parts));
   for (const auto& part : parts) {
-    const auto division = plan::divide(part, 0.01F);
+    const auto division = tire_mold::divide(part, 0.01F);
     CHECK(division.error <= 0.01F);
     CHECK(division.rows < 100);
   }

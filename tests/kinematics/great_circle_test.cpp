@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "cncplan/block_reader.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/program.hpp"
+#include "cncplan/program.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

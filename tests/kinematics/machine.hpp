@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cncplan/kinematics/polar.hpp"
+#include "cncplan/machine.hpp"
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/machine.hpp"
-#include "cncplan/plan/tire_mold/radius.hpp"
+#include "cncplan/tire_mold/radius.hpp"
 
 namespace cncplan::test {
 
@@ -43,9 +43,9 @@ MappedMachine<kinematics::BasicPolarMap<S>> table_machine() {
 
 /// Over the shoulder, round the arc and across the kink, there and back.
 template <std::floating_point S>
-std::vector<plan::BasicArtworkPath<S>> wall_artwork() {
+std::vector<tire_mold::BasicArtworkPath<S>> wall_artwork() {
   const auto line = [](S x0, S y0, S z0, S x1, S y1, S z1) {
-    return plan::BasicArtworkPath<S>(path::BasicLine<S>({x0, y0, z0}, {x1, y1, z1}));
+    return tire_mold::BasicArtworkPath<S>(path::BasicLine<S>({x0, y0, z0}, {x1, y1, z1}));
   };
   const auto arc = path::arc_from_center<S>({S(70), S(30), S(0)}, {S(70), S(30), S(0)}, {S(80), S(30), S(0)},
                                             Turn::clockwise, Plane::xy);

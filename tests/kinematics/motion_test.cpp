@@ -7,10 +7,10 @@
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/peaks.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/table_path.hpp"
-#include "cncplan/plan/tire_mold/wall_program.hpp"
+#include "cncplan/peaks.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/table_path.hpp"
+#include "cncplan/tire_mold/wall_program.hpp"
 #include "machine.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-plan::ArtworkPath line(const Vector3& a, const Vector3& b) { return path::Line<3>(a, b); }
+tire_mold::ArtworkPath line(const Vector3& a, const Vector3& b) { return path::Line<3>(a, b); }
 
 template <int N>
 struct Worst {
@@ -66,8 +66,9 @@ void check_within(const Worst<N>& worst, const M& machine, double rounding) {
 }
 
 // Flat blocks at 60 mm/s on the wall, each a motion of its own.
-plan::WallProgram on_wall(const Sidewall& sidewall, const std::vector<plan::ArtworkPath>& art, bool stops) {
-  plan::WallProgram program(sidewall, 1.0);
+tire_mold::WallProgram on_wall(const Sidewall& sidewall, const std::vector<tire_mold::ArtworkPath>& art,
+                               bool stops) {
+  tire_mold::WallProgram program(sidewall, 1.0);
   int number = 0;
   for (const auto& segment : art)
     REQUIRE(program.append({.path = segment, .feed = 60, .exact_stop = stops, .line = ++number}));
@@ -98,7 +99,7 @@ TEST_CASE("axes keep their limits over wall, kink and corners", "[motion]") {
   int kinks = 0, resting = 0;
   for (std::size_t i = 1; i < program.blocks().size(); ++i) {
     const auto kink = [&](std::size_t k) {
-      return program.blocks()[k].path.as<plan::WallPath>()->curve().kink;
+      return program.blocks()[k].path.as<tire_mold::WallPath>()->curve().kink;
     };
     if (kink(i - 1) == kink(i)) continue;
     ++kinks;
@@ -109,7 +110,7 @@ TEST_CASE("axes keep their limits over wall, kink and corners", "[motion]") {
   const auto trajectory = plan_blocks(program.blocks(), machine, junction::Deviation{0.01});
   REQUIRE(trajectory);
   const auto piece = [&](const auto& point) {
-    return trajectory->program()[point.block].path.template as<plan::WallPath>()->curve().map.piece;
+    return trajectory->program()[point.block].path.template as<tire_mold::WallPath>()->curve().map.piece;
   };
   const auto worst = measure(*trajectory, 1e-3, [&](const auto& before, const auto& after) {
     return before.line == after.line && piece(before) == piece(after);
@@ -162,7 +163,7 @@ TEST_CASE("every sample of the plan stands on the wall, and C goes on without a 
   const TireMold machine{.tool_length = 20.8};
   double off_wall = 0, jump = 0, last = 0, highest = 0;
   for (const auto& point : trajectory->samples(1e-3)) {
-    const auto& path = *trajectory->program()[point.block].path.as<plan::WallPath>();
+    const auto& path = *trajectory->program()[point.block].path.as<tire_mold::WallPath>();
     const double s = point.along.position - trajectory->start_length(point.block);
     const auto flat = path.curve().flat(path.parameter_at(s));
     const auto& q = point.position;
@@ -187,14 +188,14 @@ TEST_CASE("every sample of the plan stands on the wall, and C goes on without a 
 TEST_CASE("paths on the wall measure themselves", "[motion]") {
   const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
-  plan::WallProgram program(sidewall, 1.0);
+  tire_mold::WallProgram program(sidewall, 1.0);
   test::Random random;
   Vector3 at(60, 20, 0);
   int splines = 0;
   for (int i = 0; i < 50; ++i) {
     const double r = random.uniform(55, 130), c = random.uniform(-pi, pi);
     const Vector3 to(r * std::cos(c), r * std::sin(c), random.uniform(-1, 10));
-    plan::ArtworkPath way = line(at, to);
+    tire_mold::ArtworkPath way = line(at, to);
     if (i % 3 == 0) {  // a piece of a spline instead, bent to the side
       const Vector3 chord = to - at, aside(-chord.y(), chord.x(), 0.0);
       const double bend = random.uniform(-0.6, 0.6), other = random.uniform(-0.6, 0.6);
@@ -210,7 +211,7 @@ TEST_CASE("paths on the wall measure themselves", "[motion]") {
   CHECK(splines > 3);
   double length = 0, inverse = 0, first = 0, second = 0, joined = 0, below = 0;
   for (std::size_t i = 0; i < program.blocks().size(); ++i) {
-    const auto& path = *program.blocks()[i].path.as<plan::WallPath>();
+    const auto& path = *program.blocks()[i].path.as<tire_mold::WallPath>();
     const double end = path.parameter_end();
     const auto tip = [&](double u) {
       const auto p = path.curve().travelled(u);
@@ -246,7 +247,7 @@ TEST_CASE("paths on the wall measure themselves", "[motion]") {
     }
   }
   CHECK(program.blocks().size() > 100);
-  const auto& any = *program.blocks().front().path.as<plan::WallPath>();
+  const auto& any = *program.blocks().front().path.as<tire_mold::WallPath>();
   CHECK(test::heap_allocations_of([&] {
           (void)any.point_at(any.length() / 3);
           (void)any.bounds(0.0, any.length());
@@ -260,12 +261,12 @@ TEST_CASE("paths on the wall measure themselves", "[motion]") {
 }
 
 TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[motion]") {
-  using Path = plan::TablePath<PolarMap, plan::ArtworkPath>;
+  using Path = cncplan::TablePath<PolarMap, tire_mold::ArtworkPath>;
   const MappedMachine<PolarMap> machine = test::table_machine<double>();
   std::vector<Block<3, Path>> blocks;
   double table = 0;
-  const auto follow = [&](const plan::ArtworkPath& segment, int number) {
-    return plan::follow_table(segment, PolarMap{}, 1.0, table, [&](const Path& path) {
+  const auto follow = [&](const tire_mold::ArtworkPath& segment, int number) {
+    return cncplan::follow_table(segment, PolarMap{}, 1.0, table, [&](const Path& path) {
       blocks.push_back({.path = path, .feed = 30, .line = number});
     });
   };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

@@ -1,7 +1,7 @@
 // Straight rows of the four axes, held against the wall at many more places than the division looks at.
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/tire_mold/wall_cutter.hpp"
-#include "cncplan/plan/tire_mold/wall_rows.hpp"
+#include "cncplan/tire_mold/wall_cutter.hpp"
+#include "cncplan/tire_mold/wall_rows.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 #include "wall.hpp"
@@ -14,10 +14,10 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 // The largest distance of a row's places from the true path, found by looking for the nearest place.
-double distance(const plan::WallPart& part, double from, double to) {
+double distance(const tire_mold::WallPart& part, double from, double to) {
   const TireMold machine{.tool_length = part.map.tool_length};
-  const auto q0 = plan::wall_joints(part, from, 0.0);
-  const auto q1 = plan::wall_joints(part, to, q0[3]);
+  const auto q0 = tire_mold::wall_joints(part, from, 0.0);
+  const auto q1 = tire_mold::wall_joints(part, to, q0[3]);
   double worst = 0;
   for (int k = 1; k < 40; ++k) {
     const double share = k / 40.0;
@@ -44,17 +44,17 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
   test::Random random;
   double worst = 0, told_too_little = 0;
   int rows = 0, too_many = 0;
-  plan::WallCutter cutter(sidewall, 1.0);
+  tire_mold::WallCutter cutter(sidewall, 1.0);
   Vector3 at(60, 20, 0);
   for (int i = 0; i < 200; ++i) {
     const double r = random.uniform(55, 130), c = random.uniform(-pi, pi);
     const Vector3 to(r * std::cos(c), r * std::sin(c), random.uniform(-1, 1));
-    std::vector<plan::WallPart> parts;
+    std::vector<tire_mold::WallPart> parts;
     if (!cutter.cut(path::Line<3>(at, to), parts)) continue;
     at = to;
     for (const auto& part : parts) {
       const double tolerance = random.log_uniform(1e-3, 0.1);
-      const auto division = plan::divide(part, tolerance);
+      const auto division = tire_mold::divide(part, tolerance);
       rows += division.rows;
       const double width = part.parameter_end() / division.rows;
       double largest = 0;
@@ -62,7 +62,7 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
         largest = std::max(largest, distance(part, width * k, width * (k + 1)));
       worst = std::max(worst, largest / tolerance);
       told_too_little = std::max(told_too_little, largest / (division.error + 1e-9));
-      if (division.rows > 20 && plan::largest_chord_error(part, division.rows * 8 / 10) < tolerance)
+      if (division.rows > 20 && tire_mold::largest_chord_error(part, division.rows * 8 / 10) < tolerance)
         ++too_many;
     }
   }
@@ -75,8 +75,8 @@ TEST_CASE("rows stay within the tolerance, and are not many more than needed", "
 TEST_CASE("parts cover a segment, and change where the wall does", "[rows]") {
   const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
-  plan::WallCutter cutter(sidewall, 1.0);
-  std::vector<plan::WallPart> out;
+  tire_mold::WallCutter cutter(sidewall, 1.0);
+  std::vector<tire_mold::WallPart> out;
   // out over all three pieces and back: 90 and 122 mm are the borders, the outer one a kink
   REQUIRE(cutter.cut(path::Line<3>({60, 0, 3}, {130, 0, 3}), out));
   REQUIRE(out.size() == 4);
@@ -115,8 +115,8 @@ TEST_CASE("parts cover a segment, and change where the wall does", "[rows]") {
 TEST_CASE("segments that leave the wall are refused", "[rows]") {
   const auto chain = test::wall<double>();
   const Sidewall sidewall(chain.pieces, 50, 20.8);
-  plan::WallCutter cutter(sidewall, 60.0);
-  std::vector<plan::WallPart> out;
+  tire_mold::WallCutter cutter(sidewall, 60.0);
+  std::vector<tire_mold::WallPart> out;
   const auto inside = cutter.cut(path::Line<3>({-70, 40, 0}, {70, 40, 0}), out);
   REQUIRE(!inside);
   CHECK(inside.error() == Error{ErrorCode::below_limit, "radius", 40, 50});

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

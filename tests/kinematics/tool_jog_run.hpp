@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor_state.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor_state.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

@@ -7,8 +7,8 @@
 
 #include <Eigen/LU>
 
+#include "cncplan/executor.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/executor.hpp"
 #include "kinematics/tool_jog_run.hpp"
 #include "maps/maps.hpp"
 #include "support/catch.hpp"

@@ -10,9 +10,9 @@
 
 #include <Eigen/Geometry>
 
+#include "cncplan/block_reader.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "maps/maps.hpp"
 #include "support/catch.hpp"
 

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <string>
 
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "maps/maps.hpp"
 #include "support/catch.hpp"
 #include "support/executor_machines.hpp"

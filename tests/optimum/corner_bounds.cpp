@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cncplan/path/line.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "optimum/motion_bound.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "optimum/optimum.hpp"
@@ -20,7 +20,7 @@ namespace {
 using namespace cncplan;
 
 struct Program {
-  std::vector<plan::BlockCaps> blocks;
+  std::vector<detail::SegmentLimits> blocks;
   double from{};  // mm, between the middles of the two runs
   double to{};
 };
@@ -45,13 +45,13 @@ struct Stretch {
   std::vector<double> speeds_sq;
 };
 
-Stretch stretch(const std::vector<plan::Span>& spans, const Program& program, double step,
+Stretch stretch(const std::vector<detail::Span>& spans, const Program& program, double step,
                 std::size_t nodes) {
   Stretch result;
   double origin = 0.0, start = 0.0;
   double first = 0.0, last = 0.0;
   std::size_t next = 0;
-  for (const plan::Span& span : spans) {
+  for (const detail::Span& span : spans) {
     const double end = origin + span.profile.length();
     for (; next < nodes; ++next) {
       const double x = program.from + step * static_cast<double>(next);
@@ -98,12 +98,12 @@ int main(int argc, char** argv) {
   for (int k = 0; k < count; ++k) {
     const Program program = draw(random, limits);
     const double step = (program.to - program.from) / static_cast<double>(nodes - 1);
-    const std::span<const plan::BlockCaps> blocks(program.blocks);
-    std::vector<plan::Waypoint> waypoints(blocks.size() + 1);
+    const std::span<const detail::SegmentLimits> blocks(program.blocks);
+    std::vector<detail::ConstrainedJunction> junctions(blocks.size() + 1);
     std::vector<double> speeds(blocks.size() + 1);
-    std::vector<plan::Span> spans, singles;
-    if (!plan::plan_spans(blocks, plan::SevenPhase{}, std::span(waypoints), std::back_inserter(spans)) ||
-        !published::plan_blocks(blocks, plan::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
+    std::vector<detail::Span> spans, singles;
+    if (!detail::plan_spans(blocks, detail::SevenPhase{}, std::span(junctions), std::back_inserter(spans)) ||
+        !published::plan_blocks(blocks, detail::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
       return std::fprintf(stderr, "no plan\n"), 1;
 
     std::vector<double> highest(nodes, limits.velocity * limits.velocity);

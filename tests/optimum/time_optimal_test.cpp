@@ -1,5 +1,5 @@
 // The fastest motion along a path against an optimum on a grid, by linear programs of its own.
-#include "cncplan/smooth/time_optimal.hpp"
+#include "cncplan/time_optimal.hpp"
 
 #include <Clp_C_Interface.h>
 
@@ -11,12 +11,12 @@
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/measured.hpp"
-#include "cncplan/smooth/spline_through.hpp"
+#include "cncplan/path/spline_through.hpp"
 #include "support/catch.hpp"
 #include "support/half_ellipse.hpp"
 
 using namespace cncplan;
-using smooth::MotionLimits;
+using cncplan::MotionLimits;
 
 namespace {
 
@@ -135,7 +135,7 @@ TEST_CASE("time optimal: half a circle and half an ellipse, as linear programs f
 
 TEST_CASE("time optimal: a spline of which the third derivative jumps, as linear programs find it") {
   const std::vector<Vector3> points{{0, 0, 0}, {12, 9, 0}, {25, 7, 0}, {31, -6, 0}, {45, -2, 0}};
-  const auto spline = smooth::SplineThrough<3>::make(points);
+  const auto spline = path::SplineThrough<3>::make(points);
   REQUIRE(spline);
   check(*spline, {.velocity = 60, .acceleration = 400, .jerk = 2500}, 5);
 }

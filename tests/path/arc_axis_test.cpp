@@ -1,4 +1,4 @@
-#include "cncplan/path/arc_axis.hpp"
+#include "cncplan/path/detail/arc_axis.hpp"
 
 #include <cmath>
 
@@ -24,7 +24,8 @@ ArcAxis<S> random_axis(test::Random& random, double angle) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("Turnings are where the rate changes sign, each of them and no other", "", float, double) {
+TEMPLATE_TEST_CASE("Reversals are where the rate changes sign, each of them and no other", "", float,
+                   double) {
   using S = TestType;
   test::Random random;
   int missed = 0;
@@ -41,8 +42,8 @@ TEMPLATE_TEST_CASE("Turnings are where the rate changes sign, each of them and n
       negative = now;
     }
     int turnings = 0;
-    const auto last = axis.previous_turning_number(static_cast<S>(angle));
-    for (auto n = axis.next_turning_number(S(0)); n <= last; ++n) {
+    const auto last = axis.previous_reversal_number(static_cast<S>(angle));
+    for (auto n = axis.next_reversal_number(S(0)); n <= last; ++n) {
       const S u = axis.turning(n);
       if (u > S(1e-3) && u < static_cast<S>(angle - 1e-3)) ++turnings;
       const bool before = axis.rate(u - S(5e-3)) < 0;
@@ -61,11 +62,11 @@ TEMPLATE_TEST_CASE("Walking from turning to turning neither repeats nor skips on
   for (int i = 0; i < 2000; ++i) {
     const double angle = random.uniform(0.1, 30);
     const auto axis = random_axis<S>(random, angle);
-    const S last = axis.previous_turning_number(static_cast<S>(angle));
-    for (S n = axis.next_turning_number(S(0)); n <= last; ++n) {
+    const S last = axis.previous_reversal_number(static_cast<S>(angle));
+    for (S n = axis.next_reversal_number(S(0)); n <= last; ++n) {
       const S u = axis.turning(n);
       for (const S at : {u, std::nextafter(u, S(0)), std::nextafter(u, S(100))})
-        if (axis.next_turning_number(at) != n + 1 || axis.previous_turning_number(at) != n - 1) ++wrong;
+        if (axis.next_reversal_number(at) != n + 1 || axis.previous_reversal_number(at) != n - 1) ++wrong;
     }
   }
   CHECK(wrong == 0);
@@ -81,7 +82,7 @@ TEMPLATE_TEST_CASE("A crossing stands at the wanted value, at turnings as well a
     const auto angle = static_cast<S>(random.uniform(0.1, 30));
     const auto axis = random_axis<S>(random, angle);
     S low = S(0);
-    for (S n = axis.next_turning_number(low); low < angle; ++n) {
+    for (S n = axis.next_reversal_number(low); low < angle; ++n) {
       const S high = std::min(axis.turning(n), angle);
       for (const double part : {0.0, 1e-9, 0.3, 0.8, 1.0}) {
         const S wanted = std::clamp(axis.value(low + (high - low) * static_cast<S>(part)),

@@ -160,7 +160,7 @@ TEMPLATE_TEST_CASE("Pieces between turnings are monotone and crossings invert po
       for (int axis = 0; axis < 3; ++axis) {
         S low = S(0);
         for (int piece = 0; low < arc.parameter_end(); ++piece) {
-          const S high = arc.next_turning(axis, low);
+          const S high = arc.next_reversal(axis, low);
           if (!(high > low) || piece > 100) {
             stuck.see(1, arc);
             break;
@@ -228,7 +228,7 @@ TEST_CASE("A quarter circle and a helix give the figures of the textbook") {
   CHECK(quarter.curvature(0.3) == Approx(1 / r).epsilon(1e-15));
   CHECK((quarter.start_tangent() - Vector3(0, 1, 0)).norm() < 1e-15);
   CHECK((quarter.end_tangent() - Vector3(-1, 0, 0)).norm() < 1e-15);
-  CHECK(quarter.next_turning(0, 0.0) == quarter.parameter_end());
+  CHECK(quarter.next_reversal(0, 0.0) == quarter.parameter_end());
   CHECK(quarter.crossing(2, 0.0, 0.5, 1.0) == 0.5);
   CHECK(quarter.box() == Box{{0, 0, 0}, {r, r, 0}});
   CHECK(quarter.chord() == Vector3(-r, r, 0));
@@ -241,7 +241,7 @@ TEST_CASE("A quarter circle and a helix give the figures of the textbook") {
   CHECK(helix.rise() == 12);
   const double pitch = 12 / (6 * pi);
   CHECK(helix.max_curvature() == Approx(r / (r * r + pitch * pitch)).epsilon(1e-14));
-  CHECK(helix.next_turning(2, 0.0) == helix.parameter_end());
+  CHECK(helix.next_reversal(2, 0.0) == helix.parameter_end());
   CHECK(helix.crossing(2, 3.0, 0.0, helix.parameter_end()) == Approx(1.5 * pi).epsilon(1e-15));
   CHECK_FALSE(helix == quarter);
   CHECK(helix == Arc(g));

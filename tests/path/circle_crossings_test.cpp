@@ -1,5 +1,5 @@
 // Batches of crossings against the curve itself in long double, and the arctangent they rest on.
-#include "cncplan/path/circle_crossings.hpp"
+#include "cncplan/path/detail/circle_crossings.hpp"
 
 #include <cmath>
 #include <limits>
@@ -51,7 +51,7 @@ TEST_CASE("a batch of crossings lies on the arc, between turnings and up to them
     if (!arc || !arc->is_circular()) continue;
     for (int axis = 0; axis < 2; ++axis)
       for (double low = 0.0; low < arc->parameter_end();) {
-        const double high = arc->next_turning(axis, low);
+        const double high = arc->next_reversal(axis, low);
         const double first = arc->position(low)(axis), last = arc->position(high)(axis);
         std::vector<double> values, parameters;
         for (int k = 0; k <= 70; ++k) values.push_back(first + (last - first) * k / 70.0);

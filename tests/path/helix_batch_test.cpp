@@ -1,5 +1,5 @@
 // Many points of an arc or line at once against the same one by one.
-#include "cncplan/path/helix_batch.hpp"
+#include "cncplan/path/detail/helix_batch.hpp"
 
 #include <limits>
 #include <vector>

@@ -43,7 +43,7 @@ TEST_CASE("A line's box, tangents and turnings") {
   CHECK(line.start_tangent() == line.end_tangent());
   CHECK((line.start_tangent() - Vector3(0.6, -0.8, 0)).norm() < 1e-15);
   CHECK(line.chord() == Vector3(3, -4, 0));
-  CHECK(line.next_turning(0, 1.0) == line.parameter_end());
+  CHECK(line.next_reversal(0, 1.0) == line.parameter_end());
   CHECK(line.max_curvature() == 0);
   CHECK(line.crossing(2, -2.0, 1.0, 3.0) == 1.0);
   CHECK(line == Line<3>({1, 5, -2}, {4, 1, -2}));

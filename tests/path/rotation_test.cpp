@@ -1,4 +1,4 @@
-#include "cncplan/path/rotation.hpp"
+#include "cncplan/path/detail/rotation.hpp"
 
 #include <cmath>
 #include <limits>

@@ -34,9 +34,9 @@ bool forwards(const BasicSegment<S>& segment, const Inside& inside) {
          segment.max_curvature() == inside.max_curvature();
   same = same && segment.box() == inside.box();
   for (int axis = 0; axis < 3; ++axis) {
-    const S high = inside.next_turning(axis, S(0));
+    const S high = inside.next_reversal(axis, S(0));
     const S value = inside.position(high / 2)(axis);
-    same = same && segment.next_turning(axis, S(0)) == high;
+    same = same && segment.next_reversal(axis, S(0)) == high;
     if (inside.start()(axis) != inside.end()(axis))
       same = same && segment.crossing(axis, value, S(0), high) == inside.crossing(axis, value, S(0), high);
   }

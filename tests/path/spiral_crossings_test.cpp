@@ -1,5 +1,5 @@
 // Batches of crossings of spirals against the curve in long double, and their lengths against single ones.
-#include "cncplan/path/spiral_crossings.hpp"
+#include "cncplan/path/detail/spiral_crossings.hpp"
 
 #include <cmath>
 #include <limits>
@@ -37,7 +37,7 @@ TEMPLATE_TEST_CASE("a batch of crossings of a spiral lies on it, between turning
     if (arc.is_circular()) continue;
     for (const int axis : {axes(arc.plane()).first, axes(arc.plane()).second})
       for (S low = S(0); low < arc.parameter_end();) {
-        const S high = arc.next_turning(axis, low);
+        const S high = arc.next_reversal(axis, low);
         if (!(high > low)) break;
         const S first = arc.position(low)(axis), last = arc.position(high)(axis);
         // from all of the piece to batches as close as steps are

@@ -1,4 +1,4 @@
-#include "cncplan/plan/arc_words.hpp"
+#include "cncplan/arc_words.hpp"
 
 #include <cmath>
 #include <iterator>
@@ -43,19 +43,19 @@ TEST_CASE("arcs by radius are written by centre, and back") {
   std::string text;
   gcode::Writer writer;
   for (const Motion& motion : motions)
-    REQUIRE(writer.write(plan::by_center(motion).value(), std::back_inserter(text)));
+    REQUIRE(writer.write(cncplan::by_center(motion).value(), std::back_inserter(text)));
   CAPTURE(text);
   for (const std::size_t i : {0U, 1U})
-    CHECK((plan::by_center(motions[i]).value().center - Vector3(5, 0, 0)).norm() < 1e-14);
+    CHECK((cncplan::by_center(motions[i]).value().center - Vector3(5, 0, 0)).norm() < 1e-14);
   CHECK(text.find('R') == std::string::npos);
   // half a turn and a full one are left by centre
-  CHECK(plan::by_radius(motions[3]) == motions[3]);
-  CHECK(plan::by_radius(motions[4]) == motions[4]);
-  CHECK(plan::by_radius(plan::by_center(motions[0]).value()).radius == 5);
-  CHECK(plan::by_radius(plan::by_center(motions[2]).value()).radius == Approx(-6).epsilon(1e-12));
+  CHECK(cncplan::by_radius(motions[3]) == motions[3]);
+  CHECK(cncplan::by_radius(motions[4]) == motions[4]);
+  CHECK(cncplan::by_radius(cncplan::by_center(motions[0]).value()).radius == 5);
+  CHECK(cncplan::by_radius(cncplan::by_center(motions[2]).value()).radius == Approx(-6).epsilon(1e-12));
   auto impossible = motions[0];
   impossible.radius = 1;
-  CHECK(plan::by_center(impossible).error().code == ErrorCode::chord_exceeds_diameter);
+  CHECK(cncplan::by_center(impossible).error().code == ErrorCode::chord_exceeds_diameter);
 }
 
 TEST_CASE("an arc keeps its centre and its way from one form to the other") {
@@ -67,7 +67,7 @@ TEST_CASE("an arc keeps its centre and its way from one form to the other") {
     const double sweep = random.uniform(0.01, 2 * pi - 0.01) * (i % 2 == 0 ? 1 : -1);
     const Motion motion =
         by_center(random.uniform(-50, 50), random.uniform(-50, 50), radius, random.uniform(-pi, pi), sweep);
-    const Motion short_form = plan::by_radius(motion);
+    const Motion short_form = cncplan::by_radius(motion);
     if (short_form.kind == MotionKind::arc_center) {
       wrong += std::abs(std::abs(sweep) - pi) > 0.02 ? 1 : 0;  // only near half a turn
       continue;
@@ -75,7 +75,7 @@ TEST_CASE("an arc keeps its centre and its way from one form to the other") {
     ++radii;
     wrong += (short_form.radius < 0) == (std::abs(sweep) > pi) ? 0 : 1;
     wrong += std::abs(std::abs(short_form.radius) - radius) < 1e-9 * radius + 1e-12 ? 0 : 1;
-    off = std::max(off, (plan::by_center(short_form).value().center - motion.center).norm());
+    off = std::max(off, (cncplan::by_center(short_form).value().center - motion.center).norm());
   }
   CHECK(wrong == 0);
   CHECK(radii > 19000);
@@ -83,7 +83,7 @@ TEST_CASE("an arc keeps its centre and its way from one form to the other") {
   // a spiral is no arc of one radius
   Motion spiral = by_center(0, 0, 10, 0, 1);
   spiral.end[0] += 0.01;
-  CHECK(plan::by_radius(spiral) == spiral);
+  CHECK(cncplan::by_radius(spiral) == spiral);
 }
 
 TEST_CASE("what a radius cannot say is split into arcs that it says") {
@@ -104,10 +104,10 @@ TEST_CASE("what a radius cannot say is split into arcs that it says") {
     gcode::Position place = motion.start;
     double way = 0;
     int parts = 0;
-    plan::split_by_radius(motion, [&](const Motion& part) {
+    cncplan::split_by_radius(motion, [&](const Motion& part) {
       ++parts;
       wrong += part.kind == MotionKind::arc_radius && part.start == place && part.turn == motion.turn ? 0 : 1;
-      const auto read = plan::by_center(part);
+      const auto read = cncplan::by_center(part);
       REQUIRE(read);
       off = std::max(off, (read->center - motion.center).head<2>().norm());
       const double chord = std::hypot(part.end[0] - part.start[0], part.end[1] - part.start[1]);
@@ -125,8 +125,8 @@ TEST_CASE("what a radius cannot say is split into arcs that it says") {
   // one by radius stays as it is, half a turn does not
   const auto parts_of = [](const char* program) {
     std::vector<Motion> parts;
-    plan::split_by_radius(std::get<Motion>(test::read(program).items.front()),
-                          [&](const Motion& part) { parts.push_back(part); });
+    cncplan::split_by_radius(std::get<Motion>(test::read(program).items.front()),
+                             [&](const Motion& part) { parts.push_back(part); });
     return parts;
   };
   const auto quarter = parts_of("G2 X5 Y5 R5 F60\n");
@@ -148,7 +148,7 @@ TEST_CASE("arcs become lines of a degree") {
     CAPTURE(test::seed(), i, radius, from, sweep, degrees);
     const Motion arc = by_center(3, -4, radius, from, sweep);
     std::vector<Motion> lines;
-    REQUIRE(plan::split_into_lines(arc, degrees * pi / 180, [&](const Motion& m) { lines.push_back(m); }));
+    REQUIRE(cncplan::split_into_lines(arc, degrees * pi / 180, [&](const Motion& m) { lines.push_back(m); }));
     CHECK(lines.size() == static_cast<std::size_t>(std::ceil(std::abs(sweep) * 180 / pi / degrees)));
     CHECK(lines.front().start == arc.start);
     CHECK(lines.back().end == arc.end);
@@ -180,20 +180,20 @@ TEST_CASE("arcs as lines: a full circle, inverse time, other motions and what is
   circle.feed = 0.5;
   std::vector<Motion> lines;
   const auto take = [&](const Motion& motion) { lines.push_back(motion); };
-  REQUIRE(plan::split_into_lines(circle, pi / 180, take));
+  REQUIRE(cncplan::split_into_lines(circle, pi / 180, take));
   REQUIRE(lines.size() == 360);
   CHECK(lines[17].feed == 180.0);  // each takes 1/360 of the two seconds
   lines.clear();
   Motion rapid;
   rapid.kind = MotionKind::rapid;
-  REQUIRE(plan::split_into_lines(rapid, pi / 180, take));
+  REQUIRE(cncplan::split_into_lines(rapid, pi / 180, take));
   CHECK(lines == std::vector{rapid});
-  CHECK(plan::split_into_lines(circle, 0.0, take).error() ==
+  CHECK(cncplan::split_into_lines(circle, 0.0, take).error() ==
         Error{ErrorCode::not_positive, "angle", 0.0, 0.0});
-  CHECK(plan::split_into_lines(circle, 1e-9, take).error().code == ErrorCode::above_limit);
+  CHECK(cncplan::split_into_lines(circle, 1e-9, take).error().code == ErrorCode::above_limit);
   circle.center = Vector3(7, 0, 0);
   circle.end[0] = -50;
-  CHECK(plan::split_into_lines(circle, 1.0, take).error().code == ErrorCode::radius_mismatch);
+  CHECK(cncplan::split_into_lines(circle, 1.0, take).error().code == ErrorCode::radius_mismatch);
   CHECK(lines.size() == 1);
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("an arc as lines, written and read") {
   for (const auto& item : test::read("G0 X80 Y40\nG3 X60 Y20 I0 J-20 F600\n").items) {
     const auto* motion = std::get_if<Motion>(&item);
     const auto write = [&](const Motion& m) { REQUIRE(writer.write(m, std::back_inserter(text))); };
-    if (motion != nullptr) REQUIRE(plan::split_into_lines(*motion, pi / 180, write));
+    if (motion != nullptr) REQUIRE(cncplan::split_into_lines(*motion, pi / 180, write));
   }
   CHECK(text.find("G2 ") == std::string::npos);
   CHECK(text.find("G3 ") == std::string::npos);

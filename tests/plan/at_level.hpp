@@ -1,7 +1,7 @@
 // The same options, at another level of smoothing.
 #pragma once
 
-#include "cncplan/plan/plan_options.hpp"
+#include "cncplan/plan_options.hpp"
 
 namespace cncplan::test {
 

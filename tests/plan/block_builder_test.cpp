@@ -1,10 +1,10 @@
-#include "cncplan/plan/block_builder.hpp"
+#include "cncplan/block_builder.hpp"
 
 #include <numbers>
 #include <string_view>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 

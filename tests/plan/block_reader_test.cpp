@@ -1,4 +1,4 @@
-#include "cncplan/plan/block_reader.hpp"
+#include "cncplan/block_reader.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"

@@ -1,5 +1,5 @@
 // Holds that come within the bound which was planned, at any instant.
-#include "cncplan/plan/brake_planner.hpp"
+#include "cncplan/detail/executor/brake_planner.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/executor_levels.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/executor_levels.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "least_brake.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"

@@ -1,4 +1,4 @@
-#include "cncplan/plan/cell_maker.hpp"
+#include "cncplan/detail/speed/cell_maker.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ struct Arch {
 constexpr Machine<3> mill{.limits = {.velocity = 500, .acceleration = 1000, .jerk = 1e5}};
 
 using ArchBlock = Block<3, path::Measured<Arch>>;
-using Maker = plan::CellMaker<Machine<3>, ArchBlock, junction::Deviation>;
+using Maker = detail::CellMaker<Machine<3>, ArchBlock, junction::Deviation>;
 
 ArchBlock arch() { return {.path = path::measured(Arch{}).value(), .feed = 500}; }
 

@@ -1,15 +1,15 @@
 // What a changing clock is proven to keep, against positions on a fine grid of time.
-#include "cncplan/plan/clock_proof.hpp"
+#include "cncplan/detail/executor/clock_proof.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "cncplan/core/state.hpp"
-#include "cncplan/plan/path_brake.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/trajectory_executor.hpp"
-#include "cncplan/state/velocity_change.hpp"
+#include "cncplan/detail/executor/path_brake.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/state/detail/velocity_change.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "least_brake.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -40,8 +40,8 @@ struct Clocked {
     return proof.holds(chain, clock, backwards, until, work);
   }
 
-  plan::TrajectoryChain<Machine<3>, B> chain;
-  plan::ClockProof<Machine<3>, B> proof;
+  detail::TrajectoryChain<Machine<3>, B> chain;
+  detail::ClockProof<Machine<3>, B> proof;
 };
 
 const AxisLimits straight = [] {
@@ -51,7 +51,7 @@ const AxisLimits straight = [] {
   return limits;
 }();
 
-using AlongPath = plan::ClockProof<Machine<3>, Clocked::B>::Motion;
+using AlongPath = detail::ClockProof<Machine<3>, Clocked::B>::Motion;
 
 // From a rate of 1 or so to rest, with so much jerk and acceleration of the clock.
 state::Motion change(double at, double rate, double to, double jerk, double acceleration) {
@@ -133,7 +133,7 @@ TEST_CASE("clock: the third derivative of an arc changes by no more than its bou
     REQUIRE(arc != nullptr);
     const long double pi = std::acos(-1.0L), h = rise / (2 * pi), w = 1 / std::sqrt(r * r + h * h);
     const double middle = arc->length() / 2;
-    const double bound = plan::detail::third_change(*arc, arc->bounds(middle - half, middle + half), half);
+    const double bound = detail::third_change(*arc, arc->bounds(middle - half, middle + half), half);
     const long double u = static_cast<long double>(middle) * w, du = static_cast<long double>(half) * w;
     const long double scale = r * w * w * w;
     const auto change = [&](long double d) {
@@ -221,7 +221,7 @@ struct Brakes : Clocked {
   }
   bool proven(double at, const state::Motion& brake) const {
     int work = 20000;
-    const plan::PhasesByLength<Machine<3>, B> way(chain, trajectory->phase_at(at), 0.0);
+    const detail::PhasesByLength<Machine<3>, B> way(chain, trajectory->phase_at(at), 0.0);
     return proof.moves(chain, way, trajectory->phases().size() - 1, AlongPath(brake), 1, work);
   }
 
@@ -261,7 +261,7 @@ TEST_CASE("clock: proven brakes along the path keep the limits and the planned s
     (ok ? proven : refused)++;
     if (!ok) continue;
     INFO("at " << at << ", for " << brake.duration() << " s");
-    const plan::ClockRamp<Machine<3>, Clocked::B> ramp(AlongPath(brake), trajectory.phase_at(at));
+    const detail::ClockRamp<Machine<3>, Clocked::B> ramp(AlongPath(brake), trajectory.phase_at(at));
     double speed = 0;
     const auto place = [&](double t) -> Vector3 {
       const auto planned = trajectory.at(ramp.at(brakes.chain, t).position);
@@ -283,7 +283,7 @@ TEST_CASE("clock: a ramp at a share of its speeds passes the same places, later"
   const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
   Brakes brakes(trajectory, machine);
   brakes.trajectory = &trajectory;
-  using Ramp = plan::ClockRamp<Machine<3>, Clocked::B>;
+  using Ramp = detail::ClockRamp<Machine<3>, Clocked::B>;
   for (const double at : {0.1, 0.4, 0.9}) {
     const auto brake = brakes.from(at, 9000, 900);
     const state::BasicMotion<double> by_time(
@@ -309,7 +309,7 @@ TEST_CASE("clock: brakes that are made step by step keep the limits, wherever th
   const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
   Clocked clocked(trajectory, machine);
   const auto tool = tool_axes(machine);
-  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
+  const detail::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
   Random random;
   int found = 0, tried = 0;
   for (int i = 0; i < 200; ++i) {
@@ -333,7 +333,7 @@ TEST_CASE("clock: brakes that are made step by step keep the limits, wherever th
       for (const auto& step : brake->phases()) end = step.after(end, step.duration);
       CHECK(std::abs(end.velocity) < 1e-9);
       CHECK(std::abs(last.acceleration + last.jerk * last.duration) < 1e-9);
-      const plan::ClockRamp<Machine<3>, Clocked::B> ramp(*brake, phase);
+      const detail::ClockRamp<Machine<3>, Clocked::B> ramp(*brake, phase);
       double speed = 0;
       const auto place = [&](double t) -> Vector3 {
         const auto planned = trajectory.at(ramp.at(clocked.chain, t).position);
@@ -354,7 +354,7 @@ TEST_CASE("clock: a brake on a straight line takes little more than the least ti
   const auto trajectory = planned("F1800 G1 X50\n", with_reserve(mill, 0.05));
   Clocked clocked(trajectory, mill);
   const auto tool = tool_axes(mill);
-  const plan::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
+  const detail::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
   for (double at = 0.005; at < 1.4; at += 0.03) {
     const auto now = trajectory.at(at).along;
     const std::size_t phase = trajectory.phase_at(at);

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/live_steps.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor.hpp"
+#include "cncplan/live_steps.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/small_mill.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/executor_levels.hpp"
 #include "plan/level_runner.hpp"
 #include "plan/rows_program.hpp"
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
 // Executors at the levels good and best: limits by differences, the path by brute force, words, dwells.
-#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/executor_levels.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "cncplan/plan/live_steps.hpp"
+#include "cncplan/live_steps.hpp"
 #include "plan/at_level.hpp"
 #include "plan/level_runner.hpp"
 #include "plan/live_run.hpp"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/shared.hpp"
 

@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/executor.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"

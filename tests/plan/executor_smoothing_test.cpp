@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/executor.hpp"
+#include "cncplan/plan_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"

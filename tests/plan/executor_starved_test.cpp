@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

@@ -1,10 +1,10 @@
 // What an executor says that it is doing.
-#include "cncplan/plan/executor_state.hpp"
+#include "cncplan/executor_state.hpp"
 
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/small_mill.hpp"

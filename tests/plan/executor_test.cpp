@@ -1,4 +1,4 @@
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/live_steps.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/live_steps.hpp"
+#include "cncplan/plan_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

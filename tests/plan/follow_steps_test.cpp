@@ -1,11 +1,11 @@
-#include "cncplan/plan/follow_steps.hpp"
+#include "cncplan/follow_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

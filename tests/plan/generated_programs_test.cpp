@@ -6,7 +6,7 @@
 #include <string>
 
 #include "../../examples/generate/programs.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"

@@ -1,12 +1,12 @@
 // Homing and limit switches on a simulated machine that does not know where it stands.
-#include "cncplan/plan/homing.hpp"
+#include "cncplan/homing.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/live_steps.hpp"
+#include "cncplan/executor.hpp"
+#include "cncplan/live_steps.hpp"
 #include "cncplan/step/backend.hpp"
 #include "cncplan/step/switch.hpp"
 #include "support/catch.hpp"

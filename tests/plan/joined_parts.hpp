@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/smooth_stream.hpp"
 #include "plan/at_level.hpp"
 
 namespace cncplan::test {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/executor_levels.hpp"
 #include "plan/rows_program.hpp"
 
 namespace cncplan::test {

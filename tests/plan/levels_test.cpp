@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "cncplan/plan/joint_jumps.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/junction_jumps.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/at_level.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/catch.hpp"

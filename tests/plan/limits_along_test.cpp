@@ -1,4 +1,4 @@
-#include "cncplan/plan/limits_along.hpp"
+#include "cncplan/detail/speed/limits_along.hpp"
 
 #include <algorithm>
 #include <array>
@@ -134,7 +134,7 @@ TEST_CASE("no state within the limits along a path exceeds a limit of the tool o
     const double speed = random.log_uniform(0.1, 1000);
     const double tool_speed = machine.limits.velocity * random.uniform(0.5, 2);
     const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e3);
-    const Limits along = plan::limits_along(bounds, machine, speed, tool_speed, length);
+    const Limits along = detail::limits_along(bounds, machine, speed, tool_speed, length);
     Shares worst;
     for (int state = 0; state < 200; ++state) {
       const bool extreme = state % 2 == 0;
@@ -170,7 +170,7 @@ TEST_CASE("the limits along a path use up a limit of some axis or of the tool") 
     if (bounds.first.isZero() && bounds.tool.first == 0) continue;
     const double speed = random.log_uniform(0.1, 1000), tool_speed = machine.limits.velocity;
     const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e3);
-    const Limits along = plan::limits_along(bounds, machine, speed, tool_speed, length);
+    const Limits along = detail::limits_along(bounds, machine, speed, tool_speed, length);
     if (!std::isfinite(along.jerk)) continue;
     ++cases;
     // The state at all limits, every derivative at its bound and with the same sign.
@@ -214,8 +214,8 @@ TEST_CASE("on a circle the limits are those of the vector sums' closed form") {
     const auto circle = path::arc_from_center(Vector3(radius, 0, 0), Vector3(0, radius, 0), Vector3(0, 0, 0),
                                               Turn::counterclockwise, Plane::xy);
     REQUIRE(circle);
-    const Limits along = plan::limits_along(circle->bounds(0, circle->length()), machine,
-                                            machine.limits.velocity, machine.limits.velocity);
+    const Limits along = detail::limits_along(circle->bounds(0, circle->length()), machine,
+                                              machine.limits.velocity, machine.limits.velocity);
     const Limits closed = on_circle(1 / radius, machine.limits);
     for (const auto limit : {&Limits::velocity, &Limits::acceleration, &Limits::jerk})
       worst = std::max(worst, std::abs(along.*limit / closed.*limit - 1));
@@ -231,8 +231,8 @@ TEST_CASE("a straight line keeps the machine's limits bit for bit") {
     const Vector3 from(random.uniform(-99, 99), random.uniform(-99, 99), random.uniform(-99, 99));
     const Vector3 to(random.uniform(-99, 99), random.uniform(-99, 99), random.uniform(-99, 99));
     const path::Line<3> line(from, to);
-    const Limits along = plan::limits_along(line.bounds(0, line.length()), machine, machine.limits.velocity,
-                                            machine.limits.velocity);
+    const Limits along = detail::limits_along(line.bounds(0, line.length()), machine, machine.limits.velocity,
+                                              machine.limits.velocity);
     REQUIRE(along == machine.limits);
   }
 }
@@ -245,10 +245,10 @@ TEST_CASE("an axis that moves alone has its own limits, the lower of both direct
   machine.axes[0].acceleration_down = 200;
   machine.axes[0].jerk = 3000;
   const path::Line<1> line(VectorN<double, 1>(0), VectorN<double, 1>(7));
-  CHECK(plan::limits_along(line.bounds(0, 7), machine, 1e9, infinity) == Limits{25, 200, 3000});
+  CHECK(detail::limits_along(line.bounds(0, 7), machine, 1e9, infinity) == Limits{25, 200, 3000});
   machine.axes[0].velocity_down = 60;
   machine.axes[0].acceleration_down = 0;
-  CHECK(plan::limits_along(line.bounds(0, 7), machine, 1e9, infinity) == Limits{40, 300, 3000});
+  CHECK(detail::limits_along(line.bounds(0, 7), machine, 1e9, infinity) == Limits{40, 300, 3000});
 }
 
 TEST_CASE("the tool's limits do not act where the tool stands still") {
@@ -258,13 +258,13 @@ TEST_CASE("the tool's limits do not act where the tool stands still") {
   machine.axes[3].jerk = 900;
   using V = VectorN<double, 4>;
   const path::Line<4> turns(V(1, 2, 3, 0), V(1, 2, 3, 2), 2, 0);
-  CHECK(plan::limits_along(turns.bounds(0, 2), machine, 1e9, 1.0) == Limits{5, 70, 900});
+  CHECK(detail::limits_along(turns.bounds(0, 2), machine, 1e9, 1.0) == Limits{5, 70, 900});
 }
 
 TEST_CASE("what has no limit stays without one") {
   const Mill machine;
   const path::Line<3> line({0, 0, 0}, {3, 4, 0});
-  CHECK(plan::limits_along(line.bounds(0, 5), machine, 12.0, infinity) == Limits{12, infinity, infinity});
+  CHECK(detail::limits_along(line.bounds(0, 5), machine, 12.0, infinity) == Limits{12, infinity, infinity});
 }
 
 // At the highest speed of all, the bend alone takes the whole limit: rounding must not lose it.
@@ -278,7 +278,7 @@ TEST_CASE("the limits hold on bends that take all there is at the highest speed 
     const double curvature = random.log_uniform(1e-3, 10);
     bounds.tool = {1, 0, curvature, curvature * curvature, 0};
     const Limits along =
-        plan::limits_along(bounds, machine, 1e6, 1e6, random.log_uniform(1 / curvature, 100 / curvature));
+        detail::limits_along(bounds, machine, 1e6, 1e6, random.log_uniform(1 / curvature, 100 / curvature));
     const long double v = along.velocity;
     REQUIRE(along.acceleration > 0);
     REQUIRE(along.jerk > 0);

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cncplan/detail/speed/limits_along.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
-#include "cncplan/plan/limits_along.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/published/cap_speed.hpp"
 #include "support/catch.hpp"
@@ -29,8 +29,8 @@ template <std::floating_point S>
 BasicLimits<S> along(S k, const BasicLimits<S>& whole, S length = std::numeric_limits<S>::infinity()) {
   BasicPathBounds<S, 3> bounds;
   bounds.tool = {S(1), S(0), k, k * k, S(0)};
-  return plan::limits_along(bounds, BasicMachine<S, 3>{.limits = whole}, whole.velocity, whole.velocity,
-                            length);
+  return detail::limits_along(bounds, BasicMachine<S, 3>{.limits = whole}, whole.velocity, whole.velocity,
+                              length);
 }
 
 }  // namespace
@@ -102,8 +102,8 @@ TEST_CASE("a single arc keeps its limits as vectors, which its profile alone doe
     return sums;
   };
   CHECK(worst(limits).jerk > 1.1);
-  const Worst kept = worst(plan::limits_along(arc->bounds(0, arc->length()), Machine<3>{.limits = limits},
-                                              30.0, 30.0, arc->length()));
+  const Worst kept = worst(detail::limits_along(arc->bounds(0, arc->length()), Machine<3>{.limits = limits},
+                                                30.0, 30.0, arc->length()));
   CHECK(kept.acceleration <= 1.0);
   CHECK(kept.jerk < 1.001);
   CHECK(kept.jerk > 0.5);

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor_levels.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/random.hpp"
 

@@ -1,11 +1,11 @@
-#include "cncplan/plan/live_steps.hpp"
+#include "cncplan/live_steps.hpp"
 
 #include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
 
-#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/plan_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 

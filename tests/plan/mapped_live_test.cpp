@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor_levels.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/table_table.hpp"
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor_levels.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/smooth_stream.hpp"
 #include "kinematics/tool_jog_run.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 #include "plan/smoothed_motion.hpp"
 
 namespace cncplan::test {

@@ -13,8 +13,8 @@
 
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/kinematics/polar.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/at_level.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"

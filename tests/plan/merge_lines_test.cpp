@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/merge_lines.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/detail/curve/merge_lines.hpp"
+#include "cncplan/executor.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/at_level.hpp"
 #include "smoothed_motion.hpp"
 #include "support/catch.hpp"
@@ -34,7 +34,7 @@ std::vector<ProgramBlock<M>> read(const std::string& text, const M& machine) {
 
 template <MachineModel M>
 std::vector<ProgramBlock<M>> merged(std::vector<ProgramBlock<M>> blocks, const M& machine) {
-  merge_lines(std::span(blocks), machine, plan::smoothing_rules<double>(within));
+  merge_lines(std::span(blocks), machine, detail::smoothing_rules<double>(within));
   return blocks;
 }
 
@@ -159,7 +159,8 @@ TEST_CASE("lines are merged up to what parts them", "[merge_lines]") {
   CHECK(parted("G93 F1 X1.5\nF1 X1.7\nG94 F600\n") == Lines{1, 1, 1, 2});
   CHECK(lines_of("F600 G64 P0 Q0.004\nG1 X1 Y0.001\nX2 Y0\n") == Lines{1, 1});
   CHECK(lines_of(noisy("G64 P0.01 Q0.004", 200, 1, 1e-4)) ==
-        Lines{most_merged_lines, most_merged_lines, most_merged_lines, 200 - 3 * most_merged_lines});
+        Lines{detail::most_merged_lines, detail::most_merged_lines, detail::most_merged_lines,
+              200 - 3 * detail::most_merged_lines});
 }
 
 TEST_CASE("a program without Q is what it was", "[merge_lines]") {

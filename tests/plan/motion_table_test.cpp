@@ -1,10 +1,10 @@
-#include "cncplan/plan/motion_table.hpp"
+#include "cncplan/detail/speed/motion_table.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/trajectory.hpp"
 #include "plan/plan_oracle.hpp"
 #include "plan/planned.hpp"
 #include "plan/random_program.hpp"
@@ -14,23 +14,23 @@ using namespace cncplan;
 namespace {
 
 // Blocks of one cell each.
-plan::BasicCells<double> cells_of(const std::vector<plan::BlockCaps>& caps) {
-  plan::BasicCells<double> cells;
-  cells.caps.assign(caps.begin(), caps.end());
-  for (std::size_t i = 0; i < caps.size(); ++i) {
+detail::BasicCells<double> cells_of(const std::vector<detail::SegmentLimits>& segments) {
+  detail::BasicCells<double> cells;
+  cells.segments.assign(segments.begin(), segments.end());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
     cells.blocks.push_back(i);
-    if (caps[i].pause > 0.0) cells.pauses.push_back({i + 1, i, caps[i].pause});
+    if (segments[i].pause > 0.0) cells.pauses.push_back({i + 1, i, segments[i].pause});
   }
   return cells;
 }
 
-std::pmr::vector<BasicPiecePhase<double>> phases_of(const std::vector<plan::BlockCaps>& caps) {
-  const auto spans = test::spans_of(caps);
-  return plan::block_phases(std::span<const plan::Span>(spans), cells_of(caps));
+std::pmr::vector<BasicPiecePhase<double>> phases_of(const std::vector<detail::SegmentLimits>& segments) {
+  const auto spans = test::spans_of(segments);
+  return detail::block_phases(std::span<const detail::Span>(spans), cells_of(segments));
 }
 
 // State at t by walking all spans from the start.
-State walk(const std::vector<plan::Span>& spans, double t) {
+State walk(const std::vector<detail::Span>& spans, double t) {
   double origin = 0.0;
   for (std::size_t i = 0;; ++i) {
     State state = spans[i].profile.at(t);
@@ -41,16 +41,16 @@ State walk(const std::vector<plan::Span>& spans, double t) {
   }
 }
 
-// The caps' blocks on a straight line.
-Trajectory<Machine<1>, Block<1>> straight(const std::vector<plan::BlockCaps>& caps) {
+// The segments' blocks on a straight line.
+Trajectory<Machine<1>, Block<1>> straight(const std::vector<detail::SegmentLimits>& segments) {
   using V = VectorN<double, 1>;
   std::pmr::vector<Block<1>> blocks;
   double from = 0.0;
-  for (const plan::BlockCaps& block : caps) {
+  for (const detail::SegmentLimits& block : segments) {
     blocks.push_back({.path = path::Line<1>(V(from), V(from + block.length)), .pause = block.pause});
     from += block.length;
   }
-  return {Machine<1>{}, std::move(blocks), phases_of(caps)};
+  return {Machine<1>{}, std::move(blocks), phases_of(segments)};
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Trajectory<Machine<1>, Block<1>> straight(const std::vector<plan::BlockCaps>& ca
 TEST_CASE("phases of blocks follow each other and are where a search from the start finds them") {
   test::Random random;
   double gap = 0.0, position = 0.0, velocity = 0.0, acceleration = 0.0, travel = 0.0;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   for (int draws = 0; draws < 200; ++draws) {
     const auto blocks = test::random_program(random, test::LimitSpread::wide, 60);
     const auto spans = test::spans_of(blocks);
@@ -99,23 +99,23 @@ TEST_CASE("phases of blocks follow each other and are where a search from the st
 TEST_CASE("blocks of a trajectory follow each other in time, at their own speeds") {
   test::Random random;
   double gap = 0.0, junction = 0.0, peak = 0.0, top = 0.0, above = 0.0;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   for (int draws = 0; draws < 100; ++draws) {
-    auto caps = test::random_program(random, test::LimitSpread::wide, 60);
-    std::erase_if(caps, [](const auto& block) { return !(block.length > 0.0); });
-    if (caps.empty()) continue;
-    caps.front().entry = 0.0;
-    for (std::size_t i = 1; i < caps.size(); ++i)
-      if (caps[i - 1].pause > 0.0) caps[i].entry = 0.0;
-    const auto trajectory = straight(caps);
+    auto segments = test::random_program(random, test::LimitSpread::wide, 60);
+    std::erase_if(segments, [](const auto& block) { return !(block.length > 0.0); });
+    if (segments.empty()) continue;
+    segments.front().entry = 0.0;
+    for (std::size_t i = 1; i < segments.size(); ++i)
+      if (segments[i - 1].pause > 0.0) segments[i].entry = 0.0;
+    const auto trajectory = straight(segments);
     const auto motions = trajectory.blocks();
-    REQUIRE(motions.size() == caps.size());
-    for (std::size_t i = 0; i < caps.size(); ++i) {
+    REQUIRE(motions.size() == segments.size());
+    for (std::size_t i = 0; i < segments.size(); ++i) {
       const BlockMotion& motion = motions[i];
       REQUIRE(motion.block == i);
-      const double fastest = caps[i].limits.velocity;
-      const double end = motion.start + motion.duration + caps[i].pause;
-      if (i + 1 < caps.size()) {
+      const double fastest = segments[i].limits.velocity;
+      const double end = motion.start + motion.duration + segments[i].pause;
+      if (i + 1 < segments.size()) {
         gap = std::max(gap, std::abs(motions[i + 1].start - end) / (1e-3 + end));
         junction = std::max(junction, std::abs(motions[i + 1].entry - motion.exit) / fastest);
       }
@@ -124,10 +124,11 @@ TEST_CASE("blocks of a trajectory follow each other in time, at their own speeds
       for (int k = 0; k <= 40; ++k)
         highest = std::max(highest, trajectory.at(motion.start + motion.duration * k / 40.0).along.velocity);
       const double off = (highest - motion.peak) / fastest;
-      if (off > top) top = off, where = caps;
+      if (off > top) top = off, where = segments;
       // between two samples a speed rises by no more than its bend allows
       const double step = motion.duration / 40.0;
-      above = std::max(above, (motion.peak - highest - caps[i].limits.jerk * step * step / 8.0) / fastest);
+      above =
+          std::max(above, (motion.peak - highest - segments[i].limits.jerk * step * step / 8.0) / fastest);
     }
   }
   INFO(test::literal(where));

@@ -1,4 +1,4 @@
-#include "cncplan/plan/peaks.hpp"
+#include "cncplan/peaks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "cncplan/junction_jumps.hpp"
 #include "cncplan/path/arc_from_center.hpp"
-#include "cncplan/plan/joint_jumps.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

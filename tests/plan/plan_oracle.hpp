@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/span.hpp"
+#include "cncplan/detail/speed/segment_limits.hpp"
+#include "cncplan/detail/speed/span.hpp"
 
 namespace cncplan::test {
 
@@ -47,11 +47,11 @@ struct ExactPhase {
   }
 };
 
-namespace detail {
+namespace oracle {
 
 // One span: cuts its phases where blocks meet and looks at both ends of each cut, and at tops within.
 template <std::floating_point S>
-void examine_span(std::span<const plan::BasicBlockCaps<S>> blocks, const plan::BasicSpan<S>& span,
+void examine_span(std::span<const detail::BasicSegmentLimits<S>> blocks, const detail::BasicSpan<S>& span,
                   PlanErrors& errors) {
   const auto grow = [](double& worst, long double value) {
     worst = std::max(worst, static_cast<double>(value));
@@ -112,12 +112,12 @@ void examine_span(std::span<const plan::BasicBlockCaps<S>> blocks, const plan::B
   grow(errors.speed_jump, std::abs(x.acceleration) / blocks[block].limits.acceleration);
 }
 
-}  // namespace detail
+}  // namespace oracle
 
 /// Everything a plan must keep. That the acceleration is zero between spans is part of `speed_jump`.
 template <std::floating_point S>
-PlanErrors examine_plan(std::span<const plan::BasicBlockCaps<S>> blocks,
-                        const std::vector<plan::BasicSpan<S>>& spans) {
+PlanErrors examine_plan(std::span<const detail::BasicSegmentLimits<S>> blocks,
+                        const std::vector<detail::BasicSpan<S>>& spans) {
   PlanErrors errors;
   std::size_t next = 0;
   S speed = S(0);
@@ -132,7 +132,7 @@ PlanErrors examine_plan(std::span<const plan::BasicBlockCaps<S>> blocks,
       continue;
     }
     errors.speed_jump = std::max(errors.speed_jump, jump / blocks[next].limits.velocity);
-    detail::examine_span(blocks, span, errors);
+    oracle::examine_span(blocks, span, errors);
     speed = span.profile.end_velocity();
     next += span.count;
   }
@@ -142,7 +142,7 @@ PlanErrors examine_plan(std::span<const plan::BasicBlockCaps<S>> blocks,
 }
 
 template <std::floating_point S>
-double duration(const std::vector<plan::BasicSpan<S>>& spans) {
+double duration(const std::vector<detail::BasicSpan<S>>& spans) {
   long double sum = 0;
   for (const auto& span : spans) sum += span.profile.duration();
   return static_cast<double>(sum);

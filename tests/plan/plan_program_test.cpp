@@ -1,4 +1,4 @@
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 
 #include <array>
 #include <cmath>

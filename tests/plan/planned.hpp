@@ -4,32 +4,32 @@
 #include <iterator>
 #include <vector>
 
-#include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/detail/speed/laws.hpp"
+#include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "support/catch.hpp"
 
 namespace cncplan::test {
 
 /// Fails the test where there is no plan.
-template <std::floating_point S, class Law = plan::SevenPhase>
-std::vector<plan::BasicSpan<S>> spans_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
-                                         const Law& law = {}) {
-  std::vector<plan::BasicSpan<S>> spans;
-  std::vector<plan::BasicWaypoint<S>> waypoints(blocks.size() + 1);
-  REQUIRE(plan::plan_spans(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(waypoints),
-                           std::back_inserter(spans)));
+template <std::floating_point S, class Law = detail::SevenPhase>
+std::vector<detail::BasicSpan<S>> spans_of(const std::vector<detail::BasicSegmentLimits<S>>& blocks,
+                                           const Law& law = {}) {
+  std::vector<detail::BasicSpan<S>> spans;
+  std::vector<detail::BasicConstrainedJunction<S>> junctions(blocks.size() + 1);
+  REQUIRE(detail::plan_spans(std::span<const detail::BasicSegmentLimits<S>>(blocks), law,
+                             std::span(junctions), std::back_inserter(spans)));
   return spans;
 }
 
 /// The same, block by block.
-template <std::floating_point S, class Law = plan::SevenPhase>
-std::vector<plan::BasicSpan<S>> single_blocks_of(const std::vector<plan::BasicBlockCaps<S>>& blocks,
-                                                 const Law& law = {}) {
-  std::vector<plan::BasicSpan<S>> spans;
+template <std::floating_point S, class Law = detail::SevenPhase>
+std::vector<detail::BasicSpan<S>> single_blocks_of(const std::vector<detail::BasicSegmentLimits<S>>& blocks,
+                                                   const Law& law = {}) {
+  std::vector<detail::BasicSpan<S>> spans;
   std::vector<S> speeds(blocks.size() + 1);
-  REQUIRE(published::plan_blocks(std::span<const plan::BasicBlockCaps<S>>(blocks), law, std::span(speeds),
-                                 std::back_inserter(spans)));
+  REQUIRE(published::plan_blocks(std::span<const detail::BasicSegmentLimits<S>>(blocks), law,
+                                 std::span(speeds), std::back_inserter(spans)));
   return spans;
 }
 

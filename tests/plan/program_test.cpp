@@ -1,4 +1,4 @@
-#include "cncplan/plan/program.hpp"
+#include "cncplan/program.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cncplan/junction/exact_stop.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/program_run.hpp"
 
@@ -253,7 +253,7 @@ TEST_CASE("a program is planned with a policy and a law of one's own", "[program
   const auto seven = plan_program(program, machine, junction::ExactStop{});
   REQUIRE(seven);
   CHECK(seven->duration() == Approx(3 * move));
-  const auto five = plan_program(program, machine, junction::ExactStop{}, plan::FivePhase{});
+  const auto five = plan_program(program, machine, junction::ExactStop{}, detail::FivePhase{});
   REQUIRE(five);
   CHECK(five->duration() > 3 * move * 1.0001);  // no phase of constant acceleration
   const auto given_away = plan_program(read_text("G1 X50 F1200\n", machine), machine, {.tolerance = 0});

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/smooth_stream.hpp"
 #include "plan/at_level.hpp"
 #include "plan/joined_parts.hpp"
 #include "plan/rows_program.hpp"
@@ -51,12 +51,12 @@ TEST_CASE("reading and planning tell how far they are, and come to the same plan
     REQUIRE_FALSE(program.failed());
     const std::size_t read = shares.size();
     REQUIRE(read > 5);
-    CHECK(shares.back() > 0.8 * plan::reading_share(options));
-    CHECK(shares.back() <= plan::reading_share(options));
+    CHECK(shares.back() > 0.8 * detail::reading_share(options));
+    CHECK(shares.back() <= detail::reading_share(options));
     const auto planned = plan_program(program, mill, options);
     REQUIRE(planned);
     CHECK(shares.size() > read + 10);
-    CHECK(shares[read] >= plan::reading_share(options));
+    CHECK(shares[read] >= detail::reading_share(options));
     CHECK(shares.back() > 0.85);
     CHECK(ascends(shares));
     const auto usual = plan_text(text, mill, at_level(level, within));

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "cncplan/plan/executor_levels.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/executor_levels.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

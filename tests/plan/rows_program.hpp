@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cncplan/gcode/lines.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/catch.hpp"
 

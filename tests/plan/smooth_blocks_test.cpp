@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "cncplan/gcode/lines.hpp"
-#include "cncplan/plan/joint_jumps.hpp"
-#include "cncplan/plan/peaks.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/step_edges.hpp"
+#include "cncplan/junction_jumps.hpp"
+#include "cncplan/peaks.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/step_edges.hpp"
 #include "plan/at_level.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/catch.hpp"

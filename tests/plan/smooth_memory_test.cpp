@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cncplan/core/fixed_memory.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
-#include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/plan_blocks.hpp"
+#include "cncplan/smooth_stream.hpp"
 #include "plan/at_level.hpp"
 #include "plan/joined_parts.hpp"
 #include "plan/rows_program.hpp"

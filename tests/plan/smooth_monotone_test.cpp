@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

@@ -1,6 +1,6 @@
 // Programs that are planned in parts: limits by differences, the path by brute force, the time of the whole.
-#include "cncplan/plan/smooth_stream.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/smooth_stream.hpp"
+#include "cncplan/plan_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cncplan/core/vector.hpp"
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 
 namespace cncplan::test {
 

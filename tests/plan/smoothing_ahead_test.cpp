@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/player/smoothing_ahead.hpp"
-#include "cncplan/plan/smoothing.hpp"
+#include "cncplan/detail/curve/smoothing.hpp"
+#include "cncplan/detail/executor/smoothing_ahead.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/executor_machines.hpp"
@@ -31,18 +31,18 @@ template <class Ahead>
 void finish(Ahead& ahead) {
   std::size_t steps = 0;
   for (; ahead.ends(); ++steps) ahead.work();
-  CHECK(steps <= 4 * smooth::most_neighbours + 2);
+  CHECK(steps <= 4 * detail::most_neighbours + 2);
 }
 
 // How far the paths of a machine's blocks are apart, and where the first joint is that is passed otherwise.
 template <MachineModel M>
 void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, double tolerance) {
-  const plan::SmoothingRules<double> rules{tolerance, 1e-3, false};
-  const auto whole = plan::smoothing(std::span(blocks), machine, rules);
+  const detail::SmoothingRules<double> rules{tolerance, 1e-3, false};
+  const auto whole = detail::smoothing(std::span(blocks), machine, rules);
   const auto memory =
-      std::make_unique<plan::SmoothingRoom<M, ProgramBlock<M>, room, smooth::most_neighbours>>();
+      std::make_unique<detail::SmoothingRoom<M, ProgramBlock<M>, room, detail::most_neighbours>>();
   const auto ahead =
-      std::make_unique<plan::SmoothingAhead<M, ProgramBlock<M>>>(rules, machine, memory->memory());
+      std::make_unique<detail::SmoothingAhead<M, ProgramBlock<M>>>(rules, machine, memory->memory());
   const auto tool = tool_axes(machine);
   std::size_t told = 0;
   const auto look = [&] {
@@ -52,7 +52,7 @@ void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, doubl
       const double length = block.path.length();
       if (!(length > 0)) continue;
       CAPTURE(told);
-      CHECK(ahead->passing(number) == whole.passing(told));
+      CHECK(ahead->junction_mode(number) == whole.junction_mode(told));
       const auto one = ahead->driven(block, number, tool);
       const auto other = whole.path(block.path, told, tool);
       for (int i = 0; i <= 8; ++i) {
@@ -71,7 +71,7 @@ void compare(const std::vector<ProgramBlock<M>>& blocks, const M& machine, doubl
     for (std::size_t k = told; k <= i; ++k) moving += blocks[k].path.length() > 0 ? 1 : 0;
     held = std::max(held, moving);
   }
-  CHECK(held <= static_cast<std::int64_t>(4 * smooth::most_neighbours + 2));
+  CHECK(held <= static_cast<std::int64_t>(4 * detail::most_neighbours + 2));
   ahead->end_part();
   finish(*ahead);
   CHECK(ahead->known() == static_cast<std::int64_t>(blocks.size()));
@@ -96,8 +96,9 @@ TEST_CASE("blocks one by one are smoothed as the whole program is", "[executor]"
 TEST_CASE("a block is known once those are there that can act on it, or none will", "[executor]") {
   constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
   const auto blocks = test::blocks_of({"F600", "G1 X1", "Y1", "X2", "G4 P0.1", "Y2", "X3"}, mill);
-  plan::SmoothingRoom<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> memory;
-  plan::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>> ahead({0.1, 1e-3, false}, mill, memory.memory());
+  detail::SmoothingRoom<Machine<3>, ProgramBlock<Machine<3>>, 16, 1> memory;
+  detail::SmoothingAhead<Machine<3>, ProgramBlock<Machine<3>>> ahead({0.1, 1e-3, false}, mill,
+                                                                     memory.memory());
   const auto after = [&](std::size_t i) {
     CHECK(ahead.push(blocks[i], mill, blocks[i].path.length()));
     finish(ahead);
@@ -113,6 +114,6 @@ TEST_CASE("a block is known once those are there that can act on it, or none wil
   CHECK(ahead.known() == 4);
   finish(ahead);
   CHECK(ahead.known() == 6);
-  CHECK(ahead.passing(4) == plan::Passing::stop);
-  CHECK(ahead.passing(5) == plan::Passing::smooth);
+  CHECK(ahead.junction_mode(4) == detail::JunctionMode::stop);
+  CHECK(ahead.junction_mode(5) == detail::JunctionMode::blend);
 }

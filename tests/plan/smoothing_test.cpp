@@ -1,5 +1,5 @@
 // Programs smoothed within a tolerance: limits by differences of positions, distances by brute force.
-#include "cncplan/plan/smoothing.hpp"
+#include "cncplan/detail/curve/smoothing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "cncplan/path/arc_from_radius.hpp"
-#include "cncplan/plan/peaks.hpp"
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/step_edges.hpp"
+#include "cncplan/peaks.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/step_edges.hpp"
 #include "plan/smoothed_motion.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"

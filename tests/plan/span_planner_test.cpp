@@ -1,4 +1,4 @@
-#include "cncplan/plan/span_planner.hpp"
+#include "cncplan/detail/speed/span_planner.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Limits kk22{30.0, 1000.0, 10000.0};
 
-std::vector<plan::BlockCaps> draw(test::Random& random) {
+std::vector<detail::SegmentLimits> draw(test::Random& random) {
   constexpr LimitSpread spreads[] = {LimitSpread::none, LimitSpread::slight, LimitSpread::wide};
   return test::random_program(random, spreads[random.integer(0, 2)]);
 }
@@ -30,7 +30,7 @@ struct Place {
 };
 class Walk {
  public:
-  Walk(const std::vector<plan::BlockCaps>& blocks, const std::vector<plan::Span>& spans)
+  Walk(const std::vector<detail::SegmentLimits>& blocks, const std::vector<detail::Span>& spans)
       : blocks_(blocks), spans_(spans) {}
 
   Place at(double time) {
@@ -46,8 +46,8 @@ class Walk {
   }
 
  private:
-  const std::vector<plan::BlockCaps>& blocks_;
-  const std::vector<plan::Span>& spans_;
+  const std::vector<detail::SegmentLimits>& blocks_;
+  const std::vector<detail::Span>& spans_;
   std::size_t span_ = 0, block_ = 0;
   double start_ = 0.0, origin_ = 0.0, end_ = 0.0;
 };
@@ -59,23 +59,23 @@ TEST_CASE("a length has room for a ramp where it is above the room that one take
   for (int i = 0; i < 10000; ++i) {
     const Limits limits{random.log_uniform(1e-3, 1e4), random.log_uniform(1, 1e6),
                         random.log_uniform(1, 1e9)};
-    const double room = plan::room_for_ramp(limits);
-    REQUIRE(plan::has_room_for_ramp(limits, room * (1 + 1e-12)));
-    REQUIRE(!plan::has_room_for_ramp(limits, room * (1 - 1e-12)));
+    const double room = detail::room_for_ramp(limits);
+    REQUIRE(detail::has_room_for_ramp(limits, room * (1 + 1e-12)));
+    REQUIRE(!detail::has_room_for_ramp(limits, room * (1 - 1e-12)));
   }
-  CHECK(plan::has_room_for_ramp(Limits{30, infinity, infinity}, 1e-9));
-  CHECK(!plan::has_room_for_ramp(Limits{30, infinity, infinity}, 0.0));
+  CHECK(detail::has_room_for_ramp(Limits{30, infinity, infinity}, 1e-9));
+  CHECK(!detail::has_room_for_ramp(Limits{30, infinity, infinity}, 0.0));
 }
 
 TEST_CASE("random programs break no cap, no feed and no limit, and join without a jump") {
   test::Random random;
   test::PlanErrors worst;
   double worst_one = 0.0;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   for (int draws = 0; draws < 4000; ++draws) {
     const auto blocks = draw(random);
     for (const bool seven : {true, false}) {
-      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, plan::FivePhase{});
+      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, detail::FivePhase{});
       const auto errors = test::examine_plan<double>(blocks, spans);
       if (errors.worst() > worst_one) worst_one = errors.worst(), where = blocks;
       worst.worst_of(errors);
@@ -93,10 +93,10 @@ TEST_CASE("random programs break no cap, no feed and no limit, and join without 
   CHECK(worst.misplaced == 0);
 }
 
-TEST_CASE("spans are never slower than block by block under the same caps") {
+TEST_CASE("spans are never slower than block by block under the same segments") {
   test::Random random;
   double worst = 0.0, saved = 0.0;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   for (int draws = 0; draws < 8000; ++draws) {
     const auto blocks = test::random_program(random, LimitSpread::none);
     const double across = test::duration(test::spans_of(blocks));
@@ -148,7 +148,7 @@ TEST_CASE("samples of a plan differ by what the limits allow") {
 }
 
 TEST_CASE("a straight line in pieces is driven as one") {
-  std::vector<plan::BlockCaps> pieces(64, {100.0 / 64.0, infinity, kk22, 0.0});
+  std::vector<detail::SegmentLimits> pieces(64, {100.0 / 64.0, infinity, kk22, 0.0});
   pieces.front().entry = 0.0;
   const auto spans = test::spans_of(pieces);
   REQUIRE(spans.size() == 1);
@@ -157,17 +157,17 @@ TEST_CASE("a straight line in pieces is driven as one") {
 
 TEST_CASE("a cap that a ramp does not reach costs nothing") {
   // half a millimetre from rest the ramp is at 21.05 mm/s
-  const std::vector<plan::BlockCaps> free{{0.5, 0.0, kk22, 0.0}, {10.0, 21.1, kk22, 0.0}};
+  const std::vector<detail::SegmentLimits> free{{0.5, 0.0, kk22, 0.0}, {10.0, 21.1, kk22, 0.0}};
   CHECK(test::duration(test::spans_of(free)) ==
         Approx(profile::seven_phase(10.5, {0.0, 0.0}, kk22)->duration()).epsilon(1e-14));
-  const std::vector<plan::BlockCaps> capped{{5.0, 0.0, kk22, 0.0}, {5.0, 15.0, kk22, 0.0}};
+  const std::vector<detail::SegmentLimits> capped{{5.0, 0.0, kk22, 0.0}, {5.0, 15.0, kk22, 0.0}};
   const auto spans = test::spans_of(capped);
   REQUIRE(spans.size() == 2);
   CHECK(spans[1].profile.start_velocity() == 15.0);
 }
 
 TEST_CASE("pauses stand between the spans they divide, and a dwell may come first") {
-  const std::vector<plan::BlockCaps> blocks{
+  const std::vector<detail::SegmentLimits> blocks{
       {0.0, 0.0, kk22, 0.5}, {10.0, 0.0, kk22, 0.25}, {10.0, 0.0, kk22, 0.0}, {0.0, infinity, kk22, 0.125}};
   const auto spans = test::spans_of(blocks);
   double pauses = 0.0;
@@ -179,17 +179,17 @@ TEST_CASE("pauses stand between the spans they divide, and a dwell may come firs
         Approx(0.875 + 2.0 * profile::seven_phase(10.0, {0.0, 0.0}, kk22)->duration()).epsilon(1e-14));
 }
 
-TEST_CASE("no blocks, no spans") { CHECK(test::spans_of(std::vector<plan::BlockCaps>{}).empty()); }
+TEST_CASE("no blocks, no spans") { CHECK(test::spans_of(std::vector<detail::SegmentLimits>{}).empty()); }
 
 TEST_CASE("the same blocks give the same bits, without heap") {
   test::Random random;
   for (int draws = 0; draws < 20; ++draws) {
     const auto blocks = draw(random);
-    std::vector<plan::Waypoint> waypoints(blocks.size() + 1);
-    std::vector<plan::Span> first(2 * blocks.size()), second(2 * blocks.size());
-    const auto plan = [&](std::vector<plan::Span>& out) {
-      (void)plan::plan_spans(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{},
-                             std::span(waypoints), out.begin());
+    std::vector<detail::ConstrainedJunction> junctions(blocks.size() + 1);
+    std::vector<detail::Span> first(2 * blocks.size()), second(2 * blocks.size());
+    const auto plan = [&](std::vector<detail::Span>& out) {
+      (void)detail::plan_spans(std::span<const detail::SegmentLimits>(blocks), detail::SevenPhase{},
+                               std::span(junctions), out.begin());
     };
     plan(first);
     CHECK(test::heap_allocations_of([&] { plan(second); }) == 0);
@@ -202,9 +202,9 @@ TEST_CASE("where blocks are alike but for rounding, that decides nothing") {
   test::Random random;
   constexpr double last_bit = std::numeric_limits<double>::epsilon();
   double worst = 0.0;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   for (int draws = 0; draws < 2000; ++draws) {
-    std::vector<plan::BlockCaps> blocks;
+    std::vector<detail::SegmentLimits> blocks;
     const int kinds = random.integer(1, 6), rings = random.integer(2, 12);
     for (int i = 0; i < kinds; ++i)
       blocks.push_back({random.log_uniform(0.05, 2),
@@ -213,12 +213,12 @@ TEST_CASE("where blocks are alike but for rounding, that decides nothing") {
                         0.0});
     if (random.coin())
       for (int i = kinds; i-- > 0;) blocks.push_back(blocks[static_cast<std::size_t>(i)]);
-    const std::vector<plan::BlockCaps> ring = blocks;
+    const std::vector<detail::SegmentLimits> ring = blocks;
     for (int i = 1; i < rings; ++i) blocks.insert(blocks.end(), ring.begin(), ring.end());
     const double planned = test::duration(test::spans_of(blocks));
-    std::vector<plan::BlockCaps> other = blocks;
+    std::vector<detail::SegmentLimits> other = blocks;
     const auto shake = [&](double& number) { number *= 1.0 + random.integer(-4, 4) * last_bit; };
-    for (plan::BlockCaps& block : other) {
+    for (detail::SegmentLimits& block : other) {
       shake(block.length);
       shake(block.entry);
       shake(block.limits.velocity);
@@ -235,11 +235,11 @@ TEST_CASE("where blocks are alike but for rounding, that decides nothing") {
 TEST_CASE("random programs in float keep their limits to float's digits") {
   test::Random random;
   test::PlanErrors worst;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   double worst_one = 0.0;
   for (int draws = 0; draws < 1000; ++draws) {
     const auto blocks = test::random_program(random, LimitSpread::wide, 60);
-    std::vector<plan::BasicBlockCaps<float>> narrow;
+    std::vector<detail::BasicSegmentLimits<float>> narrow;
     for (const auto& b : blocks)
       narrow.push_back({static_cast<float>(b.length),
                         static_cast<float>(b.entry),

@@ -1,4 +1,4 @@
-#include "cncplan/plan/step_edges.hpp"
+#include "cncplan/step_edges.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cncplan/path/measured.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/curves.hpp"
 

@@ -1,4 +1,4 @@
-#include "cncplan/plan/table_path.hpp"
+#include "cncplan/table_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace cncplan;
 namespace {
 
 using Map = kinematics::PolarMap;
-using Part = plan::TablePath<Map, path::Segment<3>>;
+using Part = cncplan::TablePath<Map, path::Segment<3>>;
 
 // Adds up the angle between places near each other, which no jump of atan2 can hide.
 double angle_walked(const path::Segment<3>& path) {
@@ -71,13 +71,13 @@ TEST_CASE("a path round a table: parts join, turn by a radian at most, and end w
     const path::Segment<3> path = random_path(random);
     CAPTURE(test::seed(), i);
     const double least = least_by_search(path);
-    CHECK(plan::least_radius(path, 0.0, path.length()) == Approx(least).epsilon(1e-6).margin(1e-6));
+    CHECK(least_radius(path, 0.0, path.length()) == Approx(least).epsilon(1e-6).margin(1e-6));
     const Vector3 start = path.start();
     const double reference = std::atan2(start.y(), start.x()) + 4 * std::numbers::pi;
     double table = reference;
     std::vector<Part> parts;
     const auto done =
-        plan::follow_table(path, Map{}, 0.5, table, [&](const Part& part) { parts.push_back(part); });
+        cncplan::follow_table(path, Map{}, 0.5, table, [&](const Part& part) { parts.push_back(part); });
     if (std::abs(least - 0.5) < 1e-5) continue;
     REQUIRE(done.has_value() == (least > 0.5));
     if (!done) {
@@ -117,19 +117,19 @@ TEST_CASE("a table that turns from 0 to 360 degrees begins and goes on within th
     CAPTURE(degree);
     const double angle = degree * pi / 180;
     const Vector3 from(50 * std::cos(angle), 50 * std::sin(angle), 0), to = 1.5 * from;
-    double table = plan::first_table_angle(from.x(), from.y(), 0.0, turn);
+    double table = cncplan::first_table_angle(from.x(), from.y(), 0.0, turn);
     CHECK(table == Approx(angle));
     double low = table, high = table;
     const path::Segment<3> outwards = path::Line<3>(from, to);
-    REQUIRE(plan::follow_table(outwards, Map{}, 0.5, table, [&](const Part& part) {
+    REQUIRE(cncplan::follow_table(outwards, Map{}, 0.5, table, [&](const Part& part) {
       low = std::min(low, part.position_at(0.0)[2]);
       high = std::max(high, part.position_at(part.length())[2]);
     }));
     CHECK(low >= 0);
     CHECK(high <= turn);
   }
-  CHECK(plan::first_table_angle(0.0, -1.0, -turn, 0.0) == Approx(-pi / 2));
-  CHECK(plan::first_table_angle(0.0, 1.0, -turn, 0.0) == Approx(pi / 2 - turn));
+  CHECK(cncplan::first_table_angle(0.0, -1.0, -turn, 0.0) == Approx(-pi / 2));
+  CHECK(cncplan::first_table_angle(0.0, 1.0, -turn, 0.0) == Approx(pi / 2 - turn));
 }
 
 TEST_CASE("a table whose axis is elsewhere turns as one at the origin under a path moved there",
@@ -143,7 +143,7 @@ TEST_CASE("a table whose axis is elsewhere turns as one at the origin under a pa
       double table = 7;
       std::vector<Part> parts;
       const path::Segment<3> line = path::Line<3>(from + moved, to + moved);
-      (void)plan::follow_table(line, map, 0.5, table, [&](const Part& part) { parts.push_back(part); });
+      (void)cncplan::follow_table(line, map, 0.5, table, [&](const Part& part) { parts.push_back(part); });
       return parts;
     };
     const auto here = parts_of(Vector3::Zero(), Map{});

@@ -1,5 +1,5 @@
 // A planned trajectory run with requests: limits by differences of positions, holds against closed forms.
-#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/trajectory_executor.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/smooth_stream.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/smooth_stream.hpp"
 #include "least_brake.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"

@@ -1,4 +1,4 @@
-#include "cncplan/plan/trajectory.hpp"
+#include "cncplan/trajectory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/mapped.hpp"
 #include "cncplan/path/measured.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/curves.hpp"
 #include "support/random.hpp"

@@ -15,21 +15,22 @@ using test::LimitSpread;
 
 namespace {
 
-std::vector<double> speeds_of(const std::vector<plan::BlockCaps>& blocks) {
+std::vector<double> speeds_of(const std::vector<detail::SegmentLimits>& blocks) {
   std::vector<double> speeds(blocks.size() + 1);
-  published::junction_speeds(std::span<const plan::BlockCaps>(blocks), plan::SevenPhase{}, std::span(speeds));
+  published::junction_speeds(std::span<const detail::SegmentLimits>(blocks), detail::SevenPhase{},
+                             std::span(speeds));
   return speeds;
 }
 
 // The highest speed of a junction as its own cap and the feeds of its two blocks leave it.
-double cap(const std::vector<plan::BlockCaps>& blocks, std::size_t junction) {
+double cap(const std::vector<detail::SegmentLimits>& blocks, std::size_t junction) {
   if (junction == 0 || junction == blocks.size()) return 0.0;
   return std::min(
       {blocks[junction].entry, blocks[junction - 1].limits.velocity, blocks[junction].limits.velocity});
 }
 
 // Time of a program with the given speeds at its junctions, infinite where they do not fit.
-double time_of(const std::vector<plan::BlockCaps>& blocks, const std::vector<double>& speeds) {
+double time_of(const std::vector<detail::SegmentLimits>& blocks, const std::vector<double>& speeds) {
   double sum = 0.0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto profile =
@@ -46,7 +47,7 @@ TEST_CASE("no grid of junction speeds takes less time") {
   test::Random random;
   double saved = 0.0;
   int feasible = 0;
-  std::vector<plan::BlockCaps> where;
+  std::vector<detail::SegmentLimits> where;
   for (int draws = 0; draws < 150; ++draws) {
     auto blocks = test::random_program(random, LimitSpread::wide, 4);
     blocks.resize(4, blocks.back());
@@ -96,7 +97,7 @@ TEST_CASE("plans block by block break nothing, under both laws") {
   for (int draws = 0; draws < 2000; ++draws) {
     const auto blocks = test::random_program(random, LimitSpread::wide);
     const auto spans =
-        draws % 2 == 0 ? test::single_blocks_of(blocks) : test::single_blocks_of(blocks, plan::FivePhase{});
+        draws % 2 == 0 ? test::single_blocks_of(blocks) : test::single_blocks_of(blocks, detail::FivePhase{});
     worst.worst_of(test::examine_plan<double>(blocks, spans));
     for (const auto& span : spans) REQUIRE(span.count <= 1);
   }
@@ -104,9 +105,9 @@ TEST_CASE("plans block by block break nothing, under both laws") {
 }
 
 TEST_CASE("a chain of ramps up and down") {
-  // 1 mm blocks without caps: from each junction the next is just within reach
+  // 1 mm blocks without segments: from each junction the next is just within reach
   const Limits limits{1000.0, 1e6, 10000.0};
-  std::vector<plan::BlockCaps> blocks(6, {1.0, 1e9, limits, 0.0});
+  std::vector<detail::SegmentLimits> blocks(6, {1.0, 1e9, limits, 0.0});
   blocks.front().entry = 0.0;
   const auto v = speeds_of(blocks);
   CHECK(v[1] == Approx(std::cbrt(10000.0)).epsilon(1e-12));  // v sqrt(v/J) = 1 mm

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
+#include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
-#include "cncplan/plan/cells.hpp"
 #include "junction/junctions.hpp"
 #include "support/catch.hpp"
 
@@ -146,13 +146,13 @@ TEST_CASE("KK22 Fig. 7: four junctions at Vmax/2, the last a stop") {
     blocks.push_back({.path = *arc});
   }
   blocks.push_back({.path = path::Line<3>(points[5], points[0])});
-  const auto side = [](const Block<3>& block, plan::PathEnd joint) {
-    return plan::tool_side(block.path, junction::Kind::line, plan::PathEnds(block.path), joint,
-                           tool_axes(Machine<3>{}));
+  const auto side = [](const Block<3>& block, detail::PathEnd joint) {
+    return detail::tool_side(block.path, junction::Kind::line, detail::PathEnds(block.path), joint,
+                             tool_axes(Machine<3>{}));
   };
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
     CAPTURE(i);
-    CHECK(share({side(blocks[i], plan::PathEnd::end), side(blocks[i + 1], plan::PathEnd::start),
+    CHECK(share({side(blocks[i], detail::PathEnd::end), side(blocks[i + 1], detail::PathEnd::start),
                  test::kk22}) == (i < 4 ? 0.5 : 0.0));
   }
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "cncplan/published/junction_table.hpp"
 #include "support/catch.hpp"
@@ -23,18 +23,18 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   REQUIRE(whole);
   const std::vector<ProgramBlock<Machine<3>>> blocks(whole->program().begin(), whole->program().end());
   const std::span<const ProgramBlock<Machine<3>>> all(blocks);
-  const plan::JointRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};
-  auto cells = plan::make_cells<published::ToolLimits>(all, mill, rules).value();
+  const detail::JunctionRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};
+  auto cells = detail::make_cells<published::ToolLimits>(all, mill, rules).value();
   published::to_plane(all, cells);
-  REQUIRE(cells.caps.size() == 8);
+  REQUIRE(cells.segments.size() == 8);
   for (std::size_t i = 0; i < 6; ++i)
-    CHECK(cells.caps[i].length == Approx(10 * std::numbers::pi).epsilon(1e-14));
-  CHECK(cells.caps[6].length == 10);
-  std::vector<double> speeds(cells.caps.size() + 1);
-  std::vector<plan::Span> spans;
-  REQUIRE(published::plan_blocks(std::span<const plan::BlockCaps>(cells.caps), plan::FivePhase{},
+    CHECK(cells.segments[i].length == Approx(10 * std::numbers::pi).epsilon(1e-14));
+  CHECK(cells.segments[6].length == 10);
+  std::vector<double> speeds(cells.segments.size() + 1);
+  std::vector<detail::Span> spans;
+  REQUIRE(published::plan_blocks(std::span<const detail::SegmentLimits>(cells.segments), detail::FivePhase{},
                                  std::span(speeds), std::back_inserter(spans)));
-  auto phases = plan::block_phases(std::span<const plan::Span>(spans), cells);
+  auto phases = detail::block_phases(std::span<const detail::Span>(spans), cells);
   published::to_space(all, std::span(phases));
   const Trajectory<Machine<3>, ProgramBlock<Machine<3>>> planned(mill, {blocks.begin(), blocks.end()},
                                                                  std::move(phases));

@@ -2,7 +2,7 @@
 #   cmake -DCXX=g++ "-DFLAGS=-I..." -DINCLUDE=include -P compiler.cmake
 cmake_minimum_required(VERSION 3.22)
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")
-file(GLOB headers RELATIVE ${INCLUDE} ${INCLUDE}/cncplan/core/*.hpp)
+file(GLOB_RECURSE headers RELATIVE ${INCLUDE} ${INCLUDE}/cncplan/core/*.hpp)
 
 function(compile header options result said)
   execute_process(COMMAND ${CXX} -x c++ -std=c++20 ${options} -fsyntax-only -Wfatal-errors ${flags} ${INCLUDE}/${header}

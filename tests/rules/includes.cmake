@@ -1,6 +1,7 @@
 # The rules of the folders, checked on the text of every header.   cmake -DINCLUDE=include -P includes.cmake
-#   - A folder includes the standard library, Eigen, tl::expected, core/, itself and its own instances (compiled/FOLDER.hpp); plan/,
-#     published/, compiled/ and the umbrella include all.
+#   - A part (core/, gcode/, path/, ...) includes the standard library, Eigen, tl::expected, core/, itself and its own instances
+#     (compiled/FOLDER.hpp). What joins the parts includes all: the headers at the top, detail/, published/, tire_mold/, compiled/.
+#   - detail/curve/ and detail/speed/ know of what joins the parts only the machine, its blocks, its tool and the levels of smoothing.
 #   - The umbrella, cncplan.hpp, lags behind nothing: it includes every header there is, but definitions (NAME-inl.hpp),
 #     which NAME.hpp includes where the library is not compiled.
 #   - A header has #pragma once, and a first line that says what it holds. If that line says "(set-up)", the header is for
@@ -20,10 +21,13 @@ macro(complain text)
   set(found TRUE)
 endmacro()
 
+set(joins "^(|detail|published|tire_mold|compiled)$")  # the folders that put parts together
+set(values "^cncplan/(block|fallback|machine|smooth_level|tool)\\.hpp$")
+
 foreach(header IN LISTS headers)
   file(READ ${INCLUDE}/${header} text)
-  string(REGEX MATCH "^cncplan/([^/]+)/" folder ${header})
-  set(folder "${CMAKE_MATCH_1}")
+  string(REGEX MATCH "^cncplan/(([^/]+)/)?" folder ${header})
+  set(folder "${CMAKE_MATCH_2}")
   string(REGEX MATCH "^[^\n]*" first_line "${text}")
   string(REGEX MATCHALL "\n" line_ends "${text}")
   list(LENGTH line_ends lines)
@@ -48,18 +52,19 @@ foreach(header IN LISTS headers)
     set(kind "${CMAKE_MATCH_1}")
     set(target "${CMAKE_MATCH_2}")
     if(kind STREQUAL "\"")
-      string(REGEX MATCH "^cncplan/([^/]+)/" all ${target})
-      set(other "${CMAKE_MATCH_1}")
+      string(REGEX MATCH "^cncplan/(([^/]+)/)?" all ${target})
+      set(other "${CMAKE_MATCH_2}")
       if(NOT target IN_LIST headers)
         complain("includes \"${target}\", which is no header of the library")
-      elseif(NOT folder STREQUAL "" AND NOT folder MATCHES "^(plan|published|compiled)$" AND NOT other MATCHES "^(core|${folder})$"
-          AND NOT target STREQUAL "cncplan/compiled/${folder}.hpp")
-        complain("${folder}/ includes \"${target}\": a folder includes core/, itself and its own instances only")
+      elseif(NOT folder MATCHES ${joins} AND NOT other MATCHES "^(core|${folder})$" AND NOT target STREQUAL "cncplan/compiled/${folder}.hpp")
+        complain("${folder}/ includes \"${target}\": a part includes core/, itself and its own instances only")
+      elseif(header MATCHES "^cncplan/detail/(curve|speed)/" AND NOT target MATCHES ${values}
+          AND (other STREQUAL "" OR target MATCHES "^cncplan/detail/(plan|executor)/"))
+        complain("includes \"${target}\": curve/ and speed/ know nothing of what is planned or run by them")
       endif()
-      if(NOT folder STREQUAL "")
-        continue()
+      if(header STREQUAL "cncplan/cncplan.hpp")
+        list(APPEND umbrella ${target})
       endif()
-      list(APPEND umbrella ${target})
     elseif(NOT target MATCHES "^([a-z_]+|Eigen/[A-Z][A-Za-z]+|tl/expected\\.hpp)$")
       complain("includes <${target}>: only the standard library, Eigen and tl::expected are allowed")
     elseif(target IN_LIST needs_heap AND NOT first_line MATCHES "\\(set-up\\)")

@@ -96,14 +96,14 @@ Trajectory<Machine<3>, NoPath>* no_path;
 struct ProfileAtOnce {
   Expected<profile::Profile> operator()(const Limits&) const;
 };
-auto law = plan::trajectory(std::pmr::vector<Block<3>>(), mill,
-                            plan::JointRules<double, junction::ExactStop>{}, ProfileAtOnce{});
+auto law = detail::trajectory(std::pmr::vector<Block<3>>(), mill,
+                              detail::JunctionRules<double, junction::ExactStop>{}, ProfileAtOnce{});
 
 // expect Immovable, QueueItem: movable
 struct Immovable {
   std::atomic<int> count;
 };
-plan::Queue<Immovable, 4>* queue;
+cncplan::Queue<Immovable, 4>* queue;
 
 // expect NoState, StepRule: rule(point, x, along, x, x)
 struct NoState {
@@ -123,7 +123,7 @@ struct MotionsOnly {
 };
 auto sink = gcode::read_program(gcode::TextLines(""), reader, MotionsOnly{});
 
-// expect NoTurning, SteppablePath: path.next_turning(axis, x)
+// expect NoTurning, SteppablePath: path.next_reversal(axis, x)
 struct NoTurning : NoInverse {};
 auto steppable = step::block_edges(NoTurning{}, step::PhaseClock(phases), steps_per_mm);
 

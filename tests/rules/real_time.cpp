@@ -7,6 +7,12 @@
 #include <span>
 #include <string_view>
 
+#include "cncplan/block_builder.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/detail/speed/cell_maker.hpp"
+#include "cncplan/detail/speed/laws.hpp"
+#include "cncplan/detail/speed/span_planner.hpp"
+#include "cncplan/executor.hpp"
 #include "cncplan/gcode/reader.hpp"
 #include "cncplan/interpolate/exact.hpp"
 #include "cncplan/junction/acceleration_step.hpp"
@@ -16,26 +22,20 @@
 #include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/row.hpp"
+#include "cncplan/live_steps.hpp"
+#include "cncplan/move_to.hpp"
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
-#include "cncplan/plan/block_builder.hpp"
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/cell_maker.hpp"
-#include "cncplan/plan/executor.hpp"
-#include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/live_steps.hpp"
-#include "cncplan/plan/move_to.hpp"
-#include "cncplan/plan/span_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/published/junction_table.hpp"
 #include "cncplan/step/backend.hpp"
 #include "cncplan/step/backlash.hpp"
 #include "cncplan/step/binary.hpp"
+#include "cncplan/step/detail/traced_path.hpp"
 #include "cncplan/step/fixed_tick.hpp"
 #include "cncplan/step/merge.hpp"
-#include "cncplan/step/traced_path.hpp"
 #include "support/no_heap.hpp"
 
 using namespace cncplan;
@@ -174,7 +174,8 @@ BlockBuilder<Machine<3>> builder(mill, dialect_of(mill));
 template <class Take>
 void make_cells(gcode::Reader& program, const Take& take) {
   std::array<gcode::Item, gcode::max_items_per_line> items;
-  plan::CellMaker<Machine<3>, ProgramBlock<Machine<3>>, junction::Deviation> maker(mill, {{0.01}, 0.01, 0.0});
+  detail::CellMaker<Machine<3>, ProgramBlock<Machine<3>>, junction::Deviation> maker(mill,
+                                                                                     {{0.01}, 0.01, 0.0});
   for (const std::string_view line : {"G21 G90 F1200", "G1 X10", "G3 X15 Y5 R5", "G4 P0.01", "G1 Y10", "X0",
                                       "Y0", "X5", "Y5", "X0", "Y0"}) {
     const auto end = program.read_line(line, items.begin());
@@ -184,23 +185,24 @@ void make_cells(gcode::Reader& program, const Take& take) {
       while (!maker.done()) {
         if (!maker.next()) break;
         const auto& cell = maker.cell();
-        take(**block, plan::BlockCaps{cell.part.to - cell.part.from, cell.entry, cell.part.limits, 0.0});
+        take(**block,
+             detail::SegmentLimits{cell.part.to - cell.part.from, cell.entry, cell.part.limits, 0.0});
       }
-      if ((*block)->pause > 0.0) take(**block, plan::BlockCaps{0.0, 0.0, limits, (*block)->pause});
+      if ((*block)->pause > 0.0) take(**block, detail::SegmentLimits{0.0, 0.0, limits, (*block)->pause});
     }
   }
 }
 
 void plan_a_program() {
-  std::array<plan::BlockCaps, 64> caps;
-  std::array<plan::Waypoint, 65> waypoints;
-  std::array<plan::Span, 64> spans;
+  std::array<detail::SegmentLimits, 64> caps;
+  std::array<detail::ConstrainedJunction, 65> junctions;
+  std::array<detail::Span, 64> spans;
   std::size_t count = 0;
-  make_cells(reader_of_plan, [&](const ProgramBlock<Machine<3>>&, const plan::BlockCaps& cell) {
+  make_cells(reader_of_plan, [&](const ProgramBlock<Machine<3>>&, const detail::SegmentLimits& cell) {
     if (count < caps.size()) caps[count++] = cell;
   });
-  sink = plan::plan_spans(std::span<const plan::BlockCaps>(caps.data(), count), plan::SevenPhase{},
-                          std::span<plan::Waypoint>(waypoints), spans.begin())
+  sink = detail::plan_spans(std::span<const detail::SegmentLimits>(caps.data(), count), detail::SevenPhase{},
+                            std::span<detail::ConstrainedJunction>(junctions), spans.begin())
              ? 1.0
              : 0.0;
 }

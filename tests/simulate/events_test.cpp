@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "cncplan/plan/executor_levels.hpp"
-#include "cncplan/plan/program.hpp"
+#include "cncplan/executor_levels.hpp"
+#include "cncplan/program.hpp"
 #include "simulate/laws.hpp"
 #include "simulate/programs.hpp"
 #include "simulate/run.hpp"

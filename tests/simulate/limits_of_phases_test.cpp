@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 
 using namespace cncplan;

@@ -210,7 +210,7 @@ TEST_CASE("axis peaks are no less than the samples of single arcs show") {
         speed = std::max(speed, std::abs(x[i + 1] - x[i - 1]) / 2e-5);
       for (std::size_t i = 200; i + 300 < x.size(); i += 100)  // third differences over a millisecond each
         jerk = std::max(jerk, std::abs(x[i + 200] - 3 * x[i + 100] + 3 * x[i] - x[i - 100]) / 1e-9);
-      // A peak is one that is attained, and 1e-6 of it may be missed (plan/peaks.hpp).
+      // A peak is one that is attained, and 1e-6 of it may be missed (peaks.hpp).
       const double peak = json["axis_peak"]["velocity"][name];
       CHECK(peak <= speed * (1.0 + 1e-7));
       CHECK(peak >= speed * (1.0 - 1e-6));

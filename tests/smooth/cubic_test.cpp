@@ -1,5 +1,5 @@
 // Cubic pieces: the laws of a path, turnings and crossings; the B-spline that they are cut from.
-#include "cncplan/smooth/cubic.hpp"
+#include "cncplan/path/cubic.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 namespace {
 
 using namespace cncplan;
-using smooth::Cubic;
+using path::Cubic;
 
-static_assert(Path<Cubic<3>> && Path<Cubic<5>> && Path<smooth::BasicCubic<float, 2>>);
+static_assert(Path<Cubic<3>> && Path<Cubic<5>> && Path<path::BasicCubic<float, 2>>);
 static_assert(ParametricPath<Cubic<3>>);
 
 template <int N>
@@ -49,7 +49,7 @@ TEST_CASE("a cubic piece turns round where brute force finds it, and crosses whe
     double u = 0;
     int turnings = 0;
     for (int k = 0; k < 3 && u < length; ++k) {
-      const double next = piece.next_turning(0, u);
+      const double next = piece.next_reversal(0, u);
       // Monotone between, and the slope changes its sign there.
       const double sign = piece.derivative((u + next) / 2)[0];
       for (int m = 1; m < 20; ++m) CHECK(piece.derivative(u + (next - u) * m / 20)[0] * sign >= -1e-9);
@@ -75,9 +75,9 @@ TEST_CASE(
     std::array<double, 5> point;
     for (double& x : h) x = random.log_uniform(0.01, 10);
     for (double& x : point) x = random.uniform(-1, 1);
-    const auto first = smooth::cubic_weights<double>({h[0], h[1], h[2], h[3], h[4]});
-    const auto second = smooth::cubic_weights<double>({h[1], h[2], h[3], h[4], h[5]});
-    const auto end = smooth::moved(first, h[2]);
+    const auto first = path::cubic_weights<double>({h[0], h[1], h[2], h[3], h[4]});
+    const auto second = path::cubic_weights<double>({h[1], h[2], h[3], h[4], h[5]});
+    const auto end = path::moved(first, h[2]);
     for (std::size_t d = 0; d < 3; ++d) {
       double a = 0, b = 0, sum = 0, size = 0;
       for (std::size_t q = 0; q < 4; ++q) {

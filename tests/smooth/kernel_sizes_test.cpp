@@ -1,4 +1,4 @@
-#include "cncplan/smooth/kernel_sizes.hpp"
+#include "cncplan/detail/curve/kernel_sizes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,14 @@
 #include "support/random.hpp"
 
 using namespace cncplan;
-using smooth::Jump;
-using Sizing = smooth::BasicSizing<double, 5>;
+using detail::Jump;
+using Sizing = detail::BasicSizing<double, 5>;
 using Vector = VectorN<double, 5>;
 
 namespace {
 
 // X Y Z, U and a rotary axis.
-const smooth::BasicAxisTolerances<double, 5> tolerances{
+const detail::BasicAxisTolerances<double, 5> tolerances{
     {0, 1, 2}, Vector{0, 0, 0, 1, 0}, Vector{0, 0, 0, 0, 1 / 1e-3}};
 
 std::string pasteable(const std::vector<Sizing>& all) {
@@ -37,7 +37,7 @@ double deviation(const std::vector<Sizing>& all, double place, double tolerance,
   for (const Sizing& s : all) {
     const double u = (place - s.at) / s.size;
     const double scale = s.jump == Jump::direction ? s.size : (u < 0 ? -1 : 1) * s.size * s.size;
-    if (s.size > 0) sum += scale * smooth::kernel(s.jump, std::abs(u))[0] * s.step;
+    if (s.size > 0) sum += scale * detail::kernel(s.jump, std::abs(u))[0] * s.step;
   }
   return std::max(
       {sum.head<3>().norm() / tolerance, std::abs(sum[3]) / tolerance, std::abs(sum[4]) / (left * 1e-3)});
@@ -65,15 +65,15 @@ TEST_CASE("wanted sizes take their share of the limits", "[smooth]") {
   const double v = 30, a = 1000, j = 10000;
   for (const Jump kind : {Jump::direction, Jump::curvature})
     for (const double jump : {1e-4, 0.01, 0.3, 1.4}) {
-      const double size = smooth::wanted_size(kind, jump, v, a, j);
+      const double size = detail::wanted_size(kind, jump, v, a, j);
       double second = 0, third = 0;
       for (double u = 0; u < 2; u += 1e-4) {
-        const auto k = smooth::kernel(kind, u);
+        const auto k = detail::kernel(kind, u);
         const double scale = kind == Jump::direction ? 1 / size : 1;
         second = std::max(second, std::abs(k[2]) * jump * scale);
         third = std::max(third, std::abs(k[3]) * jump * scale / size);
       }
-      const double share = smooth::bend_share<double>;
+      const double share = detail::bend_share<double>;
       CHECK(third * v * v * v <= share * j * (1 + 1e-9));
       if (kind == Jump::direction) {
         CHECK(second * v * v <= share * a * (1 + 1e-9));
@@ -82,8 +82,8 @@ TEST_CASE("wanted sizes take their share of the limits", "[smooth]") {
         CHECK(third * v * v * v == Approx(share * j).epsilon(1e-6));
       }
     }
-  CHECK(smooth::wanted_size(Jump::direction, 0.0, v, a, j) == 0);
-  CHECK(smooth::wanted_size(Jump::direction, 0.1, v, std::numeric_limits<double>::infinity(), j) > 0);
+  CHECK(detail::wanted_size(Jump::direction, 0.0, v, a, j) == 0);
+  CHECK(detail::wanted_size(Jump::direction, 0.1, v, std::numeric_limits<double>::infinity(), j) > 0);
 }
 
 TEST_CASE("a lone kernel is as large as wanted, has room for, or may be", "[smooth]") {
@@ -95,7 +95,7 @@ TEST_CASE("a lone kernel is as large as wanted, has room for, or may be", "[smoo
                       .tolerance = 0.01};
   const auto fitted = [](Sizing sizing) {
     std::vector<Sizing> all{sizing};
-    smooth::fit_sizes(std::span(all), tolerances);
+    detail::fit_sizes(std::span(all), tolerances);
     return all[0].size;
   };
   CHECK(fitted(corner) == Approx(0.01 / (28.0 / 120 * 1.4)));
@@ -157,12 +157,12 @@ TEST_CASE("kernels that overlap stay within the tolerance together, and so do an
       if (kinds != 1) add(Jump::direction);
       if (kinds != 0) add(Jump::curvature);
     }
-    smooth::fit_sizes(std::span(all), tolerances);
+    detail::fit_sizes(std::span(all), tolerances);
     INFO(pasteable(all));
     for (const Sizing& own : all) {
       REQUIRE(own.size > 0);
       REQUIRE(own.size <= own.wanted);
-      REQUIRE(own.size * smooth::reach<double>(own.jump) <= own.room * (1 + 1e-12));
+      REQUIRE(own.size * detail::reach<double>(own.jump) <= own.room * (1 + 1e-12));
     }
     const double used = most_deviation(all);
     REQUIRE(used <= 1 + 1e-9);
@@ -192,7 +192,7 @@ TEST_CASE("kernels to and fro are as large as those one way are by themselves", 
                      .wanted = 10,
                      .room = 1.6,
                      .tolerance = 0.01});
-    smooth::fit_sizes(std::span(all), tolerances);
+    detail::fit_sizes(std::span(all), tolerances);
     return all[all.size() / 2].size;
   };
   CHECK(size_of(1, -1) == Approx(size_of(2, 1)).epsilon(1e-12));
@@ -204,5 +204,5 @@ TEST_CASE("sizes are found without the heap", "[smooth]") {
       100,
       Sizing{.jump = Jump::direction, .step = {0.5, 0, 0, 0, 0}, .wanted = 1, .room = 5, .tolerance = 0.01});
   for (std::size_t i = 0; i < all.size(); ++i) all[i].at = static_cast<double>(i) * 0.1;
-  CHECK(test::heap_allocations_of([&] { smooth::fit_sizes(std::span(all), tolerances); }) == 0);
+  CHECK(test::heap_allocations_of([&] { detail::fit_sizes(std::span(all), tolerances); }) == 0);
 }

@@ -1,4 +1,4 @@
-#include "cncplan/smooth/kernel.hpp"
+#include "cncplan/detail/curve/kernel.hpp"
 
 #include <cmath>
 #include <vector>
@@ -7,7 +7,7 @@
 #include "support/random.hpp"
 
 using namespace cncplan;
-using smooth::Jump;
+using detail::Jump;
 
 namespace {
 
@@ -42,10 +42,10 @@ TEMPLATE_TEST_CASE("kernels are the integrals of their second derivatives", "[sm
   using S = TestType;
   constexpr double rounding = sizeof(S) == 4 ? 3e-6 : 1e-6;
   for (const Jump jump : {Jump::direction, Jump::curvature}) {
-    const long double end = smooth::reach<long double>(jump);
+    const long double end = detail::reach<long double>(jump);
     for (int i = 0; i < 40; ++i) {
       const long double u = end * i / 40;
-      const auto value = smooth::kernel(jump, static_cast<S>(u));
+      const auto value = detail::kernel(jump, static_cast<S>(u));
       CHECK(static_cast<double>(value[2]) ==
             Approx(static_cast<double>(second(jump, u))).margin(4 * rounding));
       // f' = -integral of f'' from u to the end; f = integral of (x - u) f''(x).
@@ -60,23 +60,23 @@ TEMPLATE_TEST_CASE("kernels are the integrals of their second derivatives", "[sm
             Approx(static_cast<double>((second(jump, u + h) - second(jump, u - h)) / (2 * h))).margin(1e-4));
     }
     for (const S u : {static_cast<S>(end) * S(1.0001), S(3), S(1e6)})
-      for (const S value : smooth::kernel(jump, u)) CHECK(value == S(0));
+      for (const S value : detail::kernel(jump, u)) CHECK(value == S(0));
   }
 }
 
 TEST_CASE("kernels take out what jumps, and no more", "[smooth]") {
-  const auto corner = smooth::kernel(Jump::direction, 0.0);
+  const auto corner = detail::kernel(Jump::direction, 0.0);
   CHECK(corner[1] == Approx(-0.5).margin(1e-15));  // and +1/2 before: the jump is one
   CHECK(corner[3] == Approx(0).margin(1e-15));
-  CHECK(corner[0] == Approx(smooth::largest<double>(Jump::direction)).epsilon(1e-14));
-  const auto bend = smooth::kernel(Jump::curvature, 0.0);
+  CHECK(corner[0] == Approx(detail::largest<double>(Jump::direction)).epsilon(1e-14));
+  const auto bend = detail::kernel(Jump::curvature, 0.0);
   CHECK(bend[0] == Approx(0).margin(1e-15));  // odd: both halves meet
   CHECK(bend[2] == Approx(-0.5).epsilon(1e-14));
   double most = 0;
   for (double u = 0; u < 1.3; u += 1e-5)
-    most = std::max(most, std::abs(smooth::kernel(Jump::curvature, u)[0]));
-  CHECK(most <= smooth::largest<double>(Jump::curvature));
-  CHECK(most == Approx(smooth::largest<double>(Jump::curvature)).epsilon(1e-5));
+    most = std::max(most, std::abs(detail::kernel(Jump::curvature, u)[0]));
+  CHECK(most <= detail::largest<double>(Jump::curvature));
+  CHECK(most == Approx(detail::largest<double>(Jump::curvature)).epsilon(1e-5));
 }
 
 TEST_CASE("ranges of kernels hold all values and no more", "[smooth]") {
@@ -85,12 +85,12 @@ TEST_CASE("ranges of kernels hold all values and no more", "[smooth]") {
     const Jump jump = random.coin() ? Jump::direction : Jump::curvature;
     const double from = random.coin() ? random.uniform(0, 2.2) : random.integer(0, 2);
     const double to = random.coin() ? from + random.log_uniform(1e-6, 2) : 3;
-    const auto range = smooth::kernel_range(jump, from, to);
+    const auto range = detail::kernel_range(jump, from, to);
     std::array<double, 4> low{}, high{};
     constexpr int samples = 200;
     for (int k = 0; k <= samples; ++k) {
       const double u = k == samples ? to : from + (to - from) * k / samples;
-      const auto value = smooth::kernel(jump, u);
+      const auto value = detail::kernel(jump, u);
       for (std::size_t d = 0; d < 4; ++d) {
         INFO("jump " << static_cast<int>(jump) << " from " << from << " to " << to << " u " << u << " order "
                      << d);

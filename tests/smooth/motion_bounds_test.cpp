@@ -1,18 +1,18 @@
 // Bounds of what a phase uses of the limits, against dense samples by the formula of motion.
-#include "cncplan/smooth/motion_bounds.hpp"
+#include "cncplan/detail/speed/motion_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "cncplan/core/path_point.hpp"
-#include "cncplan/smooth/speed_law.hpp"
+#include "cncplan/detail/speed/speed_law.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
 namespace {
 
 using namespace cncplan;
-using namespace cncplan::smooth;
+using namespace cncplan::detail;
 
 TEST_CASE("the use of limits by a phase is bounded, and not by much too high") {
   test::Random random;
@@ -36,7 +36,7 @@ TEST_CASE("the use of limits by a phase is bounded, and not by much too high") {
     const auto pair =
         phases_between(h, v, random.uniform(-0.2, 0.2) * v / T, next, random.uniform(-0.2, 0.2) * v / T);
     for (const Phase& phase : pair) {
-      const Use bound = use_of(phase, cell, limits);
+      const Use bound = utilisation_of(phase, cell, limits);
       Use most;
       for (int k = 0; k <= 200; ++k) {
         const State along = phase.at(phase.duration * k / 200);
@@ -102,10 +102,10 @@ TEST_CASE("what is not known of the third derivative is in the bounds") {
     const auto pair =
         phases_between(h, v, random.uniform(-0.2, 0.2) * v / T, next, random.uniform(-0.2, 0.2) * v / T);
     for (const Phase& phase : pair) {
-      const Use bound = use_of(phase, cell, limits);
+      const Use bound = utilisation_of(phase, cell, limits);
       SpeedCell<2> known = cell;
       known.spread.setZero();
-      least_of_spread = std::min(least_of_spread, use_of(phase, known, limits).jerk / bound.jerk);
+      least_of_spread = std::min(least_of_spread, utilisation_of(phase, known, limits).jerk / bound.jerk);
       Use most;
       for (int k = 0; k <= 100; ++k) {
         const State along = phase.at(phase.duration * k / 100);

@@ -1,5 +1,5 @@
 // Speed along given cells: against closed forms on straight paths, whatever the window, and off the heap.
-#include "cncplan/smooth/plan_speed.hpp"
+#include "cncplan/detail/speed/plan_speed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace {
 
 using namespace cncplan;
-using namespace cncplan::smooth;
+using namespace cncplan::detail;
 
 // Cells that grow from both ends of a straight path.
 std::vector<SpeedCell<3>> straight(double length, double first, double widest, double feed,
@@ -37,21 +37,21 @@ std::vector<SpeedCell<3>> straight(double length, double first, double widest, d
 }
 
 struct Memory {
-  std::vector<BasicPace<double>> paces;
+  std::vector<BasicLimitScale<double>> scales;
   std::vector<double> levels, law, numbers;
   std::vector<BasicPlateau<double>> plateaus;
   std::vector<BasicSpeedShare<double>> speeds;
   std::vector<BasicForceShare<double>> forces;
 
   explicit Memory(std::size_t cells, std::size_t window = 1000, std::size_t limits = 2)
-      : paces(cells),
+      : scales(cells),
         levels(cells),
         law(cells + 2),
         numbers(BasicWindowMemory<double>::rooms * window),
         plateaus(cells + 4),
         speeds(3 * window),
         forces(3 * limits * window) {}
-  BasicPlanSpeedMemory<double> spans() { return {paces, levels, plateaus, law, {numbers, speeds, forces}}; }
+  BasicPlanSpeedMemory<double> spans() { return {scales, levels, plateaus, law, {numbers, speeds, forces}}; }
 };
 
 // The least time from rest to rest over a length, by the classical seven phases.
@@ -84,37 +84,37 @@ TEST_CASE("on a straight path the speed is that of seven phases, for any window"
         INFO("V " << l.velocity << " A " << l.acceleration << " J " << l.jerk << " length " << length
                   << " window " << window);
         const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, window}, memory.spans());
-        CHECK(plan.use.slow_down() <= 1);
+        CHECK(plan.utilisation.slow_down() <= 1);
         CHECK(plan.duration > best * (1 - 1e-6));
         CHECK(plan.duration < best * 1.002 + 0.05 * std::sqrt(l.velocity / l.jerk));
       }
     }
 }
 
-TEST_CASE("cells with a pace of their own keep to its share of the limits, and others do not") {
+TEST_CASE("cells with a scale of their own keep to its share of the limits, and others do not") {
   const Limits l{30, 1000, 1e4};
   const double length = 10;
   auto cells = straight(length, std::sqrt(std::pow(0.02 * l.velocity, 3) / (4.5 * l.jerk)), 0.1, l.velocity,
                         Vector3(1, 0, 0));
   MotionLimits<3> limits;
   limits.tool = l;
-  const double pace = 0.8;
+  const double scale = 0.8;
   double at = 0;
   for (auto& cell : cells) {
-    if (at < length / 2) cell.pace = pace;
+    if (at < length / 2) cell.scale = scale;
     at += cell.length;
   }
   Memory memory(cells.size());
   const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, 400}, memory.spans());
-  CHECK(plan.use.slow_down() <= 1);
+  CHECK(plan.utilisation.slow_down() <= 1);
   double slow = 0, fast = 0;  // the greatest jerk
   emit_phases(std::span<const SpeedCell<3>>(cells), std::span<const double>(memory.law), plan.start, plan.end,
               [&](std::size_t cell, const Phase& phase) {
-                double& most = cells[cell].pace < 1 ? slow : fast;
+                double& most = cells[cell].scale < 1 ? slow : fast;
                 most = std::max(most, std::abs(phase.jerk));
               });
-  CHECK(slow < pace * pace * pace * l.jerk * 1.001);
-  CHECK(slow > pace * pace * pace * l.jerk * 0.9);
+  CHECK(slow < scale * scale * scale * l.jerk * 1.001);
+  CHECK(slow > scale * scale * scale * l.jerk * 0.9);
   CHECK(fast > l.jerk * 0.9);
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("motion may begin and end faster than the search does on bends") {
       CAPTURE(start, end, fastest);
       const auto plan =
           plan_speed<double, 3>(cells, limits, {{5e-4}, 400, fastest}, memory.spans(), {start, end});
-      CHECK(plan.use.slow_down() <= 1);
+      CHECK(plan.utilisation.slow_down() <= 1);
       const double best = length / std::sqrt(l.acceleration / curvature);
       CHECK(plan.duration > best);
       CHECK(plan.duration < (fastest ? 1.05 : 1.6) * best);
@@ -169,7 +169,7 @@ TEST_CASE("next to rest cells may be of any lengths") {
     Memory memory(cells.size());
     const auto plan = plan_speed<double, 3>(cells, limits, {}, memory.spans());
     CHECK(plan.start_slow_down == 1);
-    CHECK(plan.use.slow_down() <= 1);
+    CHECK(plan.utilisation.slow_down() <= 1);
     CHECK(plan.duration < best * 1.004);
   }
 }
@@ -185,7 +185,7 @@ TEST_CASE("an axis that is weaker than the tool binds") {
     CAPTURE(window);
     Memory memory(cells.size());
     const auto plan = plan_speed<double, 3>(cells, limits, {{5e-4}, window}, memory.spans());
-    CHECK(plan.use.slow_down() <= 1);
+    CHECK(plan.utilisation.slow_down() <= 1);
     CHECK(plan.duration > best * (1 - 1e-6));
     CHECK(plan.duration < best * 1.004);
     CHECK(plan.unconverged == 0);
@@ -199,7 +199,7 @@ TEST_CASE("phases follow each other without a jump, from rest to rest") {
   for (std::size_t i = cells.size() / 3; i < cells.size() / 2; ++i) cells[i].feed = 8;
   Memory memory(cells.size());
   const auto plan = plan_speed<double, 3>(cells, limits, {}, memory.spans());
-  CHECK(plan.use.slow_down() <= 1);
+  CHECK(plan.utilisation.slow_down() <= 1);
   State last{};
   double time = 0, largest = 0;
   std::size_t at = 0;

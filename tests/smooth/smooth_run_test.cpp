@@ -1,5 +1,5 @@
 // Whole runs: what motion does by differences of positions, and how far it is from the programmed path.
-#include "cncplan/smooth/smooth_run.hpp"
+#include "cncplan/detail/curve/smooth_run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace {
 
 using namespace cncplan;
-using namespace cncplan::smooth;
+using namespace cncplan::detail;
 using Segment = path::BasicSegment<double, 3>;
 using Run = BasicSmoothRun<double, 3>;
 
@@ -118,7 +118,7 @@ double feed_share(const Run& run, const Program& program) {
 }
 
 void check(const Run& run, const Program& program) {
-  CHECK(run.use.slow_down() <= 1);
+  CHECK(run.utilisation.slow_down() <= 1);
   CHECK(run.deviation <= 1);
   const Found found = differences(run, program);
   CHECK(found.velocity <= 1 + 1e-4);
@@ -320,7 +320,7 @@ TEST_CASE("rapids beside slow feeds are planned as any others") {
   }
   CHECK(run.duration > at_feed);
   CHECK(run.duration < 0.2 * at_feed + 0.8 * stopping);
-  CHECK(run.use.slow_down() <= 1);
+  CHECK(run.utilisation.slow_down() <= 1);
   CHECK(run.deviation <= 1);
   // The work is bounded: no window gives up, none needs more than some tens of steps.
   CHECK(run.speed.start_slow_down < 1.1);

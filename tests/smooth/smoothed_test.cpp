@@ -1,4 +1,4 @@
-#include "cncplan/smooth/smoothed.hpp"
+#include "cncplan/detail/curve/smoothed.hpp"
 
 #include <array>
 #include <cmath>
@@ -11,9 +11,9 @@
 #include "support/random.hpp"
 
 using namespace cncplan;
-using smooth::BasicCorrection;
-using smooth::Jump;
-using smooth::Smoothed;
+using detail::BasicCorrection;
+using detail::Jump;
+using detail::Smoothed;
 
 namespace {
 
@@ -171,7 +171,7 @@ TEST_CASE("bounds of smoothed paths hold", "[smooth]") {
 TEST_CASE("a lone corner is left by what the kernel says, in closed form", "[smooth]") {
   const path::Segment<3> in = path::Line<3>({0, 0, 0}, {50, 0, 0}),
                          out = path::Line<3>({50, 0, 0}, {50, 50, 0});
-  const std::array corner{smooth::Correction<3>{50, 0.03, Jump::direction, {-1, 1, 0}}};
+  const std::array corner{detail::Correction<3>{50, 0.03, Jump::direction, {-1, 1, 0}}};
   const Smoothed before(in, corner, 0.0), behind(out, corner, 50.0);
   CHECK((before.position_at(50) - Vector3(50 - 0.007, 0.007, 0)).norm() < 1e-14);
   CHECK((behind.point_at(0).first - Vector3(0.5, 0.5, 0)).norm() < 1e-14);
@@ -185,8 +185,8 @@ TEST_CASE("a lone corner is left by what the kernel says, in closed form", "[smo
 TEST_CASE("an arc stays the arc away from its ends", "[smooth]") {
   const auto half = arc({30, 0, 0}, 5, -std::numbers::pi / 2, std::numbers::pi, 0);
   const path::Segment<3> round = half;
-  const std::array ends{smooth::Correction<3>{0, 1.04, Jump::curvature, {0, 0.2, 0}},
-                        smooth::Correction<3>{half.length(), 1.04, Jump::curvature, {0, 0.2, 0}}};
+  const std::array ends{detail::Correction<3>{0, 1.04, Jump::curvature, {0, 0.2, 0}},
+                        detail::Correction<3>{half.length(), 1.04, Jump::curvature, {0, 0.2, 0}}};
   const Smoothed path(round, ends, 0.0);
   const double support = ends[0].support();
   for (int i = 0; i <= 100; ++i) {

@@ -1,14 +1,14 @@
 // The law of speed within cells: against differences, and against motion of constant jerk.
-#include "cncplan/smooth/speed_law.hpp"
+#include "cncplan/detail/speed/speed_law.hpp"
 
 #include <array>
 #include <cmath>
 
-#include "cncplan/smooth/speed_barrier.hpp"
+#include "cncplan/detail/speed/speed_barrier.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
-using namespace cncplan::smooth;
+using namespace cncplan::detail;
 namespace test = cncplan::test;
 
 TEST_CASE("b of a cell goes from tangent to tangent, bent by its skew") {
@@ -34,13 +34,12 @@ TEST_CASE("b of a cell goes from tangent to tangent, bent by its skew") {
       CHECK(bend * (1 + shape.skew * (2 * share - 1)) ==
             Approx((after - 2 * here + before) / (h * h)).margin(1e-11 / (h * h)));
     }
-    const auto places = detail::places(shape);
+    const auto places = cncplan::detail::places(shape);
     for (std::size_t k = 0; k < 3; ++k) {
       const double share = static_cast<double>(k) / 2;
-      CHECK(detail::row(places[k].b, b) == Approx(b.at(share, shape)));
-      CHECK(detail::row(places[k].slope, b) ==
-            Approx(2 * b.acceleration(share, shape)).margin(1e-9 / shape.length));
-      CHECK(detail::row(places[k].bend, b) ==
+      CHECK(row(places[k].b, b) == Approx(b.at(share, shape)));
+      CHECK(row(places[k].slope, b) == Approx(2 * b.acceleration(share, shape)).margin(1e-9 / shape.length));
+      CHECK(row(places[k].bend, b) ==
             Approx(bend * (1 + shape.skew * (2 * share - 1))).margin(1e-9 / (shape.length * shape.length)));
     }
   }
@@ -68,6 +67,6 @@ TEST_CASE("the skew of its speeds makes the jerk of a cell nearly constant") {
   const BasicCellShape<double> shape{v0 * t + a0 * t * t / 2 + j * t * t * t / 6, (v0 - v1) / (v0 + v1)};
   const BasicCellSpeed<double> b{v0 * v0, v0 * v0 + 2 * a0 * shape.to_middle(), v1 * v1};
   CHECK(b.acceleration(1, shape) == Approx(a1).epsilon(1e-3));
-  for (const auto& place : detail::places(shape))
-    CHECK(std::sqrt(detail::row(place.b, b)) * detail::row(place.bend, b) / 2 == Approx(j).epsilon(5e-3));
+  for (const auto& place : places(shape))
+    CHECK(std::sqrt(row(place.b, b)) * row(place.bend, b) / 2 == Approx(j).epsilon(5e-3));
 }

@@ -1,5 +1,5 @@
 // Splines through points of any number of axes: against a dense solution, a known curve, and as paths.
-#include "cncplan/smooth/spline_through.hpp"
+#include "cncplan/path/spline_through.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,12 +7,12 @@
 #include <limits>
 #include <vector>
 
-#include "cncplan/smooth/time_optimal.hpp"
+#include "cncplan/time_optimal.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
 using namespace cncplan;
-using smooth::SplineThrough;
+using path::SplineThrough;
 
 namespace {
 
@@ -138,7 +138,7 @@ TEST_CASE("a spline of six joints is driven in the least time that its limits al
   test::Random random;
   const auto spline = Spline::make(random_points(random, 8));
   REQUIRE(spline);
-  smooth::MotionLimits<joints> limits;
+  cncplan::MotionLimits<joints> limits;
   for (auto& own : limits.axes) own = {random.uniform(3, 6), random.uniform(5, 10), random.uniform(20, 40)};
   const auto motion = time_optimal(*spline, limits);
   REQUIRE(motion);

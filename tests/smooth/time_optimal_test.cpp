@@ -1,5 +1,5 @@
 // The fastest motion along one path: closed forms, limits by differences of places, ends, refusals.
-#include "cncplan/smooth/time_optimal.hpp"
+#include "cncplan/time_optimal.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,17 +7,17 @@
 #include <limits>
 #include <vector>
 
-#include "cncplan/interpolate/travel.hpp"
+#include "cncplan/interpolate/detail/travel.hpp"
 #include "cncplan/path/arc_from_center.hpp"
+#include "cncplan/path/cubic.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/measured.hpp"
-#include "cncplan/smooth/cubic.hpp"
 #include "support/catch.hpp"
 #include "support/half_ellipse.hpp"
 #include "support/random.hpp"
 
 using namespace cncplan;
-using smooth::MotionLimits;
+using cncplan::MotionLimits;
 
 namespace {
 
@@ -133,7 +133,7 @@ TEST_CASE(
       start.second[axis] = random.uniform(-1, 1) / 5;
       start.third[axis] = random.uniform(-1, 1) / 50;
     }
-    const smooth::Cubic<3> path(start, random.log_uniform(0.01, 10));
+    const path::Cubic<3> path(start, random.log_uniform(0.01, 10));
     MotionLimits<3> limits;
     limits.tool = {random.log_uniform(5, 100), random.log_uniform(50, 5000), random.log_uniform(500, 1e5)};
     if (random.coin())
@@ -182,7 +182,7 @@ TEST_CASE("time optimal: what cannot be is refused by name") {
   PathPoint<Vector3> unknown;
   unknown.position.setZero(), unknown.first.setOnes(), unknown.second.setZero();
   unknown.third.setConstant(std::numeric_limits<double>::quiet_NaN());
-  const auto motion = time_optimal(smooth::Cubic<3>(unknown, 1), of_tool(mill));
+  const auto motion = time_optimal(path::Cubic<3>(unknown, 1), of_tool(mill));
   REQUIRE(!motion);
   CHECK(motion.error().code == ErrorCode::not_finite);
 }
@@ -215,7 +215,7 @@ TEST_CASE("time optimal: a rotary axis alone, and float") {
   CHECK(turn->duration() >= 1.8 * (1 - 1e-9));  // 3 / 2 + 2 / 10 + 10 / 100
   CHECK(turn->duration() < 1.8 * 1.005);
 
-  smooth::BasicMotionLimits<float, 3> limits;
+  cncplan::BasicMotionLimits<float, 3> limits;
   limits.tool = {30, 1000, 10000};
   const auto line = time_optimal(path::BasicLine<float, 3>({0, 0, 0}, {10, 0, 0}), limits);
   REQUIRE(line);

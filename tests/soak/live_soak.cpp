@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "cncplan/plan/program.hpp"
+#include "cncplan/program.hpp"
 #include "plan/live_run.hpp"
 #include "soak/smooth_program.hpp"
 #include "soak/worst.hpp"

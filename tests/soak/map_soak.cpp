@@ -15,7 +15,7 @@
 
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "maps/maps.hpp"
 #include "plan/mapped_motion.hpp"
 #include "soak/worst.hpp"

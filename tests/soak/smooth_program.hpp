@@ -10,7 +10,7 @@
 #include <string>
 
 #include "cncplan/core/vector.hpp"
-#include "cncplan/plan/machine.hpp"
+#include "cncplan/machine.hpp"
 #include "support/random.hpp"
 
 namespace cncplan::test {

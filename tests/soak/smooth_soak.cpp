@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/at_level.hpp"
 #include "plan/joined_parts.hpp"
 #include "soak/smooth_program.hpp"

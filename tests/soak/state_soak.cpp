@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string>
 
-#include "cncplan/state/axis_motions.hpp"
+#include "cncplan/state/detail/axis_motions.hpp"
 #include "soak/worst.hpp"
 #include "state/axis_case.hpp"
 #include "state/switching_oracle.hpp"

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
-#include "cncplan/plan/trajectory_executor.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "plan/at_level.hpp"
 #include "soak/smooth_program.hpp"
 #include "soak/worst.hpp"

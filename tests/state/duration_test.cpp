@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "cncplan/state/axis_motions.hpp"
+#include "cncplan/state/detail/axis_motions.hpp"
 #include "state/axis_case.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "cncplan/state/axis_motions.hpp"
+#include "cncplan/state/detail/axis_motions.hpp"
 #include "cncplan/state/rest_to_rest.hpp"
 #include "state/axis_case.hpp"
 #include "state/switching_oracle.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cncplan/state/axis_motions.hpp"
+#include "cncplan/state/detail/axis_motions.hpp"
 #include "state/axis_case.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"

@@ -1,5 +1,5 @@
 // Moves of several axes: the tables of another library's durations, synchronisation, velocities, travel.
-#include "cncplan/plan/move_to.hpp"
+#include "cncplan/move_to.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/step/detail/traced_path.hpp"
 #include "cncplan/step/merge.hpp"
-#include "cncplan/step/traced_path.hpp"
 #include "doubles.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
@@ -305,11 +305,11 @@ TEST_CASE("a traced curve's velocity may dip through zero within a piece") {
   };
   const Dip curve;
   const step::TracedPath traced(curve, 2);
-  const double first = traced.next_turning(0, 0.0);
+  const double first = traced.next_reversal(0, 0.0);
   CHECK(first == Approx(1 - std::sqrt(1.0 / 300)).epsilon(1e-14));
-  const double second = traced.next_turning(0, first);
+  const double second = traced.next_reversal(0, first);
   CHECK(second == Approx(1 + std::sqrt(1.0 / 300)).epsilon(1e-14));
-  CHECK(traced.next_turning(0, second) == 2.2);
+  CHECK(traced.next_reversal(0, second) == 2.2);
 }
 
 TEST_CASE("a block of length zero and an axis at rest have no edges") {
@@ -402,12 +402,12 @@ TEST_CASE("merged axes come in order of time, and leave their counts") {
 TEST_CASE("a traced curve of no pieces is one of a single piece") {
   const BareSine curve{{1.0, 0.0, 2.0, 0.0}};
   for (const int pieces : {1, 0, -1, std::numeric_limits<int>::min()})
-    CHECK(step::TracedPath(curve, pieces).next_turning(0, 0.0) ==
+    CHECK(step::TracedPath(curve, pieces).next_reversal(0, 0.0) ==
           Approx(std::numbers::pi / 2).epsilon(1e-14));
   const step::TracedPath finest(curve, 1000);
-  CHECK(finest.next_turning(0, 0.0) == Approx(std::numbers::pi / 2).epsilon(1e-14));
-  CHECK(finest.next_turning(0, 1.6) == 2.0);
-  CHECK(finest.next_turning(0, -1e300) == 2.0);  // outside the curve, but an answer
+  CHECK(finest.next_reversal(0, 0.0) == Approx(std::numbers::pi / 2).epsilon(1e-14));
+  CHECK(finest.next_reversal(0, 1.6) == 2.0);
+  CHECK(finest.next_reversal(0, -1e300) == 2.0);  // outside the curve, but an answer
 }
 
 TEST_CASE("a turning on a curve too short for rounding is found") {
@@ -423,7 +423,7 @@ TEST_CASE("a turning on a curve too short for rounding is found") {
     [[nodiscard]] Vector second_derivative(double) const { return Vector(-1.0); }
   };
   const Tiny curve;
-  CHECK(step::TracedPath(curve, 1).next_turning(0, 0.0) == Approx(0.5e-310));
+  CHECK(step::TracedPath(curve, 1).next_reversal(0, 0.0) == Approx(0.5e-310));
 }
 
 TEST_CASE("positions beyond all counts and no positions at all are counted within bounds") {

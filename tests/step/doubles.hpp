@@ -30,7 +30,7 @@ struct SineAxis {
   [[nodiscard]] Vector position(S u) const { return {amplitude * std::sin(u), offset + slope * u}; }
   [[nodiscard]] Vector derivative(S u) const { return {amplitude * std::cos(u), slope}; }
   [[nodiscard]] Vector second_derivative(S u) const { return {-amplitude * std::sin(u), S(0)}; }
-  [[nodiscard]] S next_turning(int axis, S u) const {
+  [[nodiscard]] S next_reversal(int axis, S u) const {
     if (axis == 1) return end;
     const S pi = std::numbers::pi_v<S>;
     S n = std::floor(u / pi + S(0.5));
@@ -63,7 +63,7 @@ struct Straight {
     if (u >= length()) return Vector(to);
     return Vector(from + u * derivative(u)(0));
   }
-  [[nodiscard]] S next_turning(int, S) const { return length(); }
+  [[nodiscard]] S next_reversal(int, S) const { return length(); }
   [[nodiscard]] S crossing(int, S value, S low, S high) const {
     return std::clamp(std::abs(value - from), low, high);
   }

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor.hpp"
 #include "support/random.hpp"
 
 namespace cncplan::test {

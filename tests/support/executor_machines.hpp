@@ -6,9 +6,9 @@
 #include <concepts>
 #include <vector>
 
+#include "cncplan/block.hpp"
+#include "cncplan/machine.hpp"
 #include "cncplan/path/measured.hpp"
-#include "cncplan/plan/machine.hpp"
-#include "cncplan/plan/machine_block.hpp"
 #include "support/random.hpp"
 
 namespace cncplan::test {

@@ -51,7 +51,7 @@ auto tool_of(const P& path, typename P::Scalar s) {
   }
 }
 
-namespace detail {
+namespace laws {
 
 /// Magnitudes of the tool's derivatives as `BasicToolBounds` takes them apart.
 template <class S>
@@ -72,7 +72,7 @@ std::array<double, 5> tool_parts(const BasicToolBounds<S>& b) {
           static_cast<double>(b.third_across)};
 }
 
-}  // namespace detail
+}  // namespace laws
 
 /// Checks one path of length > 0. `unit`: the length over which it changes its shape. `has_tool`: its length
 /// is the way of the tool.
@@ -98,7 +98,7 @@ PathByLengthErrors path_by_length_errors(const P& path, double unit, Random& ran
   for (int i = 0; i <= places; ++i) {
     const S s = length * static_cast<S>(i) / S(places);
     const auto here = at(s);
-    const auto tool = detail::tool_parts(tool_of(path, s));
+    const auto tool = laws::tool_parts(tool_of(path, s));
     for (std::size_t k = 0; k < 4; ++k) size[k] = std::max(size[k], here[k].cwiseAbs().maxCoeff());
     for (std::size_t k = 0; k < 5; ++k) tool_size[k] = std::max(tool_size[k], tool[k]);
     low = low.cwiseMin(here[0]);
@@ -149,13 +149,13 @@ PathByLengthErrors path_by_length_errors(const P& path, double unit, Random& ran
     const auto bounds = path.bounds(from, to);
     const std::array<V, 4> limit{V::Zero(), bounds.first.template cast<double>(),
                                  bounds.second.template cast<double>(), bounds.third.template cast<double>()};
-    const auto tool_limit = detail::tool_parts(bounds.tool);
+    const auto tool_limit = laws::tool_parts(bounds.tool);
     std::array<V, 4> most{V::Zero(), V::Zero(), V::Zero(), V::Zero()};
     std::array<double, 5> tool_most{};
     for (int place = 0; place < 20; ++place) {
       const S s = place == 0 ? from : place == 1 ? to : from + static_cast<S>(random.uniform(0, 1)) * width;
       const auto here = at(s);
-      const auto tool = detail::tool_parts(tool_of(path, s));
+      const auto tool = laws::tool_parts(tool_of(path, s));
       for (std::size_t k = 1; k < 4; ++k) {
         most[k] = most[k].cwiseMax(here[k].cwiseAbs());
         worst.bounds = std::max(worst.bounds, (here[k].cwiseAbs() - limit[k]).maxCoeff() / size[k]);

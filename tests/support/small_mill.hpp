@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 

@@ -1,7 +1,7 @@
 // Readers of lines that the library `cncplan::compiled` has ready: included where that is used (set-up).
 #pragma once
 
-#include "cncplan/plan/block_reader.hpp"
+#include "cncplan/block_reader.hpp"
 
 /// Reading lines as they come.
 #define CNCPLAN_READ_BLOCKS(PREFIX, MACHINE) PREFIX template class BlockReader<MACHINE>;

@@ -1,10 +1,10 @@
 // Executors that the library `cncplan::compiled` has ready: included where that is used (set-up).
 #pragma once
 
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 
 /// Running blocks of a type, whatever the capacity of the executor.
-#define CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, BLOCK) PREFIX template class plan::ExecutorCore<MACHINE, BLOCK>;
+#define CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, BLOCK) PREFIX template class detail::ExecutorCore<MACHINE, BLOCK>;
 
 #ifdef CNCPLAN_COMPILED
 namespace cncplan {

@@ -2,11 +2,11 @@
 // They are included where they are used.
 #pragma once
 
-#include "cncplan/plan/executor_levels.hpp"
+#include "cncplan/executor_levels.hpp"
 
 /// Running blocks of a type at these levels, whatever the capacity of the executor.
 #define CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, BLOCK) \
-  PREFIX template struct plan::ExecutorLevels<MACHINE, BLOCK>;
+  PREFIX template struct detail::ExecutorLevels<MACHINE, BLOCK>;
 
 #ifdef CNCPLAN_COMPILED
 namespace cncplan {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 
 /// Reading and planning programs.
 #define CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                                                         \

@@ -1,7 +1,7 @@
 // Smoothing that the library `cncplan::compiled` has ready, whatever path it serves (set-up).
 #pragma once
 
-#include "cncplan/smooth/smooth_run.hpp"
+#include "cncplan/detail/curve/smooth_run.hpp"
 
 /// Curves of N coordinates.
 #define CNCPLAN_SMOOTH_CURVES(PREFIX, N) PREFIX template class BasicBand<double, N>;
@@ -17,7 +17,7 @@
       const BasicSpeedEnds<double>&, const Progress&);
 
 #ifdef CNCPLAN_COMPILED
-namespace cncplan::smooth {
+namespace cncplan::detail {
 
 CNCPLAN_SMOOTH_CURVES(extern, 3)
 CNCPLAN_SMOOTH_CURVES(extern, 6)
@@ -33,5 +33,5 @@ CNCPLAN_PLAN_SPEED(extern, 7)
 CNCPLAN_PLAN_SPEED(extern, 8)
 CNCPLAN_PLAN_SPEED(extern, 9)
 
-}  // namespace cncplan::smooth
+}  // namespace cncplan::detail
 #endif

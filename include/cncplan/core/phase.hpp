@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "cncplan/core/monotone_cubic.hpp"
+#include "cncplan/core/detail/monotone_cubic.hpp"
 #include "cncplan/core/state.hpp"
 
 namespace cncplan {

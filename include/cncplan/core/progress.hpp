@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "cncplan/core/function_ref.hpp"
+#include "cncplan/core/detail/function_ref.hpp"
 
 namespace cncplan {
 

@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "cncplan/core/compiled.hpp"
+#include "cncplan/core/detail/fixed_list.hpp"
+#include "cncplan/core/detail/function_ref.hpp"
 #include "cncplan/core/error.hpp"
-#include "cncplan/core/fixed_list.hpp"
-#include "cncplan/core/function_ref.hpp"
-#include "cncplan/gcode/compensation.hpp"
+#include "cncplan/gcode/detail/compensation.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/motion.hpp"
 #include "cncplan/gcode/reader.hpp"

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "cncplan/core/error.hpp"
-#include "cncplan/gcode/compensation.hpp"
+#include "cncplan/gcode/detail/compensation.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/gcode/lines.hpp"
 #include "cncplan/gcode/motion.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
+#include "cncplan/gcode/detail/scanner.hpp"
 #include "cncplan/gcode/lines.hpp"
-#include "cncplan/gcode/scanner.hpp"
 #include "cncplan/gcode/word.hpp"
 
 namespace cncplan::gcode {

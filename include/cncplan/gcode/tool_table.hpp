@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "cncplan/core/compiled.hpp"
-#include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/detail/block.hpp"
+#include "cncplan/gcode/detail/modal.hpp"
 #include "cncplan/gcode/dialect.hpp"
-#include "cncplan/gcode/modal.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
 
 namespace cncplan::gcode {

@@ -9,10 +9,10 @@
 #include <string_view>
 
 #include "cncplan/core/compiled.hpp"
-#include "cncplan/gcode/block.hpp"
+#include "cncplan/gcode/detail/block.hpp"
+#include "cncplan/gcode/detail/modal.hpp"
+#include "cncplan/gcode/detail/rules.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
-#include "cncplan/gcode/modal.hpp"
-#include "cncplan/gcode/rules.hpp"
 
 namespace cncplan::gcode {
 

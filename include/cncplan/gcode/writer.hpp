@@ -16,8 +16,8 @@
 #include "cncplan/core/compiled.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/plane.hpp"
+#include "cncplan/gcode/detail/modal.hpp"
 #include "cncplan/gcode/dialect.hpp"
-#include "cncplan/gcode/modal.hpp"
 #include "cncplan/gcode/motion.hpp"
 #include "cncplan/gcode/reader.hpp"
 

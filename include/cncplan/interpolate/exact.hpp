@@ -11,9 +11,9 @@
 #include <span>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/interpolate/detail/travel.hpp"
 #include "cncplan/interpolate/evaluate.hpp"
 #include "cncplan/interpolate/grid.hpp"
-#include "cncplan/interpolate/travel.hpp"
 
 namespace cncplan::interpolate {
 

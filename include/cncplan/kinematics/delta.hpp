@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "cncplan/core/jet.hpp"
-#include "cncplan/kinematics/rotation.hpp"
+#include "cncplan/kinematics/detail/rotation.hpp"
 
 namespace cncplan::kinematics {
 

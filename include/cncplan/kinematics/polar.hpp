@@ -7,8 +7,8 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/jet.hpp"
-#include "cncplan/kinematics/azimuth.hpp"
 #include "cncplan/kinematics/cartesian.hpp"
+#include "cncplan/kinematics/detail/azimuth.hpp"
 
 namespace cncplan::kinematics {
 

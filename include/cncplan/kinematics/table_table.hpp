@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cncplan/core/jet.hpp"
-#include "cncplan/kinematics/rotation.hpp"
+#include "cncplan/kinematics/detail/rotation.hpp"
 
 namespace cncplan::kinematics {
 

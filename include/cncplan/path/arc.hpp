@@ -17,12 +17,12 @@
 #include "cncplan/core/plane.hpp"
 #include "cncplan/core/points.hpp"
 #include "cncplan/core/vector.hpp"
-#include "cncplan/path/arc_axis.hpp"
-#include "cncplan/path/circle_crossings.hpp"
-#include "cncplan/path/helix_batch.hpp"
-#include "cncplan/path/rotation.hpp"
+#include "cncplan/path/detail/arc_axis.hpp"
+#include "cncplan/path/detail/circle_crossings.hpp"
+#include "cncplan/path/detail/helix_batch.hpp"
+#include "cncplan/path/detail/rotation.hpp"
+#include "cncplan/path/detail/spiral_crossings.hpp"
 #include "cncplan/path/spiral.hpp"
-#include "cncplan/path/spiral_crossings.hpp"
 
 namespace cncplan::path {
 
@@ -233,11 +233,11 @@ class BasicArc {
 
   /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
   /// A turning within rounding of u or of the end counts as being there.
-  [[nodiscard]] S next_turning(int axis, S u) const {
+  [[nodiscard]] S next_reversal(int axis, S u) const {
     if (axis == axes(plane_).third) return angle_;
     const ArcAxis<S> coordinate = in_plane(axis);
-    const S n = coordinate.next_turning_number(u);
-    return n > coordinate.previous_turning_number(angle_) ? angle_ : std::min(coordinate.turning(n), angle_);
+    const S n = coordinate.next_reversal_number(u);
+    return n > coordinate.previous_reversal_number(angle_) ? angle_ : std::min(coordinate.turning(n), angle_);
   }
 
   /// The parameter in [low, high] at which the axis stands at `value`. There is no turning between low and
@@ -263,8 +263,8 @@ class BasicArc {
     BasicBox<S> box{start_.cwiseMin(end_), start_.cwiseMax(end_)};
     for (const int axis : {axes(plane_).first, axes(plane_).second}) {
       const ArcAxis<S> coordinate = in_plane(axis);
-      const S first = coordinate.next_turning_number(S(0));
-      const S last = coordinate.previous_turning_number(angle_);
+      const S first = coordinate.next_reversal_number(S(0));
+      const S last = coordinate.previous_reversal_number(angle_);
       for (const S n : {first, first + S(1), last - S(1), last}) {
         if (n < first || n > last) continue;
         const S value = coordinate.value(coordinate.turning(n));

@@ -61,9 +61,9 @@ class BasicArcAlong {
   [[nodiscard]] Vector second_derivative(S s) const { return point_at(s).second; }
   [[nodiscard]] S length_at(S s) const { return s; }
   void lengths_at(std::span<S>) const {}
-  [[nodiscard]] S next_turning(int axis, S s) const {
+  [[nodiscard]] S next_reversal(int axis, S s) const {
     if (axis >= shared) return length();
-    const S u = arc_.next_turning(axis, arc_.parameter_at(s));
+    const S u = arc_.next_reversal(axis, arc_.parameter_at(s));
     return u < arc_.parameter_end() ? arc_.length_at(u) : length();
   }
   [[nodiscard]] S crossing(int axis, S value, S low, S high) const {

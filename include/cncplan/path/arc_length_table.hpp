@@ -9,7 +9,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/curve_point.hpp"
-#include "cncplan/path/quadrature.hpp"
+#include "cncplan/path/detail/quadrature.hpp"
 
 namespace cncplan::path {
 

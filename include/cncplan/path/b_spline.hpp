@@ -11,7 +11,7 @@
 #include "cncplan/core/curve_point.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/vector.hpp"
-#include "cncplan/path/quadrature.hpp"
+#include "cncplan/path/detail/quadrature.hpp"
 
 namespace cncplan::path {
 

@@ -133,7 +133,7 @@ class BasicLine {
   [[nodiscard]] S max_curvature() const { return S(0); }
 
   /// Smallest parameter > u at which the velocity of the axis changes sign, parameter_end() if there is none.
-  [[nodiscard]] S next_turning(int /*axis*/, S /*u*/) const { return length_; }
+  [[nodiscard]] S next_reversal(int /*axis*/, S /*u*/) const { return length_; }
 
   /// The parameter in [low, high] at which the axis stands at `value`, which lies between its values there;
   /// low for an axis that does not move.

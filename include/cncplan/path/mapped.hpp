@@ -9,8 +9,8 @@
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/path/detail/whole_turns.hpp"
 #include "cncplan/path/map.hpp"
-#include "cncplan/path/whole_turns.hpp"
 
 namespace cncplan::path {
 

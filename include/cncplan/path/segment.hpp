@@ -143,8 +143,8 @@ class BasicSegment {
   [[nodiscard]] S max_curvature() const {
     return visit([](const auto& p) { return p.max_curvature(); });
   }
-  [[nodiscard]] S next_turning(int axis, S u) const {
-    return visit([axis, u](const auto& p) { return p.next_turning(axis, u); });
+  [[nodiscard]] S next_reversal(int axis, S u) const {
+    return visit([axis, u](const auto& p) { return p.next_reversal(axis, u); });
   }
   [[nodiscard]] S crossing(int axis, S value, S low, S high) const {
     return visit([=](const auto& p) { return p.crossing(axis, value, low, high); });

@@ -11,9 +11,9 @@
 #include <type_traits>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/core/detail/least_squares.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
-#include "cncplan/core/least_squares.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/map.hpp"
 

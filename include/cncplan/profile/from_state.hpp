@@ -9,12 +9,12 @@
 #include <optional>
 #include <type_traits>
 
-#include "cncplan/core/bracketed_root.hpp"
-#include "cncplan/core/cube_root.hpp"
+#include "cncplan/core/detail/bracketed_root.hpp"
+#include "cncplan/core/detail/cube_root.hpp"
+#include "cncplan/core/detail/transfer.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/state.hpp"
-#include "cncplan/core/transfer.hpp"
 #include "cncplan/profile/profile.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/profile/boundary.hpp"
-#include "cncplan/profile/peak.hpp"
+#include "cncplan/profile/detail/peak.hpp"
 #include "cncplan/profile/profile.hpp"
 #include "cncplan/profile/ramp_law.hpp"
 

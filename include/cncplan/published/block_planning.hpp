@@ -8,24 +8,24 @@
 #include <limits>
 #include <span>
 
-#include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/cells.hpp"
-#include "cncplan/plan/laws.hpp"
-#include "cncplan/plan/solver_cache.hpp"
-#include "cncplan/plan/span.hpp"
+#include "cncplan/detail/speed/cells.hpp"
+#include "cncplan/detail/speed/laws.hpp"
+#include "cncplan/detail/speed/segment_limits.hpp"
+#include "cncplan/detail/speed/solver_cache.hpp"
+#include "cncplan/detail/speed/span.hpp"
 #include "cncplan/published/cap_speed.hpp"
 
 namespace cncplan::published {
 
-/// The limits of whole pieces of blocks, for `plan::make_cells`: the tool's by `cap_speed`, along the path
+/// The limits of whole pieces of blocks, for `detail::make_cells`: the tool's by `cap_speed`, along the path
 /// alone; each axis keeps its own all the same.
 template <MachineModel M, BlockModel B>
 class WholeBlocks {
  public:
   using Scalar = typename M::Scalar;
-  using Part = plan::BasicPartLimits<Scalar>;
+  using Part = detail::BasicPartLimits<Scalar>;
 
-  explicit WholeBlocks(const M& machine) : tool_(machine.limits), axes_(plan::machine_limits(machine)) {
+  explicit WholeBlocks(const M& machine) : tool_(machine.limits), axes_(detail::machine_limits(machine)) {
     axes_.tool = {infinity, infinity, infinity};
   }
 
@@ -35,7 +35,7 @@ class WholeBlocks {
     BasicLimits<Scalar> tool = tool_;
     tool.velocity = bounds.tool.first > Scalar(0) ? std::min(speed, tool_speed / bounds.tool.first) : speed;
     tool = cap_speed(bounds.tool.second_across, bounds.tool.third_across, tool);
-    const BasicLimits<Scalar> own = plan::limits_along(bounds, axes_, tool.velocity, infinity);
+    const BasicLimits<Scalar> own = detail::limits_along(bounds, axes_, tool.velocity, infinity);
     part_ = Part{from,
                  to,
                  {std::min(tool.velocity, own.velocity), std::min(tool.acceleration, own.acceleration),
@@ -54,7 +54,7 @@ class WholeBlocks {
   static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
 
   BasicLimits<Scalar> tool_;
-  plan::BasicMachineLimits<Scalar, M::axis_count> axes_;  // the tool without limits
+  detail::BasicMachineLimits<Scalar, M::axis_count> axes_;  // the tool without limits
   Part part_;
   bool done_ = true;
 };
@@ -63,9 +63,10 @@ class WholeBlocks {
 /// could be faster while the others stay: a backward and a forward pass. (A junction alone could be faster
 /// still behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds`
 /// has one entry more than `blocks`; the motion starts and ends at rest.
-template <std::floating_point S, plan::RampLaw<S> Law>
-void junction_speeds(std::span<const plan::BasicBlockCaps<S>> blocks, const Law& law, std::span<S> speeds) {
-  plan::SolverCache<S, Law> solver(law);
+template <std::floating_point S, detail::RampLaw<S> Law>
+void junction_speeds(std::span<const detail::BasicSegmentLimits<S>> blocks, const Law& law,
+                     std::span<S> speeds) {
+  detail::SolverCache<S, Law> solver(law);
   const std::size_t n = blocks.size();
   speeds[n] = S(0);
   for (std::size_t i = n; i-- > 0;) {
@@ -79,17 +80,17 @@ void junction_speeds(std::span<const plan::BasicBlockCaps<S>> blocks, const Law&
 
 /// Plans block by block: writes a span for each block, and one for each pause, into `out`. `speeds` is room
 /// for one speed more than there are blocks.
-template <std::floating_point S, plan::RampLaw<S> Law, std::output_iterator<plan::BasicSpan<S>> Out>
-Expected<Out> plan_blocks(std::span<const plan::BasicBlockCaps<S>> blocks, const Law& law,
+template <std::floating_point S, detail::RampLaw<S> Law, std::output_iterator<detail::BasicSpan<S>> Out>
+Expected<Out> plan_blocks(std::span<const detail::BasicSegmentLimits<S>> blocks, const Law& law,
                           std::span<S> speeds, Out out) {
   junction_speeds(blocks, law, speeds);
-  plan::SolverCache<S, Law> solver(law);
+  detail::SolverCache<S, Law> solver(law);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const plan::BasicBlockCaps<S>& block = blocks[i];
+    const detail::BasicSegmentLimits<S>& block = blocks[i];
     const auto profile = solver(block.limits)(block.length, {speeds[i], speeds[i + 1]});
     if (!profile) return tl::unexpected(profile.error());
-    *out++ = plan::BasicSpan<S>{i, 1, *profile};
-    if (block.pause > S(0)) *out++ = plan::pause_span(i + 1, block.pause);
+    *out++ = detail::BasicSpan<S>{i, 1, *profile};
+    if (block.pause > S(0)) *out++ = detail::pause_span(i + 1, block.pause);
   }
   return out;
 }

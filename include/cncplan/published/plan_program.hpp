@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "cncplan/published/block_planning.hpp"
 
 namespace cncplan::published {
@@ -14,28 +14,30 @@ namespace cncplan::published {
 /// Plans a program on the exact path with one profile a block and zero acceleration at every junction, under
 /// a policy for junctions and a law for changes of speed. Errors as for `cncplan::plan_program`.
 template <MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
-          plan::RampLaw<typename M::Scalar> Law = plan::SevenPhase>
+          detail::RampLaw<typename M::Scalar> Law = detail::SevenPhase>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(const Program<M>& program,
                                                                                   const M& machine,
                                                                                   const Policy& policy,
                                                                                   const Law& law = {}) {
   using S = typename M::Scalar;
   using B = ProgramBlock<M>;
-  return plan::planned<M>(program, program.start(), false, [&]() -> Expected<Trajectory<M, B>, ProgramError> {
-    if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
-    std::pmr::vector<B> blocks(program.blocks().begin(), program.blocks().end());
-    const std::span<const B> all(blocks);
-    const plan::JointRules<S, Policy> rules{policy, S(-1), S(-1)};
-    const auto cells = plan::make_cells<WholeBlocks>(all, machine, rules);
-    if (!cells) return tl::unexpected(plan::error_in(all, cells.error()));
-    std::vector<plan::BasicSpan<S>> spans;
-    std::vector<S> speeds(cells->caps.size() + 1);
-    const auto done = plan_blocks(std::span<const plan::BasicBlockCaps<S>>(cells->caps), law,
-                                  std::span(speeds), std::back_inserter(spans));
-    if (!done) return tl::unexpected(ProgramError{{done.error(), 0, 0, {}}});
-    auto phases = plan::block_phases(std::span<const plan::BasicSpan<S>>(spans), *cells);
-    return Trajectory<M, B>(machine, std::move(blocks), std::move(phases));
-  });
+  return detail::planned<M>(
+      program, program.start(), false, [&]() -> Expected<Trajectory<M, B>, ProgramError> {
+        if (const auto ok = validate(machine); !ok)
+          return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
+        std::pmr::vector<B> blocks(program.blocks().begin(), program.blocks().end());
+        const std::span<const B> all(blocks);
+        const detail::JunctionRules<S, Policy> rules{policy, S(-1), S(-1)};
+        const auto cells = detail::make_cells<WholeBlocks>(all, machine, rules);
+        if (!cells) return tl::unexpected(detail::error_in(all, cells.error()));
+        std::vector<detail::BasicSpan<S>> spans;
+        std::vector<S> speeds(cells->segments.size() + 1);
+        const auto done = plan_blocks(std::span<const detail::BasicSegmentLimits<S>>(cells->segments), law,
+                                      std::span(speeds), std::back_inserter(spans));
+        if (!done) return tl::unexpected(ProgramError{{done.error(), 0, 0, {}}});
+        auto phases = detail::block_phases(std::span<const detail::BasicSpan<S>>(spans), *cells);
+        return Trajectory<M, B>(machine, std::move(blocks), std::move(phases));
+      });
 }
 
 }  // namespace cncplan::published

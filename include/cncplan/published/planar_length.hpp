@@ -4,22 +4,23 @@
 #include <concepts>
 #include <span>
 
+#include "cncplan/block.hpp"
 #include "cncplan/core/limits.hpp"
+#include "cncplan/detail/speed/cell_maker.hpp"
+#include "cncplan/detail/speed/cells.hpp"
+#include "cncplan/detail/speed/motion_table.hpp"
+#include "cncplan/detail/speed/segment_limits.hpp"
 #include "cncplan/path/arc.hpp"
-#include "cncplan/plan/caps.hpp"
-#include "cncplan/plan/cell_maker.hpp"
-#include "cncplan/plan/cells.hpp"
-#include "cncplan/plan/machine_block.hpp"
-#include "cncplan/plan/motion_table.hpp"
 
 namespace cncplan::published {
 
-/// The tool's limits as they are, for `plan::make_cells`: no cap by curvature, no limits of axes, as in KK22.
+/// The tool's limits as they are, for `detail::make_cells`: no cap by curvature, no limits of axes, as in
+/// KK22.
 template <MachineModel M, BlockModel B>
 class ToolLimits {
  public:
   using Scalar = typename M::Scalar;
-  using Part = plan::BasicPartLimits<Scalar>;
+  using Part = detail::BasicPartLimits<Scalar>;
 
   explicit ToolLimits(const M& machine) : limits_(machine.limits) {}
 
@@ -53,9 +54,9 @@ template <BlockModel B>
 
 /// Makes the cells of blocks ones in their planes: lengths, speeds and limits then count there.
 template <BlockModel B, std::floating_point S>
-void to_plane(std::span<const B> blocks, plan::BasicCells<S>& cells) {
-  for (std::size_t i = 0; i < cells.caps.size(); ++i)
-    cells.caps[i].length /= space_over_plane(blocks[cells.blocks[i]]);
+void to_plane(std::span<const B> blocks, detail::BasicCells<S>& cells) {
+  for (std::size_t i = 0; i < cells.segments.size(); ++i)
+    cells.segments[i].length /= space_over_plane(blocks[cells.blocks[i]]);
 }
 
 /// Makes the phases of a plan in the plane ones along the blocks' paths in space.

@@ -8,9 +8,9 @@
 #include <iterator>
 
 #include "cncplan/core/concepts.hpp"
+#include "cncplan/interpolate/detail/travel.hpp"
 #include "cncplan/interpolate/evaluate.hpp"
 #include "cncplan/interpolate/grid.hpp"
-#include "cncplan/interpolate/travel.hpp"
 #include "cncplan/published/taylor.hpp"
 
 namespace cncplan::published {

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "cncplan/core/axis_state.hpp"
-#include "cncplan/core/jerk_phase.hpp"
+#include "cncplan/core/detail/jerk_phase.hpp"
 #include "cncplan/core/phase.hpp"
 
 namespace cncplan::state {

@@ -6,11 +6,11 @@
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/core/axis_state.hpp"
 #include "cncplan/core/error.hpp"
-#include "cncplan/state/axis_motions.hpp"
+#include "cncplan/state/detail/axis_motions.hpp"
+#include "cncplan/state/detail/travel.hpp"
 #include "cncplan/state/motion.hpp"
 #include "cncplan/state/move_options.hpp"
 #include "cncplan/state/rest_to_rest.hpp"
-#include "cncplan/state/travel.hpp"
 
 namespace cncplan::state {
 

@@ -7,7 +7,7 @@
 
 #include "cncplan/core/axis_limits.hpp"
 #include "cncplan/core/axis_state.hpp"
-#include "cncplan/core/cube_root.hpp"
+#include "cncplan/core/detail/cube_root.hpp"
 #include "cncplan/state/motion.hpp"
 
 namespace cncplan::state {

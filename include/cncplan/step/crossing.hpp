@@ -21,7 +21,7 @@ namespace cncplan::step {
 template <class P>
 concept SteppablePath = ParametricPath<P> && requires(const P& path, int axis, typename P::Scalar x) {
   { path.length() } -> std::same_as<typename P::Scalar>;
-  { path.next_turning(axis, x) } -> std::same_as<typename P::Scalar>;
+  { path.next_reversal(axis, x) } -> std::same_as<typename P::Scalar>;
   { path.crossing(axis, x, x, x) } -> std::same_as<typename P::Scalar>;
   { path.length_at(x) } -> std::same_as<typename P::Scalar>;
 };
@@ -128,7 +128,7 @@ class StepCursor {
   [[nodiscard]] bool open_piece() {
     if (!(piece_end_ < parameter_end_)) return false;
     parameter_ = piece_end_;
-    piece_end_ = std::min(path_->next_turning(axis_, parameter_), parameter_end_);
+    piece_end_ = std::min(path_->next_reversal(axis_, parameter_), parameter_end_);
     if (!(piece_end_ > parameter_)) piece_end_ = parameter_end_;
     origin_ = target_;
     target_ = steps_at(piece_end_);

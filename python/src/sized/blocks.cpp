@@ -3,7 +3,7 @@
 
 #include "cncplan/path/arc_from_center.hpp"
 #include "cncplan/path/arc_from_radius.hpp"
-#include "cncplan/plan/plan_blocks.hpp"
+#include "cncplan/plan_blocks.hpp"
 #include "fault.hpp"
 #include "memory.hpp"
 #include "planned.hpp"

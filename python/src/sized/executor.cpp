@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cncplan/plan/block_reader.hpp"
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/block_reader.hpp"
+#include "cncplan/executor.hpp"
 #include "fault.hpp"
 #include "levels.hpp"
 #include "memory.hpp"

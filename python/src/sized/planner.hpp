@@ -2,8 +2,8 @@
 // look_ahead.cpp and smooth.cpp, by cncplan::compiled, or by cncplan_maps.
 #pragma once
 
+#include "cncplan/block_builder.hpp"
 #include "cncplan/compiled/plan_blocks.hpp"
-#include "cncplan/plan/block_builder.hpp"
 
 #if SIZE < 0
 #include "maps/maps.hpp"

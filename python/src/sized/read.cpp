@@ -7,7 +7,7 @@
 
 #include "cncplan/gcode/language/program_lines.hpp"
 #include "cncplan/gcode/read_program.hpp"
-#include "cncplan/plan/plan_program.hpp"
+#include "cncplan/plan_program.hpp"
 #include "fault.hpp"
 #include "memory.hpp"
 #include "planned.hpp"
@@ -99,7 +99,7 @@ TrajectoryPointer plan_text<SIZE>(const AnyMachine& given, std::string_view text
     planned.error().file = program.file_of(planned.error().block.value_or(0));
     raise(planned.error());
   }
-  plan::tell(*planned, program, level_of(options) != SmoothLevel::exact);
+  detail::tell(*planned, program, level_of(options) != SmoothLevel::exact);
   return any_trajectory<SIZE>(given, std::move(*planned));
 }
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <charconv>
 
-#include "cncplan/plan/peaks.hpp"
+#include "cncplan/peaks.hpp"
 #include "planned.hpp"
 #include "planner.hpp"
 #include "report/channels.hpp"

@@ -5,8 +5,8 @@
 #include <new>
 #include <sstream>
 
-#include "cncplan/plan/peaks.hpp"
-#include "cncplan/plan/step_edges.hpp"
+#include "cncplan/peaks.hpp"
+#include "cncplan/step_edges.hpp"
 #include "fault.hpp"
 #include "interruption.hpp"
 #include "planned.hpp"

@@ -1,6 +1,6 @@
 // A controller for a small processor: blocks in, set points out, in float, without heap and exceptions. It is
 // not run: tools/cortex_m_size looks at what the compiler makes of it, and how large that is.
-#include "cncplan/plan/executor.hpp"
+#include "cncplan/executor.hpp"
 
 using namespace cncplan;
 

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "cncplan/gcode/language/control_word.hpp"
+#include "cncplan/gcode/detail/control_word.hpp"
+#include "cncplan/gcode/detail/flat_line.hpp"
+#include "cncplan/gcode/detail/modal_state.hpp"
+#include "cncplan/gcode/detail/numbered_call.hpp"
 #include "cncplan/gcode/language/find_file.hpp"
-#include "cncplan/gcode/language/flat_line.hpp"
-#include "cncplan/gcode/language/modal_state.hpp"
-#include "cncplan/gcode/language/numbered_call.hpp"
 #include "cncplan/gcode/lines.hpp"
 
 namespace cncplan::gcode {

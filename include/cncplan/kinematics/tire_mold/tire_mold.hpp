@@ -9,7 +9,7 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/jet.hpp"
-#include "cncplan/kinematics/azimuth.hpp"
+#include "cncplan/kinematics/detail/azimuth.hpp"
 
 namespace cncplan::kinematics {
 

@@ -1,0 +1,469 @@
+// Drives parts of a trajectory by a clock, as they are planned (set-up).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory_resource>
+#include <new>
+#include <optional>
+
+#include "cncplan/core/detail/fixed_list.hpp"
+#include "cncplan/detail/executor/level_driver.hpp"
+#include "cncplan/detail/executor/part_planner.hpp"
+#include "cncplan/detail/executor/trajectory_clock.hpp"
+
+namespace cncplan::detail {
+
+/// What it is made with.
+template <std::floating_point S>
+struct BasicLiveOptions {
+  PlanOptions plan{};
+  S longest_wait{};  ///< s
+  bool background = false;
+};
+
+template <MachineModel M, BlockModel B>
+class LiveDriver final : public LevelDriver<M, B> {
+ public:
+  using Base = LevelDriver<M, B>;
+  using typename Base::Point;
+  using typename Base::S;
+  using typename Base::Vector;
+  using Options = BasicLiveOptions<S>;
+  using Clock = TrajectoryClock<M, B>;
+
+  /// A part of a tick, s from its start.
+  struct Driven {
+    S start{}, duration{};
+    typename Clock::Ramp ramp;
+    S elapsed{};  ///< of the ramp, where the part begins
+
+    [[nodiscard]] BasicState<S> clock_at(const typename Clock::Chain& chain, S within) const {
+      return ramp.at(chain, elapsed + within);
+    }
+  };
+
+  /// In memory that it gives back when it is destroyed.
+  static LiveDriver* make(const M& machine, const Options& options, std::size_t most_blocks,
+                          std::pmr::memory_resource* memory) {
+    void* const room = memory->allocate(sizeof(LiveDriver), alignof(LiveDriver));
+    try {
+      return new (room) LiveDriver(machine, options, most_blocks, memory);
+    } catch (...) {
+      memory->deallocate(room, sizeof(LiveDriver), alignof(LiveDriver));
+      throw;
+    }
+  }
+  void destroy() override {
+    std::pmr::memory_resource* const memory = memory_;
+    this->~LiveDriver();
+    memory->deallocate(this, sizeof(LiveDriver), alignof(LiveDriver));
+  }
+
+  bool push(const B& block) override { return planner_.push(block); }
+  void end_of_program() override {
+    planner_.end_of_program();
+    if (!background_) planner_.plan();
+  }
+  bool plan() override { return planner_.plan(); }
+  [[nodiscard]] std::int64_t pushed() const override { return planner_.pushed(); }
+
+  void hold() override { held_ = true; }
+  void resume() override { held_ = program_holds_ = false; }
+  void stop() override { stopped_ = true; }
+  void quick_stop(S share) override {
+    held_ = true;
+    if (!clock_.rests()) clock_.brake_with(std::max(share, S(1)));
+  }
+  void feed_override(S share) override {
+    feed_share_ = cut(share, BasicFeedShares<S>::most_share);
+    planner_.shares().ask(feed_share_);
+  }
+  void rapid_override(S share) override { rapid_share_ = cut(share, S(1)); }
+  void backwards(bool wanted) override { backwards_ = wanted; }
+  void single_step(bool wanted) override { single_step_ = wanted; }
+  void optional_stop(bool wanted) override { optional_stop_ = wanted; }
+  void program_stop(bool wanted) override { program_stop_ = wanted; }
+  void pause_at(int line) override { pause_line_ = line; }
+
+  [[nodiscard]] bool held() const override { return held_; }
+  [[nodiscard]] S worst_hold() const override { return planner_.longest_hold(); }
+  [[nodiscard]] bool stopped() const override { return stopped_ && clock_.rests(); }
+  [[nodiscard]] bool stands() const override { return clock_.rests(); }
+  [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0); }
+  [[nodiscard]] bool rests() const override {
+    return clock_.rests() && !dwells() && (held_ || stopped_ || nothing_ahead());
+  }
+  [[nodiscard]] bool finished() const override { return clock_.rests() && !dwells() && nothing_ahead(); }
+  [[nodiscard]] bool asked_to_rest() const override {
+    return held_ || stopped_ || !(feed_share_ > S(0)) || backwards_ != clock_.heads_back();
+  }
+  [[nodiscard]] bool at_program_stop() const override { return clock_.rests() && program_holds_ && held_; }
+  [[nodiscard]] S until_change() const override {
+    if (dwells()) return clock_.dwell();
+    if (clock_.rests()) return std::numeric_limits<S>::infinity();
+    S left = clock_.elapsed();
+    for (const auto& phase : clock_.ramp().motion().phases()) {
+      if (left < phase.duration) return phase.duration - left;
+      left -= phase.duration;
+    }
+    const BasicState<S> now = clock_.state();
+    const auto phase = clock_.chain().phase(clock_.chain().phase_at(now.position));
+    const S way =
+        now.velocity > S(0) ? phase.time + phase.duration - now.position : now.position - phase.time;
+    return way / std::abs(now.velocity);
+  }
+  [[nodiscard]] S rested() const override { return rested_; }
+
+  [[nodiscard]] bool complete() const override {
+    return (planner_.ended() || planner_.failed()) && planner_.all_planned() && nothing_ahead();
+  }
+  [[nodiscard]] bool begins() const override {
+    return planner_.ended() && !planner_.failed() && !held_ && !stopped_ && !complete();
+  }
+  [[nodiscard]] bool failed() const override { return planner_.failed(); }
+  [[nodiscard]] gcode::Diagnostic fault() const override { return planner_.fault(); }
+  [[nodiscard]] std::optional<Vector> place() const override {
+    if (!clock_.chain().empty()) return clock_.chain().at(clock_.state()).position;
+    if (planner_.pushed() == 0) return std::nullopt;
+    return planner_.start();
+  }
+  [[nodiscard]] const B* block() const override {
+    return clock_.chain().empty() ? nullptr : &clock_.chain().block_at(clock_.state().position);
+  }
+
+  void look(S period) override {
+    take_parts();
+    planner_.left(seen_, (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
+    let_go_where_none_come(period);
+    if (background_) return;
+    planner_.plan();
+    take_parts();
+  }
+
+  void advance(S period, Point& point) override {
+    parts_.clear();
+    words_.clear();
+    S left = period;
+    while (left > S(0) && step(left, period)) {
+    }
+    rested_ = rests() ? (parts_.empty() ? rested_ : S(0)) + left : S(0);
+    tell_words(period - left);
+    if (!clock_.chain().empty()) {
+      const S time = point.time;
+      point = clock_.chain().at(clock_.state());
+      point.time = time;
+      point.feed /= planner_.shares().share_of(static_cast<std::int64_t>(point.block), oldest_block());
+    }
+    point.words = words_;
+    release();
+  }
+  [[nodiscard]] std::size_t part_count() const override { return parts_.size(); }
+  [[nodiscard]] BasicTickPart<S> part(std::size_t number) const override {
+    return {parts_[number].start, parts_[number].duration};
+  }
+  [[nodiscard]] AxisMotion<Vector> axes_at(S seconds) const override {
+    std::size_t i = 0;
+    while (i + 1 < parts_.size() && seconds > parts_[i].start + parts_[i].duration) ++i;
+    const Driven& part = parts_[i];
+    const S within = std::clamp(seconds - part.start, S(0), part.duration);
+    const Point point = clock_.chain().at(part.clock_at(clock_.chain(), within));
+    return {point.position, point.velocity, point.acceleration, point.jerk};
+  }
+
+  /// What the last tick was made of, rests left out, and what its clock ran along.
+  [[nodiscard]] const FixedList<Driven, Base::most_parts>& driven() const { return parts_; }
+  [[nodiscard]] const typename Clock::Chain& chain() const { return clock_.chain(); }
+
+  void restart(int line) override {
+    planner_.restart(line);
+    clock_ = Clock(machine_);
+    oldest_ = seen_ = told_part_ = 0;
+    told_ = 0;
+    tail_ahead_ = tells_tail_ = stopped_ = program_holds_ = backwards_ = false;
+    rested_ = quiet_ = S(0);
+    pushed_before_ = 0;
+    passed_ = -infinity;
+  }
+
+ private:
+  using Planner = PartPlanner<M, B>;
+  using Clocked = typename Planner::Clocked;
+
+  static constexpr S infinity = std::numeric_limits<S>::infinity();
+  static constexpr std::int64_t parts_behind = 3;
+  static constexpr S same_time = S(1e-9);    // s
+  static constexpr S time_to_plan = S(0.5);  // s of motion that is left when blocks go on without others
+
+  // A part that is in the chain.
+  struct Seen {
+    S start{}, tail_start{};  // s
+    std::size_t motions{};    // of the chain
+    bool has_tail{};          // that is driven
+  };
+
+  LiveDriver(const M& machine, const Options& options, std::size_t most_blocks,
+             std::pmr::memory_resource* memory)
+      : machine_(machine),
+        memory_(memory),
+        planner_(machine, options.plan, most_blocks, memory),
+        clock_(machine),
+        longest_wait_(options.longest_wait),
+        background_(options.background) {}
+  ~LiveDriver() = default;
+
+  [[nodiscard]] static S cut(S share, S most) { return share > S(0) ? std::min(share, most) : S(0); }
+
+  [[nodiscard]] Seen& seen(std::int64_t number) {
+    return known_[static_cast<std::size_t>(number % Planner::most_parts)];
+  }
+  [[nodiscard]] const Seen& seen(std::int64_t number) const {
+    return known_[static_cast<std::size_t>(number % Planner::most_parts)];
+  }
+
+  // Whether the way that there is ends where it stands, and all words of it are told.
+  [[nodiscard]] bool nothing_ahead() const {
+    if (seen_ == 0) return !planner_.begun();
+    if (backwards_ || !all_told() || !(clock_.chain().empty() || clock_.at_end())) return false;
+    const PartLink link = planner_.part(seen_ - 1).link.load(std::memory_order_acquire);
+    return link == PartLink::rest || link == PartLink::tail;
+  }
+
+  // Parts that are planned go into the chain; the tail that was to be driven for want of them goes out of it.
+  void take_parts() {
+    if (seen_ == 0 && planner_.begun()) take_part();
+    while (seen_ > 0) {
+      const PartLink link = planner_.part(seen_ - 1).link.load(std::memory_order_acquire);
+      if (link != PartLink::next && link != PartLink::tail_next) return;
+      if (tail_ahead_) {
+        clock_.chain().pop_back();
+        --seen(seen_ - 1).motions;
+        tail_ahead_ = false;
+      }
+      take_part();
+    }
+  }
+  void take_part() {
+    const auto& part = planner_.part(seen_);
+    Seen& now = seen(seen_++);
+    now = {end_of_chain(), S(0), 0, false};
+    add(now, *part.motion);
+    now.tail_start = end_of_chain();
+    if (part.tail) add(now, *part.tail);
+    tail_ahead_ = part.tail.has_value();
+    cut_ = now.tail_start;
+    clock_.look_ahead();
+  }
+  // s, where what is planned ends, a tail that is not driven left out.
+  [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : end_of_chain(); }
+  [[nodiscard]] S end_of_chain() const { return clock_.chain().empty() ? S(0) : clock_.chain().end_time(); }
+  void add(Seen& now, const Clocked& motion) {
+    if (motion.trajectory.phases().empty()) return;
+    clock_.chain().push_back(motion.trajectory, motion.rests);
+    ++now.motions;
+  }
+
+  // The tail is driven, if no part has come in its place.
+  bool take_tail() {
+    PartLink open = PartLink::open;
+    if (!planner_.part(seen_ - 1).link.compare_exchange_strong(open, PartLink::tail,
+                                                               std::memory_order_acq_rel)) {
+      take_parts();
+      return false;
+    }
+    tail_ahead_ = false;
+    seen(seen_ - 1).has_tail = true;
+    return true;
+  }
+
+  void let_go_where_none_come(S period) {
+    const std::int64_t pushed = planner_.pushed();
+    quiet_ = pushed == pushed_before_ ? quiet_ + period : S(0);
+    pushed_before_ = pushed;
+    if (planner_.all_planned() || quiet_ < longest_wait_) return;
+    if (way_end() - clock_.state().position < time_to_plan) planner_.let_go();
+  }
+
+  // The rate: what is asked for, by what is planned.
+  [[nodiscard]] S wanted() {
+    if (held_ || stopped_) return S(0);
+    S share = feed_share_;
+    if (!clock_.chain().empty()) {
+      const S now = clock_.state().position;
+      share = clock_.chain().block_at(now).rapid ? rapid_share_ : share / planned_share(now);
+    }
+    return backwards_ ? -std::min(share, S(1)) : pauses() ? std::min(share, S(1)) : share;
+  }
+  // Of its feed, by which the block is planned that is driven at a time.
+  [[nodiscard]] S planned_share(S time) {
+    return planner_.shares().share_of(clock_.chain().number_at(time), oldest_block());
+  }
+  [[nodiscard]] std::int64_t oldest_block() const {
+    return static_cast<std::int64_t>(planner_.part(oldest_).motion->trajectory.first_block());
+  }
+
+  // Rests, or one part of the tick; whether more may happen in it.
+  bool step(S& left, S period) {
+    if (clock_.chain().empty()) {
+      tell_words(period - left);
+      return false;
+    }
+    if (tail_ahead_ && !clock_.heads_back() &&
+        clock_.state().position + std::max(clock_.state().velocity, S(1)) * left >= cut_)
+      take_tail();
+    if (!clock_.standing()) brake_for_pause(period);
+    const S before = left;
+    const bool stood = clock_.standing();
+    const bool goes_on = clock_.step(
+        left, [this] { return wanted(); }, [&] { return may_leave(period - left); },
+        [this](S end, bool faster) { return faster ? may_go_faster(end) : may_change(end); });
+    tell_words(period - left);
+    const S used = before - left;
+    if (!stood && used > S(0) &&
+        !(clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration()))
+      parts_.push_back({period - before, used, clock_.ramp(),
+                        clock_.standing() ? clock_.elapsed() : clock_.elapsed() - used});
+    return goes_on;
+  }
+
+  // A change of the rate that leads beyond a cut is one along the tail.
+  bool may_change(S end) { return !tail_ahead_ || !(end > cut_) || take_tail(); }
+  // Above the planned speed it drives along no tail, and no block that is planned for another share.
+  bool may_go_faster(S end) {
+    return !(tail_ahead_ && end > cut_) && planned_share(end) == planned_share(clock_.state().position);
+  }
+  bool may_leave(S in_tick) {
+    if (!tell_words(in_tick)) return false;
+    if (!held_ && pauses())
+      if (const auto pause = next_pause(); pause && std::abs(*pause - clock_.state().position) <= same_time)
+        hold_at(*pause);
+    return true;
+  }
+
+  [[nodiscard]] bool pauses() const { return (single_step_ || pause_line_ != 0) && !backwards_; }
+  void hold_at(S time) {
+    passed_ = time;
+    held_ = true;
+  }
+  // Brakes so that the axes come to rest at the start of a block, or before it: where a brake that begins a
+  // tick later would end behind it. Where the search finds none, the last planned one has to do.
+  void brake_for_pause(S period) {
+    if (!pauses() || held_ || stopped_) return;
+    const auto pause = next_pause();
+    if (!pause || clock_.next_rest() <= *pause + same_time) return;
+    const auto brake = clock_.brake_in(period);
+    if (brake ? *brake > *pause
+              : clock_.passes_last_brake_before(*pause, period) ||
+                    clock_.state_after(S(1.5) * period).position >= *pause)
+      hold_at(*pause);
+  }
+  // When a block begins before which it is to rest: the next one that it has not rested at.
+  [[nodiscard]] std::optional<S> next_pause() const {
+    const S from = std::max(clock_.state().position - same_time, passed_ + same_time);
+    const auto in = [&](const Clocked& motion, S start) -> std::optional<S> {
+      auto begin = std::lower_bound(motion.begins.begin(), motion.begins.end(), from - start,
+                                    [](const auto& one, S time) { return one.time < time; });
+      for (; begin != motion.begins.end(); ++begin)
+        if (single_step_ ? start + begin->time > same_time : begin->line == pause_line_)
+          return start + begin->time;
+      return std::nullopt;
+    };
+    for (std::int64_t i = oldest_; i < seen_; ++i) {
+      const auto& part = planner_.part(i);
+      if (const auto time = in(*part.motion, seen(i).start)) return time;
+      if (seen(i).has_tail || (tail_ahead_ && i + 1 == seen_))
+        if (const auto time = in(*part.tail, seen(i).tail_start)) return time;
+    }
+    return std::nullopt;
+  }
+
+  // Whether there is a word that is to be told next; if so, when it is reached.
+  [[nodiscard]] const typename Clocked::Word* next_word(S& time) {
+    while (told_part_ < seen_) {
+      const auto& part = planner_.part(told_part_);
+      const Seen& now = seen(told_part_);
+      const auto& words = tells_tail_ ? part.tail->words : part.motion->words;
+      if (told_ < words.size()) {
+        time = (tells_tail_ ? now.tail_start : now.start) + words[told_].time;
+        return &words[told_];
+      }
+      if (!tells_tail_ && now.has_tail) {
+        tells_tail_ = true;
+        told_ = 0;
+      } else if (told_part_ + 1 < seen_) {
+        ++told_part_;
+        told_ = 0;
+        tells_tail_ = false;
+      } else {
+        return nullptr;
+      }
+    }
+    return nullptr;
+  }
+  [[nodiscard]] bool all_told() const {
+    if (seen_ == 0) return true;
+    const auto& part = planner_.part(told_part_);
+    return told_part_ + 1 == seen_ && tells_tail_ == seen(told_part_).has_tail &&
+           told_ == (tells_tail_ ? part.tail->words : part.motion->words).size();
+  }
+  // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
+  // no room for more of them: they come with the next one.
+  bool tell_words(S in_tick) {
+    const S shown = clock_.state().position;
+    S time{};
+    for (const auto* next = next_word(time); next != nullptr && time <= shown; next = next_word(time)) {
+      const S at = std::clamp(in_tick - clock_.since(time), S(0), in_tick);
+      if (!words_.push_back({next->word, at})) return false;
+      ++told_;
+      const gcode::Word& word = next->word;
+      if (word.letter != 'M' || !((program_stop_ && (word.number == 0 || word.number == 60)) ||
+                                  (optional_stop_ && word.number == 1)))
+        continue;
+      held_ = program_holds_ = true;
+    }
+    return true;
+  }
+
+  // Lets parts go that are far behind.
+  void release() {
+    if (clock_.heads_back() || backwards_) return;
+    const S shown = clock_.state().position;
+    std::int64_t now = oldest_;
+    while (now + 1 < seen_ && seen(now + 1).start <= shown) ++now;
+    while (now - oldest_ > parts_behind && told_part_ > oldest_) {
+      for (; seen(oldest_).motions > 0; --seen(oldest_).motions) clock_.chain().pop_front();
+      planner_.release(++oldest_);
+    }
+  }
+
+  M machine_;
+  std::pmr::memory_resource* memory_;
+  Planner planner_;
+  Clock clock_;
+  S longest_wait_;
+  bool background_;
+  // Requests.
+  bool held_{}, stopped_{}, backwards_{}, single_step_{}, optional_stop_{}, program_holds_{};
+  bool program_stop_ = true;
+  int pause_line_ = 0;
+  S feed_share_ = S(1), rapid_share_ = S(1);
+  S passed_ = -infinity;  // when the block begins before which it last paused
+  // Parts: the oldest that is kept, and behind the last one that was taken into the chain.
+  std::int64_t oldest_ = 0, seen_ = 0;
+  std::array<Seen, static_cast<std::size_t>(Planner::most_parts)> known_{};
+  bool tail_ahead_{};  // the chain ends with a tail that is not driven yet
+  S cut_{};            // where it begins
+  // The next word.
+  std::int64_t told_part_ = 0;
+  std::size_t told_ = 0;
+  bool tells_tail_{};
+  BasicReachedWords<S> words_;
+  FixedList<Driven, Base::most_parts> parts_;
+  S rested_{}, quiet_{};  // s
+  std::int64_t pushed_before_ = 0;
+};
+
+}  // namespace cncplan::detail

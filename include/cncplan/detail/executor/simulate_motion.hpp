@@ -1,0 +1,74 @@
+// A whole run of a motion executor, with requests on the way, as the phases of a trajectory (set-up).
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <functional>
+#include <memory_resource>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cncplan/core/compiled.hpp"
+#include "cncplan/core/error.hpp"
+#include "cncplan/detail/executor/motion_executor.hpp"
+#include "cncplan/detail/speed/cells.hpp"
+#include "cncplan/detail/speed/motion_table.hpp"
+
+namespace cncplan::detail {
+
+/// What is asked of a motion executor, and when.
+struct TimedRequest {
+  double time{};  ///< s from the start
+  std::function<void(MotionExecutor&)> ask;
+};
+
+/// Runs the cells of blocks with a tick each `period` (s, > 0) and looks as far ahead as a controller would;
+/// requests, in order of time, come at their exact times. It ends where the program does, where it is
+/// stopped, or where it rests and nothing is to come. `blocks` are those of the cells. Error: above_limit for
+/// what takes more than `most_ticks`.
+[[nodiscard]] Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_motion(
+    std::span<const MotionBlock> cells, std::span<const std::size_t> blocks,
+    std::span<const TimedRequest> requests, double period, double most_ticks = 1e10);
+
+/// Cells as a motion executor takes them, of the blocks that they were cut from; `feed_of` gives a block's
+/// own feed (mm/s). A rest before anything moves becomes a cell of its own.
+template <BlockModel B, std::invocable<const B&> Feed>
+[[nodiscard]] std::vector<MotionBlock> motion_blocks(std::span<const B> blocks, BasicCells<double>& cells,
+                                                     Feed&& feed_of) {
+  if (!cells.pauses.empty() && cells.pauses.front().cells == 0) {
+    double rest = 0.0;
+    for (const auto& pause : cells.pauses)
+      if (pause.cells == 0) rest += pause.seconds;
+    cells.segments.insert(cells.segments.begin(), {0.0, 0.0, {1.0, 1.0, 1.0}, rest});
+    cells.blocks.insert(cells.blocks.begin(), cells.pauses.front().block);
+  }
+  std::vector<MotionBlock> cells_of_blocks;
+  cells_of_blocks.reserve(cells.segments.size());
+  for (std::size_t i = 0; i < cells.segments.size(); ++i) {
+    const B& block = blocks[cells.blocks[i]];
+    const bool more = i + 1 < cells.segments.size();
+    cells_of_blocks.push_back({.segment = cells.segments[i],
+                               .feed = feed_of(block),
+                               .rapid = block.rapid,
+                               .line = block.line,
+                               .goes_on = more && (cells.blocks[i + 1] == cells.blocks[i] || block.goes_on)});
+  }
+  return cells_of_blocks;
+}
+
+/// Both at once.
+template <BlockModel B, std::invocable<const B&> Feed>
+[[nodiscard]] Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_motion(
+    std::span<const B> blocks, BasicCells<double> cells, std::span<const TimedRequest> requests,
+    double period, Feed&& feed_of, double most_ticks = 1e10) {
+  const auto cells_of_blocks = motion_blocks(blocks, cells, std::forward<Feed>(feed_of));
+  return simulate_motion(std::span<const MotionBlock>(cells_of_blocks),
+                         std::span<const std::size_t>(cells.blocks), requests, period, most_ticks);
+}
+
+}  // namespace cncplan::detail
+
+#ifndef CNCPLAN_COMPILED
+#include "cncplan/detail/executor/simulate_motion-inl.hpp"
+#endif

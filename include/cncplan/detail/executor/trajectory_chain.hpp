@@ -1,0 +1,220 @@
+// Trajectories one behind the other in one running time (set-up).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cncplan/trajectory.hpp"
+
+namespace cncplan::detail {
+
+/// A time for which axes stand.
+template <std::floating_point S>
+struct BasicRest {
+  S from{}, to{};  ///< s
+};
+
+/// Adds a rest behind those that are there; one that touches the last becomes part of it.
+template <std::floating_point S>
+void add_rest(std::pmr::vector<BasicRest<S>>& rests, BasicRest<S> rest) {
+  if (rests.empty() || rest.from > rests.back().to)
+    rests.push_back(rest);
+  else
+    rests.back().to = std::max(rests.back().to, rest.to);
+}
+
+/// Whether a phase ends at rest, but for rounding.
+template <std::floating_point S>
+[[nodiscard]] bool ends_at_rest(const BasicPhase<S>& phase) {
+  const S change = std::abs(phase.acceleration) * phase.duration + std::abs(phase.velocity);
+  return std::abs(phase.at(phase.duration).velocity) <= S(1e-3) * change;
+}
+
+/// Where a trajectory stands, in order: at its start and its end too, if it begins and ends at rest.
+template <MachineModel M, BlockModel B>
+[[nodiscard]] std::pmr::vector<BasicRest<typename M::Scalar>> rests_of(
+    const Trajectory<M, B>& trajectory,
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+  using S = typename M::Scalar;
+  std::pmr::vector<BasicRest<S>> rests(memory);
+  const auto phases = trajectory.phases();
+  if (phases.empty() || phases.front().phase.velocity == S(0)) add_rest(rests, {S(0), S(0)});
+  for (const auto& [phase, piece] : phases)
+    if (phase.velocity == S(0) && phase.acceleration == S(0))
+      add_rest(rests, {phase.time, phase.time + (phase.jerk == S(0) ? phase.duration : S(0))});
+  if (phases.empty() || ends_at_rest(phases.back().phase))
+    add_rest(rests, {trajectory.duration(), trajectory.duration()});
+  return rests;
+}
+
+/// Trajectories, each of which goes on as the one before ends. It looks at them and owns none.
+template <MachineModel M, BlockModel B>
+class TrajectoryChain {
+ public:
+  using S = typename M::Scalar;
+  using T = Trajectory<M, B>;
+  using Rest = BasicRest<S>;
+  using Brake = BasicPlannedBrake<S>;
+  using SetPoint = typename T::SetPoint;
+  using DrivenPath = typename T::DrivenPath;
+
+  static constexpr std::size_t most_parts = 20;
+
+  /// Adds a trajectory with phases, where it stands, and the brakes that are planned along it. There has to
+  /// be room.
+  void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes) {
+    Part next{&trajectory, rests, brakes, end_time(), 0, S(0)};
+    if (count_ > 0) {
+      const Part& last = parts_[count_ - 1];
+      const std::size_t blocks = last.trajectory->program().size();
+      const std::size_t before = trajectory.first_block() - last.trajectory->first_block();
+      next.first_phase = last.first_phase + last.trajectory->phases().size();
+      next.start_length = last.start_length + last.trajectory->start_length(std::min(before, blocks));
+    }
+    parts_[count_++] = next;
+  }
+  void push_back(const T& trajectory, std::span<const Rest> rests) {
+    push_back(trajectory, rests, trajectory.brakes());
+  }
+  /// Lets the last one go, or the first one. The running time goes on.
+  void pop_back() { --count_; }
+  void pop_front() {
+    std::move(parts_.begin() + 1, parts_.begin() + static_cast<std::ptrdiff_t>(count_), parts_.begin());
+    --count_;
+  }
+  void clear() { count_ = 0; }
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  /// When a trajectory begins and ends, s.
+  [[nodiscard]] S start_time(std::size_t part) const { return parts_[part].start; }
+  [[nodiscard]] S end_time(std::size_t part) const {
+    return parts_[part].start + parts_[part].trajectory->duration();
+  }
+  [[nodiscard]] S end_time() const { return count_ == 0 ? S(0) : end_time(count_ - 1); }
+
+  // Phases count from the chain's first one. There has to be one.
+
+  [[nodiscard]] std::size_t first_phase() const { return parts_[0].first_phase; }
+  [[nodiscard]] std::size_t last_phase() const {
+    const Part& last = parts_[count_ - 1];
+    return last.first_phase + last.trajectory->phases().size() - 1;
+  }
+  /// The phase that a time lies in, of two that meet there the later one.
+  [[nodiscard]] std::size_t phase_at(S time) const {
+    const Part& part = part_at(time);
+    return part.first_phase + part.trajectory->phase_at(time - part.start);
+  }
+  /// By the running time.
+  [[nodiscard]] BasicPhase<S> phase(std::size_t index) const {
+    const Part& part = part_of(index);
+    BasicPhase<S> phase = part.trajectory->phases()[index - part.first_phase].phase;
+    phase.time += part.start;
+    return phase;
+  }
+  [[nodiscard]] DrivenPath path(std::size_t index) const {
+    const Part& part = part_of(index);
+    return part.trajectory->path(part.trajectory->phases()[index - part.first_phase].piece);
+  }
+
+  /// The trajectory that a phase is of, and the number of its first phase.
+  [[nodiscard]] const T& trajectory_of(std::size_t index) const { return *part_of(index).trajectory; }
+  [[nodiscard]] std::size_t first_phase_of(std::size_t index) const { return part_of(index).first_phase; }
+
+  /// The set point where the running time is a clock's; `block` and `along` count those of all trajectories.
+  [[nodiscard]] SetPoint at(BasicState<S> clock) const {
+    const Part& part = part_at(clock.position);
+    const S shown = clock.position;
+    clock.position -= part.start;
+    SetPoint point = part.trajectory->at(clock);
+    point.time = shown;
+    point.block += part.trajectory->first_block();
+    point.along.position += part.start_length;
+    return point;
+  }
+  /// The number of the block that is driven at a time, of those of all trajectories.
+  [[nodiscard]] std::int64_t number_at(S time) const {
+    const Part& part = part_at(time);
+    const std::size_t phase = part.trajectory->phase_at(time - part.start);
+    return static_cast<std::int64_t>(part.trajectory->first_block() +
+                                     part.trajectory->block_of(part.trajectory->phases()[phase].piece));
+  }
+  /// The block that is driven at a time.
+  [[nodiscard]] const B& block_at(S time) const {
+    const Part& part = part_at(time);
+    const std::size_t phase = part.trajectory->phase_at(time - part.start);
+    return part.trajectory->program()[part.trajectory->block_of(part.trajectory->phases()[phase].piece)];
+  }
+
+  /// The first rest that is not over at a time; the last one that had begun before it. Nothing if there is
+  /// none.
+  [[nodiscard]] std::optional<Rest> rest_after(S time) const {
+    for (std::size_t i = part_number(time); i < count_; ++i) {
+      const Part& part = parts_[i];
+      const auto over = [&](const Rest& rest) { return !(rest.to + part.start > time); };
+      const auto rest = std::ranges::partition_point(part.rests, over);
+      if (rest != part.rests.end()) return Rest{rest->from + part.start, rest->to + part.start};
+    }
+    return std::nullopt;
+  }
+  /// The planned brake that begins first of those that do not begin before a time; nothing if there is none.
+  [[nodiscard]] std::optional<Brake> brake_after(S time) const {
+    std::optional<Brake> first;
+    const std::size_t now = part_number(time);
+    for (std::size_t i = now; i < count_ && i < now + 2; ++i) {  // one may begin in the trajectory before
+      const auto brakes = parts_[i].brakes;
+      const auto next = std::ranges::lower_bound(brakes, time - parts_[i].start, {}, &Brake::time);
+      if (next == brakes.end() || (first && !(next->time + parts_[i].start < first->time))) continue;
+      first = *next;
+      first->time += parts_[i].start;
+      first->end += parts_[i].start;
+    }
+    return first;
+  }
+  [[nodiscard]] std::optional<Rest> rest_before(S time) const {
+    for (std::size_t i = part_number(time) + 1; i-- > 0;) {
+      const Part& part = parts_[i];
+      const auto begun = [&](const Rest& rest) { return rest.from + part.start < time; };
+      const auto behind = std::ranges::partition_point(part.rests, begun);
+      if (behind == part.rests.begin()) continue;
+      const Rest& rest = *(behind - 1);
+      return Rest{rest.from + part.start, rest.to + part.start};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Part {
+    const T* trajectory{};
+    std::span<const Rest> rests{};
+    std::span<const Brake> brakes{};
+    S start{};
+    std::size_t first_phase{};
+    S start_length{};  // mm of the program
+  };
+
+  // The part that a time lies in, of two that meet there the later one.
+  [[nodiscard]] std::size_t part_number(S time) const {
+    std::size_t i = count_ - 1;
+    while (i > 0 && time < parts_[i].start) --i;
+    return i;
+  }
+  [[nodiscard]] const Part& part_at(S time) const { return parts_[part_number(time)]; }
+  [[nodiscard]] const Part& part_of(std::size_t phase) const {
+    std::size_t i = count_ - 1;
+    while (i > 0 && phase < parts_[i].first_phase) --i;
+    return parts_[i];
+  }
+
+  std::array<Part, most_parts> parts_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace cncplan::detail

@@ -1,0 +1,37 @@
+// A span: consecutive blocks that one profile drives through.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+#include "cncplan/profile/profile.hpp"
+
+namespace cncplan::detail {
+
+/// Blocks [first, first + count) and the profile over their joined length. A pause is a span of no blocks.
+template <std::floating_point S>
+struct BasicSpan {
+  std::size_t first{};
+  std::size_t count{};
+  profile::BasicProfile<S> profile;
+
+  friend bool operator==(const BasicSpan&, const BasicSpan&) = default;
+};
+
+using Span = BasicSpan<double>;
+
+/// `seconds` at rest before block `first`.
+template <std::floating_point S>
+[[nodiscard]] constexpr BasicSpan<S> pause_span(std::size_t first, S seconds) {
+  return {first, 0, profile::BasicProfile<S>({.cruise = seconds})};
+}
+
+/// How long the spans take, added up as a cursor does.
+template <std::floating_point S>
+[[nodiscard]] S duration(std::span<const BasicSpan<S>> spans) {
+  S sum = S(0);
+  for (const BasicSpan<S>& span : spans) sum += span.profile.duration();
+  return sum;
+}
+
+}  // namespace cncplan::detail

@@ -1,0 +1,60 @@
+// Executors at the levels `good` and `best` (set-up).
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+
+#include "cncplan/detail/executor/live_driver.hpp"
+#include "cncplan/executor.hpp"
+
+namespace cncplan::detail {
+
+/// What an executor with a `SmoothLevel` in its options is made of.
+template <MachineModel M, BlockModel B>
+struct ExecutorLevels {
+  using S = typename M::Scalar;
+  using Options = BasicExecutorOptions<S, SmoothLevel>;
+  using Fast = BasicExecutorOptions<S>;
+
+  [[nodiscard]] static std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
+
+  /// For the level `fast`; the exact path if that is asked for.
+  [[nodiscard]] static Fast fast(const Options& options) {
+    return {.tolerance = options.level == SmoothLevel::exact ? S(0) : options.tolerance,
+            .rotary_tolerance = options.rotary_tolerance,
+            .junction_deviation = options.junction_deviation,
+            .exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds,
+            .longest_wait = options.longest_wait,
+            .quick_stop_share = options.quick_stop_share,
+            .background = options.background,
+            .reserve = options.reserve,
+            .hold_factor = options.hold_factor};
+  }
+
+  /// Nothing where the level is `fast` at most.
+  [[nodiscard]] static LevelDriver<M, B>* make(const M& machine, const Options& options,
+                                               std::size_t most_blocks, std::pmr::memory_resource* memory);
+};
+
+template <MachineModel M, BlockModel B>
+LevelDriver<M, B>* ExecutorLevels<M, B>::make(const M& machine, const Options& options,
+                                              std::size_t most_blocks, std::pmr::memory_resource* memory) {
+  if (options.level <= SmoothLevel::fast || !(options.tolerance > S(0))) return nullptr;
+  PlanOptions plan;
+  plan.tolerance = static_cast<double>(options.tolerance);
+  plan.level = options.level;
+  plan.rotary_tolerance = static_cast<double>(options.rotary_tolerance);
+  plan.junction_deviation = static_cast<double>(options.junction_deviation);
+  plan.exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds;
+  plan.reserve = static_cast<double>(options.reserve);
+  // Under a map a proof takes too long for brakes to be planned as blocks come.
+  plan.hold_factor = MappedModel<M> ? 0.0 : static_cast<double>(options.hold_factor);
+  return LiveDriver<M, B>::make(machine, {plan, options.longest_wait, options.background}, most_blocks,
+                                memory);
+}
+
+}  // namespace cncplan::detail
+
+#ifdef CNCPLAN_COMPILED
+#include "cncplan/compiled/executor_levels.hpp"
+#endif

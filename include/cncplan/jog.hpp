@@ -1,0 +1,180 @@
+// Axes that are moved by hand, while no program moves them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "cncplan/core/path_point.hpp"
+#include "cncplan/detail/executor/tool_jog.hpp"
+#include "cncplan/jog_speed.hpp"
+#include "cncplan/move_to.hpp"
+#include "cncplan/tool.hpp"
+
+namespace cncplan {
+
+namespace detail {
+
+/// A machine's axes in a motion of their own, each within its limits, from one request to the next; behind a
+/// map also the tool's.
+template <MachineModel M>
+class Jog {
+ public:
+  using Scalar = typename M::Scalar;
+  using States = BasicAxisStates<Scalar, M::axis_count>;
+  using Vector = VectorN<Scalar, M::axis_count>;
+  using Speed = BasicJogSpeed<Scalar, M::axis_count>;
+  using Coordinates = VectorN<Scalar, program_coordinates<M>>;
+
+  explicit Jog(const M& machine) : tool_(machine) {}
+
+  /// Begins to come to velocities, from where the axes are and as they move; from rest at `place` where they
+  /// are at rest. Errors: those of `reach_velocity`.
+  Expected<void> to_velocities(const Vector& place, const Vector& velocities, const M& machine) {
+    return follow(reach_velocity(now(place), row(velocities), machine));
+  }
+  /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`; not_supported
+  /// for a speed of the tool under a map, where joints move.
+  Expected<void> to_positions(const Vector& place, const Vector& positions, const M& machine,
+                              const Speed& speed = {}) {
+    if (auto ok = validate(speed); !ok) return ok;
+    if (MappedModel<M> && std::isfinite(speed.tool))
+      return refusal(ErrorCode::not_supported, "speed of the tool in a jog of joints", speed.tool);
+    const States from = now(place);
+    const auto together = std::isfinite(speed.tool) ? Synchronization::phase : Synchronization::time;
+    if (auto ok =
+            follow(move_to(from, row(positions), slowed(machine, speed, positions - vector(from.position)),
+                           {.synchronization = together}));
+        !ok)
+      return ok;
+    target_ = positions;
+    return {};
+  }
+  /// The tool begins to go straight to a point in the program's coordinates, or comes to rest first and goes
+  /// then; joints that move come to rest. Errors: those of `validate` for the speed, and of `ToolJog::line`.
+  Expected<void> tool_to(const Vector& place, const Coordinates& point, const M& machine,
+                         const Speed& speed) requires ToolJogModel<M> {
+    if (auto ok = validate(speed); !ok) return ok;
+    if (!moves_) return tool_.to(machine, place, point, speed);
+    const Expected<Moved> rest =
+        brakes_ > Scalar(0) ? move_ : reach_velocity(move_.state(), typename States::Row{}, machine);
+    if (!rest) return tl::unexpected(rest.error());
+    const auto line = tool_.line(machine, vector(rest->at(rest->duration()).position), point, speed);
+    if (!line) return tl::unexpected(line.error());
+    const Scalar share = std::max(brakes_, Scalar(1));
+    follow(rest);
+    brakes_ = share;
+    tool_.wait_with(*line);
+    return {};
+  }
+  /// What is behind it: where the tool is and goes, and which block the axes are on.
+  [[nodiscard]] ToolJog<M>& tool() { return tool_; }
+  [[nodiscard]] const ToolJog<M>& tool() const { return tool_; }
+  /// Where it goes, while it goes to positions.
+  [[nodiscard]] std::optional<Vector> target() const { return moves_ ? target_ : std::nullopt; }
+  /// Begins to come to rest with so many times the limits of acceleration and jerk, where it does not brake
+  /// as hard already.
+  void to_rest(const M& machine, Scalar share) {
+    tool_.to_rest(share);
+    if (!moves_ || share <= brakes_) return;
+    Axes stronger{machine.axes};
+    for (auto& axis : stronger.axes) {
+      axis.acceleration *= share;
+      axis.acceleration_down *= share;
+      axis.jerk *= share;
+    }
+    if (follow(reach_velocity(move_.state(), typename States::Row{}, stronger))) brakes_ = share;
+  }
+
+  [[nodiscard]] bool moves() const { return moves_ || tool_.moves() || tool_.waits(); }
+
+  /// The axes `seconds` from now, only while they move. Jerks are those from then on.
+  [[nodiscard]] AxisMotion<Vector> at(Scalar seconds) const {
+    if (tool_.drives()) return tool_.at(seconds);
+    const Scalar time = move_.time() + seconds;
+    const States states = move_.at(time);
+    AxisMotion<Vector> result{vector(states.position), vector(states.velocity), vector(states.acceleration),
+                              Vector::Zero()};
+    for (std::size_t i = 0; i < states.position.size(); ++i)
+      result.jerk[static_cast<Eigen::Index>(i)] = move_.axis(i).jerk_at(time);
+    return result;
+  }
+
+  /// Moves on; whether the axes have come to rest.
+  bool advance(Scalar seconds) {
+    if (!moves_ && !tool_.moves()) tool_.begin_next();
+    if (tool_.drives()) {
+      tool_.advance(seconds);
+      return !moves();
+    }
+    move_.advance(seconds);
+    const States states = move_.state();
+    moves_ = !move_.finished() || states.velocity != typename States::Row{} ||
+             states.acceleration != typename States::Row{};
+    return !moves();
+  }
+
+ private:
+  using Moved = BasicAxesMove<Scalar, M::axis_count>;
+
+  // Axes with other limits than the machine's.
+  struct Axes {
+    using Scalar = typename M::Scalar;
+    static constexpr int axis_count = M::axis_count;
+    decltype(M::axes) axes;
+  };
+
+  // Its axes on a way that is no faster.
+  [[nodiscard]] static Axes slowed(const M& machine, const Speed& speed, const Vector& way) {
+    Axes result{machine.axes};
+    const std::array<int, 3> tool = tool_axes(machine);
+    const Scalar length = in_space(way, tool).norm();
+    for (int i = 0; i < M::axis_count; ++i) {
+      Scalar most = speed.axes[i];
+      if (way[i] != Scalar(0) && std::find(tool.begin(), tool.end(), i) != tool.end())
+        most = std::min(most, speed.tool * (std::abs(way[i]) / length));
+      auto& axis = result.axes[static_cast<std::size_t>(i)];
+      axis.velocity = std::min(axis.velocity, most);
+      axis.velocity_down = std::min(axis.velocity_down, most);
+    }
+    return result;
+  }
+
+  static typename States::Row row(const Vector& vector) {
+    typename States::Row result;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = vector[static_cast<Eigen::Index>(i)];
+    return result;
+  }
+  static Vector vector(const typename States::Row& row) { return Eigen::Map<const Vector>(row.data()); }
+
+  [[nodiscard]] States now(const Vector& place) const {
+    if (tool_.moves()) {
+      const AxisMotion<Vector> axes = tool_.at(Scalar(0));
+      return {row(axes.position), row(axes.velocity), row(axes.acceleration)};
+    }
+    return moves_ ? move_.state() : States{.position = row(place)};
+  }
+
+  Expected<void> follow(const Expected<Moved>& move) {
+    if (!move) return tl::unexpected(move.error());
+    move_ = *move;
+    moves_ = true;
+    tool_.clear();
+    target_.reset();
+    brakes_ = Scalar(0);
+    return {};
+  }
+
+  [[no_unique_address]] ToolJog<M> tool_;
+  Moved move_{};
+  bool moves_ = false;
+  std::optional<Vector> target_;
+  Scalar brakes_{};  // share of the limits with which it comes to rest; 0: it does not
+};
+
+}  // namespace detail
+
+}  // namespace cncplan

@@ -1,2 +1,0 @@
-// Whole runs of a player.
-#include "cncplan/plan/player/play-inl.hpp"
