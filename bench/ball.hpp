@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "../examples/generate/programs.hpp"
+#include "../apps/generate/programs.hpp"
 #include "cncplan/block_builder.hpp"
 #include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/gcode/read_program.hpp"

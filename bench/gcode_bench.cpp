@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "../examples/generate/programs.hpp"
+#include "../apps/generate/programs.hpp"
 #include "cncplan/gcode/read_program.hpp"
 #include "cncplan/gcode/writer.hpp"
 

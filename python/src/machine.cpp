@@ -4,9 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "cncplan_tools/machine_file.hpp"
 #include "fault.hpp"
-#include "support/failure.hpp"
-#include "support/machine_file.hpp"
 
 namespace cncplan::python {
 
@@ -26,15 +25,11 @@ namespace {
 }  // namespace
 
 AnyMachine read_machine(const std::string& text, const std::string& name, const Limits& limits) {
-  const support::Machine file = [&] {
-    try {
-      return support::parse_machine(text, name);
-    } catch (const support::Failure& failure) {
-      refuse(failure.what(), name);
-    }
-  }();
-  const bool mapped = file.kinematics == support::Kinematics::mapped;
-  if (file.kinematics != support::Kinematics::cartesian && !mapped)
+  const auto parsed = tools::parse_machine(text, name);
+  if (!parsed) refuse(parsed.error(), name);
+  const tools::MachineFile& file = *parsed;
+  const bool mapped = file.kinematics == tools::Kinematics::mapped;
+  if (file.kinematics != tools::Kinematics::cartesian && !mapped)
     refuse(name +
                ": error: machines that turn the work on a rotary table are not known to Python but by "
                "kinematics",

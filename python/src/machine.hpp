@@ -10,7 +10,7 @@
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/machine.hpp"
-#include "support/machine_file.hpp"
+#include "cncplan_tools/machine_file.hpp"
 
 namespace cncplan::python {
 
@@ -23,10 +23,10 @@ struct AnyMachine {
   double rapid_rate{};
   double feed_limit{};
   gcode::Dialect dialect;
-  support::Machine file;  ///< as it was read
+  tools::MachineFile file;  ///< as it was read
 
   /// Whether its axes are not the program's coordinates.
-  [[nodiscard]] bool has_map() const { return file.kinematics == support::Kinematics::mapped; }
+  [[nodiscard]] bool has_map() const { return file.kinematics == tools::Kinematics::mapped; }
 };
 
 namespace detail {

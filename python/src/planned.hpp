@@ -8,7 +8,7 @@
 #include "cncplan/block_builder.hpp"
 #include "cncplan/program_error.hpp"
 #include "cncplan/trajectory.hpp"
-#include "report/report.hpp"
+#include "cncplan_tools/report.hpp"
 #include "trajectory.hpp"
 
 namespace cncplan::python {
@@ -24,8 +24,8 @@ template <int N>
 
 /// What a report shows.
 template <int N>
-[[nodiscard]] report::Report report_of(const Planned<N>& trajectory, const AnyMachine& machine,
-                                       const ReportText& text);
+[[nodiscard]] tools::report::Report report_of(const Planned<N>& trajectory, const AnyMachine& machine,
+                                              const tools::ReportText& text);
 
 /// The options that read a program for a machine.
 [[nodiscard]] inline PlanOptions with_dialect(PlanOptions options, const AnyMachine& machine) {

@@ -13,6 +13,7 @@
 #include "blocks.hpp"
 #include "cncplan/plan_options.hpp"
 #include "cncplan/trajectory.hpp"
+#include "cncplan_tools/report.hpp"
 #include "machine.hpp"
 
 namespace cncplan::python {
@@ -46,13 +47,6 @@ struct PeakRow {
   Limits tool, along;
 };
 
-/// What a report tells beside the motion.
-struct ReportText {
-  std::string name;  ///< the program's
-  std::string text;
-  std::vector<std::pair<std::string, std::string>> summary;  ///< names and values
-};
-
 class AnyTrajectory {
  public:
   AnyTrajectory() = default;
@@ -74,7 +68,7 @@ class AnyTrajectory {
   [[nodiscard]] virtual std::vector<EdgeRow> step_edges(std::size_t most) const = 0;
   [[nodiscard]] virtual PeakRow peaks() const = 0;
   /// One page of HTML. Throws `Fault` where the build had no libraries to make it of.
-  [[nodiscard]] virtual std::string report(const ReportText& text) const = 0;
+  [[nodiscard]] virtual std::string report(const tools::ReportText& text) const = 0;
 };
 
 using TrajectoryPointer = std::unique_ptr<AnyTrajectory>;

@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "../../examples/generate/programs.hpp"
+#include "../../apps/generate/programs.hpp"
 #include "gcode/support.hpp"
 #include "support/catch.hpp"
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "../../examples/generate/programs.hpp"
+#include "../../apps/generate/programs.hpp"
 #include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"

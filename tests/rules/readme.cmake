@@ -2,7 +2,7 @@
 # stands word for word in a file of examples/ or in the project of a consumer.   cmake -DPAGE=README.md -DROOT=. -P readme.cmake
 cmake_minimum_required(VERSION 3.22)
 
-file(GLOB_RECURSE files ${ROOT}/examples/*.cpp ${ROOT}/examples/*.hpp ${ROOT}/examples/*.toml
+file(GLOB_RECURSE files ${ROOT}/examples/*.cpp ${ROOT}/apps/*.cpp ${ROOT}/apps/*.hpp ${ROOT}/examples/*.toml
   ${ROOT}/tests/rules/consumer/CMakeLists.txt)
 set(all "")
 foreach(file IN LISTS files)

@@ -1,5 +1,5 @@
 // What a report says stands in the way of a higher speed.
-#include "report/limits_of_phases.hpp"
+#include "cncplan_tools/detail/limits_of_phases.hpp"
 
 #include <array>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
+#include "support/report.hpp"
 
 using namespace cncplan;
 

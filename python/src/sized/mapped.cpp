@@ -6,7 +6,7 @@
 namespace cncplan::python {
 
 template <>
-report::Report report_of<SIZE>(const Planned<SIZE>&, const AnyMachine&, const ReportText&) {
+tools::report::Report report_of<SIZE>(const Planned<SIZE>&, const AnyMachine&, const tools::ReportText&) {
   raise(Error{ErrorCode::not_supported, "report of a machine behind a map", 0, 0});
 }
 

@@ -11,7 +11,6 @@
 #include "interruption.hpp"
 #include "planned.hpp"
 #include "planner.hpp"
-#include "support/failure.hpp"
 
 namespace cncplan::python {
 
@@ -110,13 +109,12 @@ class TrajectoryOfSize final : public AnyTrajectory {
     return {list(found.velocity), list(found.acceleration), list(found.jerk), found.tool, found.along};
   }
 
-  [[nodiscard]] std::string report(const ReportText& text) const override {
+  [[nodiscard]] std::string report(const tools::ReportText& text) const override {
+    if (const auto missing = tools::report::missing_packages(); !missing.empty())
+      throw Fault{{{{ErrorCode::not_supported, "report", 0, 0}, 0, 0, {}}, {}, {}},
+                  "report: built without" + std::string(missing)};
     std::ostringstream page;
-    try {
-      report::write(page, report_of<SIZE>(planned_, machine_, text));
-    } catch (const support::Failure& failure) {
-      throw Fault{{{{ErrorCode::not_supported, "report", 0, 0}, 0, 0, {}}, {}, {}}, failure.what()};
-    }
+    tools::report::write(page, report_of<SIZE>(planned_, machine_, text));
     return std::move(page).str();
   }
 

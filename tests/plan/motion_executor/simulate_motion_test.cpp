@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../../../examples/generate/programs.hpp"
+#include "../../../apps/generate/programs.hpp"
 #include "cncplan/plan_blocks.hpp"
 #include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
