@@ -7,9 +7,9 @@
 
 #include "ball.hpp"
 #include "buffer.hpp"
-#include "cncplan/detail/speed/laws.hpp"
 #include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/plan_program.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "plan/random_program.hpp"
 
 namespace {
@@ -34,7 +34,7 @@ bool look_ahead(const detail::BasicCells<double>& cells, std::vector<detail::Con
                 Spans& spans) {
   spans.clear();
   junctions.resize(cells.segments.size() + 1);
-  return detail::plan_spans(std::span<const detail::SegmentLimits>(cells.segments), detail::SevenPhase{},
+  return detail::plan_spans(std::span<const detail::SegmentLimits>(cells.segments), profile::SevenPhase{},
                             std::span(junctions), std::back_inserter(spans))
       .has_value();
 }
@@ -87,7 +87,7 @@ void plan_random(benchmark::State& state) {
     for (const auto& program : programs) {
       spans.clear();
       const auto planned =
-          detail::plan_spans(std::span<const detail::SegmentLimits>(program), detail::SevenPhase{},
+          detail::plan_spans(std::span<const detail::SegmentLimits>(program), profile::SevenPhase{},
                              std::span(junctions), std::back_inserter(spans));
       if (!planned) state.SkipWithError("a program has no plan");
     }

@@ -28,7 +28,7 @@ inline MillTrajectory published_plan(const std::vector<MillBlock>& blocks, Lengt
   std::vector<double> speeds(cells.segments.size() + 1);
   std::vector<cncplan::detail::Span> spans;
   published::plan_blocks(std::span<const cncplan::detail::SegmentLimits>(cells.segments),
-                         cncplan::detail::FivePhase{}, std::span(speeds), std::back_inserter(spans))
+                         cncplan::profile::FivePhase{}, std::span(speeds), std::back_inserter(spans))
       .value();
   auto phases = cncplan::detail::block_phases(std::span<const cncplan::detail::Span>(spans), cells);
   if (planar) published::to_space(all, std::span(phases));

@@ -30,7 +30,7 @@ struct BasicBlock {
   int line{};                                   ///< of the program; 0 where there is none
   int column{};
   std::optional<S> tolerance{};  ///< mm from the path; that of the options where there is none
-  S merge{};   ///< mm: lines that are this near to one line become parts of it (G64 Q); `detail::LineMerger`
+  S merge{};                     ///< mm: lines that are this near to one line become parts of it (G64 Q)
   S merged{};  ///< share of the tolerances that merging has taken of a block that is part of such a line
   gcode::Word word{};  ///< told where the block begins; no letter: none
 

@@ -6,14 +6,14 @@
 
 #include "cncplan/block_builder.hpp"
 #include "cncplan/core/compiled.hpp"
-#include "cncplan/detail/executor/executor_core.hpp"
+#include "cncplan/executor_core.hpp"
 #include "cncplan/program_error.hpp"
 
 namespace cncplan {
 
 namespace detail {
 
-/// What drives an executor at the levels `good` and `best`: detail/executor/executor_levels.hpp.
+/// What drives an executor at the levels `good` and `best`: executor_levels.hpp.
 template <MachineModel M, BlockModel B>
 struct ExecutorLevels;
 
@@ -72,20 +72,20 @@ class ExecutorRoom {
 /// - without `background` the work of a whole part is done in a `push`, `end_of_program` or `tick`: with it,
 ///   only in `push` and `plan`, and a tick asks for no memory.
 template <MachineModel M, std::size_t capacity, BlockModel B = ProgramBlock<M>>
-class Executor : private detail::ExecutorRoom<M, B, capacity>, public detail::ExecutorCore<M, B> {
+class Executor : private detail::ExecutorRoom<M, B, capacity>, public ExecutorCore<M, B> {
   static_assert(capacity >= 2, "an executor looks ahead over two blocks at least");
 
  public:
   using Scalar = typename M::Scalar;
-  using Options = typename detail::ExecutorCore<M, B>::Options;
+  using Options = typename ExecutorCore<M, B>::Options;
 
   using LevelOptions = BasicExecutorOptions<typename M::Scalar, SmoothLevel>;
 
   /// A machine or options that `validate` refuses are told by `error`; nothing runs then.
   explicit Executor(const M& machine, const Options& options = {})
-      : detail::ExecutorCore<M, B>(this->memory(), machine, options) {}
+      : ExecutorCore<M, B>(this->memory(), machine, options) {}
 
-  /// At any level; detail/executor/executor_levels.hpp has what is behind it. What the levels `good` and
+  /// At any level; executor_levels.hpp has what is behind it. What the levels `good` and
   /// `best` need lies in a memory resource: the default one of now, or one that is given.
   template <class Levels = detail::ExecutorLevels<M, B>>
   explicit Executor(const M& machine, const LevelOptions& options)

@@ -106,7 +106,7 @@ template <BlockRange R, MachineModel M>
 /// The same on the exact path, with a policy of one's own for joints (`JunctionPolicy`) and a law for changes
 /// of speed.
 template <BlockRange R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
-          detail::RampLaw<typename M::Scalar> Law = detail::SevenPhase>
+          profile::RampLaw<typename M::Scalar> Law = profile::SevenPhase>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,
                                                                             const Policy& policy,
                                                                             const Law& law = {}) {

@@ -29,7 +29,7 @@ struct PlanOptions {
   /// the sooner a hold comes, and the longer the program takes
   double reserve{};
   /// How many times the least that a brake takes a hold may take, > 1; 0: no plan for it. At the levels
-  /// `good` and `best` the plan is slower where a hold would come later (see `detail::BrakePlanner`).
+  /// `good` and `best` the plan is slower where a hold would come later.
   double hold_factor{};
   bool exact_between_rapids_and_feeds{};    ///< keeps the joints of rapids with feed moves exact
   std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad

@@ -81,10 +81,10 @@ template <MachineModel M>
 }
 
 /// Plans a program on the exact path, with a policy of one's own for junctions (`JunctionPolicy`) and a law
-/// for changes of speed (`detail::FivePhase`, `detail::SevenPhase`). Errors as above; the start is the
+/// for changes of speed (`profile::FivePhase`, `profile::SevenPhase`). Errors as above; the start is the
 /// program's.
 template <MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
-          detail::RampLaw<typename M::Scalar> Law = detail::SevenPhase>
+          profile::RampLaw<typename M::Scalar> Law = profile::SevenPhase>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(const Program<M>& program,
                                                                                   const M& machine,
                                                                                   const Policy& policy,

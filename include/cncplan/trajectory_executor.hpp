@@ -22,7 +22,7 @@ namespace cncplan {
 template <std::floating_point S>
 struct BasicTrajectoryExecutorOptions {
   S longest_hold = S(1);  ///< s, > 0: the longest that a hold may take from a request to rest
-  /// How many times the least that a brake takes it may take, > 1 (see `detail::BrakePlanner`)
+  /// How many times the least that a brake takes it may take, > 1
   S hold_factor = std::numeric_limits<S>::infinity();
 };
 
@@ -33,7 +33,7 @@ using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
 /// all the way back. So curve and place on it are those of the plan, whatever level of smoothing it has.
 ///
 /// Limits of acceleration and jerk, of the tool and of each axis, hold at every instant: a change of the rate
-/// is begun only once it is proven over all of its way (`detail::ClockProof`). Each tick looks for such a
+/// is begun only once it is proven over all of its way. Each tick looks for such a
 /// change, fast ones first, and for a faster one while one goes on. Where none is proven, the clock goes on
 /// as it does, which keeps the limits because the trajectory does.
 ///

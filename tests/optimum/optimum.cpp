@@ -102,8 +102,9 @@ int main(int argc, char** argv) {
     std::vector<detail::ConstrainedJunction> junctions(blocks.size() + 1);
     std::vector<double> speeds(blocks.size() + 1);
     std::vector<detail::Span> spans, singles;
-    if (!detail::plan_spans(blocks, detail::SevenPhase{}, std::span(junctions), std::back_inserter(spans)) ||
-        !published::plan_blocks(blocks, detail::SevenPhase{}, std::span(speeds), std::back_inserter(singles)))
+    if (!detail::plan_spans(blocks, profile::SevenPhase{}, std::span(junctions), std::back_inserter(spans)) ||
+        !published::plan_blocks(blocks, profile::SevenPhase{}, std::span(speeds),
+                                std::back_inserter(singles)))
       return std::fprintf(stderr, "no plan\n"), 1;
 
     std::vector<double> highest(nodes, limits.velocity * limits.velocity);

@@ -4,15 +4,15 @@
 #include <iterator>
 #include <vector>
 
-#include "cncplan/detail/speed/laws.hpp"
 #include "cncplan/detail/speed/span_planner.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "support/catch.hpp"
 
 namespace cncplan::test {
 
 /// Fails the test where there is no plan.
-template <std::floating_point S, class Law = detail::SevenPhase>
+template <std::floating_point S, class Law = profile::SevenPhase>
 std::vector<detail::BasicSpan<S>> spans_of(const std::vector<detail::BasicSegmentLimits<S>>& blocks,
                                            const Law& law = {}) {
   std::vector<detail::BasicSpan<S>> spans;
@@ -23,7 +23,7 @@ std::vector<detail::BasicSpan<S>> spans_of(const std::vector<detail::BasicSegmen
 }
 
 /// The same, block by block.
-template <std::floating_point S, class Law = detail::SevenPhase>
+template <std::floating_point S, class Law = profile::SevenPhase>
 std::vector<detail::BasicSpan<S>> single_blocks_of(const std::vector<detail::BasicSegmentLimits<S>>& blocks,
                                                    const Law& law = {}) {
   std::vector<detail::BasicSpan<S>> spans;

@@ -253,7 +253,7 @@ TEST_CASE("a program is planned with a policy and a law of one's own", "[program
   const auto seven = plan_program(program, machine, junction::ExactStop{});
   REQUIRE(seven);
   CHECK(seven->duration() == Approx(3 * move));
-  const auto five = plan_program(program, machine, junction::ExactStop{}, detail::FivePhase{});
+  const auto five = plan_program(program, machine, junction::ExactStop{}, profile::FivePhase{});
   REQUIRE(five);
   CHECK(five->duration() > 3 * move * 1.0001);  // no phase of constant acceleration
   const auto given_away = plan_program(read_text("G1 X50 F1200\n", machine), machine, {.tolerance = 0});

@@ -75,7 +75,7 @@ TEST_CASE("random programs break no cap, no feed and no limit, and join without 
   for (int draws = 0; draws < 4000; ++draws) {
     const auto blocks = draw(random);
     for (const bool seven : {true, false}) {
-      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, detail::FivePhase{});
+      const auto spans = seven ? test::spans_of(blocks) : test::spans_of(blocks, profile::FivePhase{});
       const auto errors = test::examine_plan<double>(blocks, spans);
       if (errors.worst() > worst_one) worst_one = errors.worst(), where = blocks;
       worst.worst_of(errors);
@@ -188,7 +188,7 @@ TEST_CASE("the same blocks give the same bits, without heap") {
     std::vector<detail::ConstrainedJunction> junctions(blocks.size() + 1);
     std::vector<detail::Span> first(2 * blocks.size()), second(2 * blocks.size());
     const auto plan = [&](std::vector<detail::Span>& out) {
-      (void)detail::plan_spans(std::span<const detail::SegmentLimits>(blocks), detail::SevenPhase{},
+      (void)detail::plan_spans(std::span<const detail::SegmentLimits>(blocks), profile::SevenPhase{},
                                std::span(junctions), out.begin());
     };
     plan(first);

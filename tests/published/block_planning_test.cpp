@@ -17,7 +17,7 @@ namespace {
 
 std::vector<double> speeds_of(const std::vector<detail::SegmentLimits>& blocks) {
   std::vector<double> speeds(blocks.size() + 1);
-  published::junction_speeds(std::span<const detail::SegmentLimits>(blocks), detail::SevenPhase{},
+  published::junction_speeds(std::span<const detail::SegmentLimits>(blocks), profile::SevenPhase{},
                              std::span(speeds));
   return speeds;
 }
@@ -96,8 +96,8 @@ TEST_CASE("plans block by block break nothing, under both laws") {
   test::PlanErrors worst;
   for (int draws = 0; draws < 2000; ++draws) {
     const auto blocks = test::random_program(random, LimitSpread::wide);
-    const auto spans =
-        draws % 2 == 0 ? test::single_blocks_of(blocks) : test::single_blocks_of(blocks, detail::FivePhase{});
+    const auto spans = draws % 2 == 0 ? test::single_blocks_of(blocks)
+                                      : test::single_blocks_of(blocks, profile::FivePhase{});
     worst.worst_of(test::examine_plan<double>(blocks, spans));
     for (const auto& span : spans) REQUIRE(span.count <= 1);
   }

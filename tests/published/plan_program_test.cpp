@@ -20,7 +20,7 @@ TEST_CASE("a program is planned block by block", "[published]") {
       read_text("G21 G90 F1200\nG1 X1\nX2\nX3 Y0.1\nG2 X6 Y0.1 I1.5\nG1 X20\nG4 P0.5\nX0 Y10\nM30\n", mill);
   const junction::Deviation policy{0.01};
   for (const auto& planned : {published::plan_program(program, mill, policy),
-                              published::plan_program(program, mill, policy, detail::FivePhase{})}) {
+                              published::plan_program(program, mill, policy, profile::FivePhase{})}) {
     REQUIRE(planned);
     CHECK(planned->duration() == Approx(2.9952031312581022).epsilon(1e-12));
     REQUIRE(planned->words().size() == 1);

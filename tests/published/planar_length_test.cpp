@@ -32,7 +32,7 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   CHECK(cells.segments[6].length == 10);
   std::vector<double> speeds(cells.segments.size() + 1);
   std::vector<detail::Span> spans;
-  REQUIRE(published::plan_blocks(std::span<const detail::SegmentLimits>(cells.segments), detail::FivePhase{},
+  REQUIRE(published::plan_blocks(std::span<const detail::SegmentLimits>(cells.segments), profile::FivePhase{},
                                  std::span(speeds), std::back_inserter(spans)));
   auto phases = detail::block_phases(std::span<const detail::Span>(spans), cells);
   published::to_space(all, std::span(phases));

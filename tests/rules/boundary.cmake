@@ -1,4 +1,5 @@
-# That what users read and copy names nothing of the library's detail/ folders: the examples, the README, and code on pages.
+# That what users read and copy names nothing of the library's detail/ folders: the examples, the README, pages, and what public headers say
+# of themselves.
 #   cmake -DSOURCE=. -P boundary.cmake
 cmake_minimum_required(VERSION 3.22)
 file(GLOB files RELATIVE ${SOURCE} ${SOURCE}/examples/*.cpp ${SOURCE}/examples/papers/*.cpp ${SOURCE}/python/examples/*.py ${SOURCE}/README.md
@@ -13,6 +14,15 @@ foreach(file IN LISTS files)
     endif()
   endforeach()
 endforeach()
-if(found OR NOT files)
+file(GLOB_RECURSE headers RELATIVE ${SOURCE} ${SOURCE}/include/*.hpp)
+list(FILTER headers EXCLUDE REGEX "/detail/")
+foreach(header IN LISTS headers)
+  file(STRINGS ${SOURCE}/${header} lines REGEX "///.*detail(::|/)")
+  foreach(line IN LISTS lines)
+    message(NOTICE "${header}: ${line}")
+    set(found TRUE)
+  endforeach()
+endforeach()
+if(found OR NOT files OR NOT headers)
   message(FATAL_ERROR "What is in detail/ is not for users")
 endif()

@@ -10,7 +10,6 @@
 #include "cncplan/block_builder.hpp"
 #include "cncplan/block_reader.hpp"
 #include "cncplan/detail/speed/cell_maker.hpp"
-#include "cncplan/detail/speed/laws.hpp"
 #include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/executor.hpp"
 #include "cncplan/gcode/reader.hpp"
@@ -28,6 +27,7 @@
 #include "cncplan/path/arc_from_radius.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/profile/five_phase.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/published/junction_table.hpp"
 #include "cncplan/step/backend.hpp"
@@ -201,7 +201,7 @@ void plan_a_program() {
   make_cells(reader_of_plan, [&](const ProgramBlock<Machine<3>>&, const detail::SegmentLimits& cell) {
     if (count < caps.size()) caps[count++] = cell;
   });
-  sink = detail::plan_spans(std::span<const detail::SegmentLimits>(caps.data(), count), detail::SevenPhase{},
+  sink = detail::plan_spans(std::span<const detail::SegmentLimits>(caps.data(), count), profile::SevenPhase{},
                             std::span<detail::ConstrainedJunction>(junctions), spans.begin())
              ? 1.0
              : 0.0;

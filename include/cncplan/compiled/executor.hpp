@@ -4,7 +4,7 @@
 #include "cncplan/executor.hpp"
 
 /// Running blocks of a type, whatever the capacity of the executor.
-#define CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, BLOCK) PREFIX template class detail::ExecutorCore<MACHINE, BLOCK>;
+#define CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, BLOCK) PREFIX template class ExecutorCore<MACHINE, BLOCK>;
 
 #ifdef CNCPLAN_COMPILED
 namespace cncplan {

@@ -9,15 +9,15 @@
 #include <span>
 
 #include "cncplan/detail/speed/cells.hpp"
-#include "cncplan/detail/speed/laws.hpp"
 #include "cncplan/detail/speed/segment_limits.hpp"
 #include "cncplan/detail/speed/solver_cache.hpp"
 #include "cncplan/detail/speed/span.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "cncplan/published/cap_speed.hpp"
 
 namespace cncplan::published {
 
-/// The limits of whole pieces of blocks, for `detail::make_cells`: the tool's by `cap_speed`, along the path
+/// The limits of whole pieces of blocks, for cells: the tool's by `cap_speed`, along the path
 /// alone; each axis keeps its own all the same.
 template <MachineModel M, BlockModel B>
 class WholeBlocks {
@@ -63,7 +63,7 @@ class WholeBlocks {
 /// could be faster while the others stay: a backward and a forward pass. (A junction alone could be faster
 /// still behind a slower one, whose ramp lasts longer over the same length; that never saves time.) `speeds`
 /// has one entry more than `blocks`; the motion starts and ends at rest.
-template <std::floating_point S, detail::RampLaw<S> Law>
+template <std::floating_point S, profile::RampLaw<S> Law>
 void junction_speeds(std::span<const detail::BasicSegmentLimits<S>> blocks, const Law& law,
                      std::span<S> speeds) {
   detail::SolverCache<S, Law> solver(law);
@@ -80,7 +80,7 @@ void junction_speeds(std::span<const detail::BasicSegmentLimits<S>> blocks, cons
 
 /// Plans block by block: writes a span for each block, and one for each pause, into `out`. `speeds` is room
 /// for one speed more than there are blocks.
-template <std::floating_point S, detail::RampLaw<S> Law, std::output_iterator<detail::BasicSpan<S>> Out>
+template <std::floating_point S, profile::RampLaw<S> Law, std::output_iterator<detail::BasicSpan<S>> Out>
 Expected<Out> plan_blocks(std::span<const detail::BasicSegmentLimits<S>> blocks, const Law& law,
                           std::span<S> speeds, Out out) {
   junction_speeds(blocks, law, speeds);

@@ -14,7 +14,7 @@ namespace cncplan::published {
 /// Plans a program on the exact path with one profile a block and zero acceleration at every junction, under
 /// a policy for junctions and a law for changes of speed. Errors as for `cncplan::plan_program`.
 template <MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
-          detail::RampLaw<typename M::Scalar> Law = detail::SevenPhase>
+          profile::RampLaw<typename M::Scalar> Law = profile::SevenPhase>
 [[nodiscard]] Expected<Trajectory<M, ProgramBlock<M>>, ProgramError> plan_program(const Program<M>& program,
                                                                                   const M& machine,
                                                                                   const Policy& policy,

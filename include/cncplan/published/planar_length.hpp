@@ -14,7 +14,7 @@
 
 namespace cncplan::published {
 
-/// The tool's limits as they are, for `detail::make_cells`: no cap by curvature, no limits of axes, as in
+/// The tool's limits as they are, for cells: no cap by curvature, no limits of axes, as in
 /// KK22.
 template <MachineModel M, BlockModel B>
 class ToolLimits {

@@ -8,8 +8,8 @@
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/core/phase.hpp"
 #include "cncplan/detail/curve/smoothed.hpp"
+#include "cncplan/detail/executor/jog.hpp"
 #include "cncplan/detail/executor/level_driver.hpp"
-#include "cncplan/jog.hpp"
 
 namespace cncplan::detail {
 

@@ -14,12 +14,12 @@
 #include "cncplan/core/progress.hpp"
 #include "cncplan/detail/curve/merge_lines.hpp"
 #include "cncplan/detail/speed/cells.hpp"
-#include "cncplan/detail/speed/laws.hpp"
 #include "cncplan/detail/speed/motion_table.hpp"
 #include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/junction/deviation.hpp"
 #include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/plan_options.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "cncplan/program_error.hpp"
 #include "cncplan/trajectory.hpp"
 
@@ -48,7 +48,7 @@ template <MachineModel M, BlockModel B>
 
 /// The trajectory of blocks that were cut into cells, under a law for changes of speed. All memory is that of
 /// the blocks.
-template <MachineModel M, BlockModel B, RampLaw<typename M::Scalar> Law>
+template <MachineModel M, BlockModel B, profile::RampLaw<typename M::Scalar> Law>
 [[nodiscard]] Expected<Trajectory<M, B>, ProgramError> trajectory(
     std::pmr::vector<B> blocks, const M& machine, const BasicCells<typename M::Scalar>& cells, const Law& law,
     BasicSmoothing<typename M::Scalar, M::axis_count> smoothing = {}) {
@@ -120,7 +120,7 @@ template <MachineModel M, BlockModel B>
     if (asked != SmoothLevel::exact && !other) {
       cells = make_cells(given, machine, at_rest, smoothing, memory, progress.part(0.0, cut_up));
       if (!cells) return tl::unexpected(error_in(given, cells.error()));
-      return trajectory(std::move(blocks), machine, *cells, SevenPhase{});
+      return trajectory(std::move(blocks), machine, *cells, profile::SevenPhase{});
     }
   }
   if (asked == SmoothLevel::exact || other) {
@@ -142,7 +142,7 @@ template <MachineModel M, BlockModel B>
               [](const Fallback& a, const Fallback& b) { return a.first < b.first; });
   }
   if (!cells) return tl::unexpected(error_in(given, cells.error()));
-  auto planned = trajectory(std::move(blocks), machine, *cells, SevenPhase{}, std::move(smoothing));
+  auto planned = trajectory(std::move(blocks), machine, *cells, profile::SevenPhase{}, std::move(smoothing));
   if (!planned) return planned;
   planned->set_level(asked);
   planned->set_fallbacks(std::move(fallbacks));

@@ -4,13 +4,13 @@
 #include <concepts>
 
 #include "cncplan/core/limits.hpp"
-#include "cncplan/detail/speed/laws.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "cncplan/profile/solver.hpp"
 
 namespace cncplan::detail {
 
 /// The same solver again while the limits stay the same, as they mostly do from block to block.
-template <std::floating_point S, RampLaw<S> Law>
+template <std::floating_point S, profile::RampLaw<S> Law>
 class SolverCache {
  public:
   explicit SolverCache(const Law& law) : law_(law), solver_(law(limits_)) {}

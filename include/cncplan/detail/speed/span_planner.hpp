@@ -10,12 +10,12 @@
 #include <limits>
 #include <span>
 
-#include "cncplan/detail/speed/laws.hpp"
 #include "cncplan/detail/speed/limit_smoothing.hpp"
 #include "cncplan/detail/speed/segment_limits.hpp"
 #include "cncplan/detail/speed/shared_limits.hpp"
 #include "cncplan/detail/speed/solver_cache.hpp"
 #include "cncplan/detail/speed/span.hpp"
+#include "cncplan/profile/laws.hpp"
 #include "cncplan/profile/solver.hpp"
 
 namespace cncplan::detail {
@@ -101,7 +101,7 @@ template <std::floating_point S>
 /// d1), d2) <= r(v, d1 + d2), so a zero-acceleration junction within reach of its neighbour is a stronger
 /// bound on what lies beyond it than the neighbour is. Where limits differ and that fails, there is no
 /// profile between two steady junctions, and the junctions between them become fixed.
-template <std::floating_point S, RampLaw<S> Law = SevenPhase>
+template <std::floating_point S, profile::RampLaw<S> Law = profile::SevenPhase>
 class JunctionPlanner {
  public:
   using ConstrainedJunction = BasicConstrainedJunction<S>;
@@ -309,7 +309,7 @@ class JunctionPlanner {
 
 /// Plans whole spans: writes them, and the pauses, into `out`. `junctions` is room for one junction more than
 /// there are blocks.
-template <std::floating_point S, RampLaw<S> Law, std::output_iterator<BasicSpan<S>> Out>
+template <std::floating_point S, profile::RampLaw<S> Law, std::output_iterator<BasicSpan<S>> Out>
 Expected<Out> plan_spans(std::span<const BasicSegmentLimits<S>> blocks, const Law& law,
                          std::span<BasicConstrainedJunction<S>> junctions, Out out) {
   if (blocks.empty()) return out;

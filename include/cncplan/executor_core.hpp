@@ -17,13 +17,13 @@
 #include "cncplan/detail/executor/axis_part.hpp"
 #include "cncplan/detail/executor/cell_feed.hpp"
 #include "cncplan/detail/executor/elapsed.hpp"
+#include "cncplan/detail/executor/jog.hpp"
 #include "cncplan/detail/executor/level_driver.hpp"
 #include "cncplan/detail/executor/motion_executor.hpp"
 #include "cncplan/detail/executor/shared_count.hpp"
 #include "cncplan/detail/executor/told_words.hpp"
 #include "cncplan/executor_options.hpp"
 #include "cncplan/executor_state.hpp"
-#include "cncplan/jog.hpp"
 #include "cncplan/run_error.hpp"
 #include "cncplan/set_point.hpp"
 
@@ -39,8 +39,10 @@ struct ExecutorMemory {
   typename CellFeed<M, B>::Memory feed;
 };
 
-/// An `Executor` without its memory: compiled once for a machine and its blocks, whatever the capacity. What
-/// it does is said there.
+}  // namespace detail
+
+/// An `Executor` without its memory: compiled once for a machine and its blocks, whatever the capacity. A
+/// function that takes an executor of any capacity takes this. What it does is said there.
 template <MachineModel M, BlockModel B>
 class ExecutorCore {
  public:
@@ -51,13 +53,13 @@ class ExecutorCore {
   using Vector = typename SetPoint::Vector;
   using Options = BasicExecutorOptions<Scalar>;
   /// The axes over a part of a tick, by time.
-  using Part = AxisPart<M, B>;
+  using Part = detail::AxisPart<M, B>;
   using JogSpeed = BasicJogSpeed<Scalar, M::axis_count>;
-  using Coordinates = typename Jog<M>::Coordinates;
+  using Coordinates = typename detail::Jog<M>::Coordinates;
   using Core = ExecutorCore;
 
   /// A machine or options that `validate` refuses are told by `error`.
-  ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options);
+  ExecutorCore(const detail::ExecutorMemory<M, B>& memory, const M& machine, const Options& options);
   ExecutorCore(const ExecutorCore&) = delete;
   ExecutorCore& operator=(const ExecutorCore&) = delete;
   ~ExecutorCore() {
@@ -171,13 +173,13 @@ class ExecutorCore {
   /// straight on is gone to without a stop where limits allow; else the tool, or joints that move, come to
   /// rest first. Errors: those of `validate` for the speed, and of `ToolJog::line`; as for `jog`.
   template <class Model = M>  // clang 14 instantiates members of a class whose constraints do not hold
-    requires ToolJogModel<Model>
+    requires detail::ToolJogModel<Model>
   [[nodiscard]] Expected<void> jog_tool_to(const Coordinates& point, const JogSpeed& speed = {}) {
     if (auto ok = begin_jog(); !ok) return ok;
     return jogged(jog_.tool_to(last_.position, point, machine_, speed), false);
   }
   template <class Model = M>
-    requires ToolJogModel<Model>
+    requires detail::ToolJogModel<Model>
   [[nodiscard]] Expected<void> jog_tool_by(const Coordinates& increments, const JogSpeed& speed = {}) {
     if (auto ok = begin_jog(); !ok) return ok;  // says where the axes stand
     const auto from = jog_.tool().target();
@@ -226,10 +228,10 @@ class ExecutorCore {
 
  protected:
   /// It is driven by this from now on, and destroys it.
-  void drive_by(LevelDriver<M, B>& level) { level_ = &level; }
+  void drive_by(detail::LevelDriver<M, B>& level) { level_ = &level; }
 
  private:
-  using Cell = BasicMotionBlock<Scalar>;
+  using Cell = detail::BasicMotionBlock<Scalar>;
   using Tell = FunctionRef<void(const Part&)>;
   static constexpr std::size_t steps_in_tick = 8, steps_in_push = 32;
   static constexpr int ticks_to_go_on = 16;  // in which blocks that are let go are there to be run
@@ -295,24 +297,24 @@ class ExecutorCore {
   void let_go_where_none_come(Scalar period);
   SetPoint advance(Scalar period, const Tell* tell);
   bool find_path();
-  BasicMotionSetPoint<Scalar> play(Scalar period, const Tell* tell);
+  detail::BasicMotionSetPoint<Scalar> play(Scalar period, const Tell* tell);
   SetPoint tick_of_level(Scalar period, const Tell* tell);
   SetPoint tick_of_jog(Scalar period, const Tell* tell);
-  void evaluate(const Cell& cell, const BasicMotionSetPoint<Scalar>& now);
+  void evaluate(const Cell& cell, const detail::BasicMotionSetPoint<Scalar>& now);
   void release();
 
   M machine_;
   Expected<void> options_;  // nothing, or why nothing runs with them
   std::array<int, 3> tool_;
-  LevelDriver<M, B>* level_ = nullptr;  // at another level than `fast`
+  detail::LevelDriver<M, B>* level_ = nullptr;  // at another level than `fast`
   std::int64_t capacity_;
   Scalar quick_stop_share_;
   bool background_;
   Scalar longest_wait_;
-  CellFeed<M, B> feed_;
-  BasicMotionExecutor<Scalar> motion_executor_;
-  BasicElapsed<Scalar> time_;
-  Jog<M> jog_;
+  detail::CellFeed<M, B> feed_;
+  detail::BasicMotionExecutor<Scalar> motion_executor_;
+  detail::BasicElapsed<Scalar> time_;
+  detail::Jog<M> jog_;
   Vector path_place_ = Vector::Zero();  // where the program goes on
   bool has_run_ = false;                // there is such a place, whatever blocks are kept
   bool placed_ = false;                 // it is known where the axes stand
@@ -323,21 +325,22 @@ class ExecutorCore {
   Scalar quiet_{};                      // s for which no block has come, though there was room
   std::int64_t seen_ = 0;               // blocks pushed before the last tick
   SetPoint last_{};
-  ToldWords<Scalar> words_;
+  detail::ToldWords<Scalar> words_;
   Scalar last_period_{};  // s
   Error fault_{};         // of a period
   std::atomic<bool> failed_{false};
-  SharedCount end_;  // blocks of the program, where nothing follows
+  detail::SharedCount end_;  // blocks of the program, where nothing follows
   std::atomic<bool> ended_{false};
 };
 
 template <MachineModel M, BlockModel B>
-ExecutorCore<M, B>::ExecutorCore(const ExecutorMemory<M, B>& memory, const M& machine, const Options& options)
+ExecutorCore<M, B>::ExecutorCore(const detail::ExecutorMemory<M, B>& memory, const M& machine,
+                                 const Options& options)
     : machine_(machine),
       options_(validate(options)),
       tool_(tool_axes(machine)),
       capacity_(static_cast<std::int64_t>(memory.look_ahead)),
-      quick_stop_share_(brake_share(options.quick_stop_share)),
+      quick_stop_share_(detail::brake_share(options.quick_stop_share)),
       background_(options.background),
       longest_wait_(options.longest_wait),
       feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
@@ -473,7 +476,7 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
     return tick_of_jog(period, tell);
   }
   if (level_ != nullptr) return tick_of_level(period, tell);
-  const BasicMotionSetPoint<Scalar> now = play(period, tell);
+  const detail::BasicMotionSetPoint<Scalar> now = play(period, tell);
   std::int64_t reached = -1;
   if (now.block >= 0) {
     const Cell& cell = motion_executor_[now.block];
@@ -487,9 +490,9 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
 }
 
 template <MachineModel M, BlockModel B>
-BasicMotionSetPoint<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Tell* tell) {
+detail::BasicMotionSetPoint<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Tell* tell) {
   if (!words_.begin_tick(feed_) && tell == nullptr) return motion_executor_.tick(period);
-  return motion_executor_.tick(period, [&](const BasicMotionPart<Scalar>& part) {
+  return motion_executor_.tick(period, [&](const detail::BasicMotionPart<Scalar>& part) {
     const Cell& cell = motion_executor_[part.block];
     words_.pass(feed_, cell.block, part.phase, period, last_.words);
     if (tell == nullptr) return;
@@ -501,7 +504,7 @@ template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::tick_of_level(Scalar period, const Tell* tell) -> SetPoint {
   level_->advance(period, last_);
   if (const auto place = level_->place()) path_place_ = *place;
-  if constexpr (ToolJogModel<M>)
+  if constexpr (detail::ToolJogModel<M>)
     if (const B* block = level_->block()) jog_.tool().stand_on(block->path);
   has_run_ = has_run_ || !level_->stands();
   if (tell == nullptr) return last_;
@@ -510,7 +513,7 @@ auto ExecutorCore<M, B>::tick_of_level(Scalar period, const Tell* tell) -> SetPo
 }
 
 template <MachineModel M, BlockModel B>
-void ExecutorCore<M, B>::evaluate(const Cell& cell, const BasicMotionSetPoint<Scalar>& now) {
+void ExecutorCore<M, B>::evaluate(const Cell& cell, const detail::BasicMotionSetPoint<Scalar>& now) {
   const B& block = feed_[cell.block];
   const auto path = feed_.path(cell.block);
   const Scalar s = std::clamp(cell.from + now.along, Scalar(0), path.length());
@@ -526,7 +529,7 @@ void ExecutorCore<M, B>::evaluate(const Cell& cell, const BasicMotionSetPoint<Sc
   last_.along = {feed_.start_length(cell.block) + s, now.velocity, now.acceleration, now.jerk};
   last_.feed = programmed_feed(block);
   path_place_ = axes.position;
-  if constexpr (ToolJogModel<M>) jog_.tool().stand_on(block.path);
+  if constexpr (detail::ToolJogModel<M>) jog_.tool().stand_on(block.path);
   has_run_ = true;
 }
 
@@ -541,8 +544,6 @@ void ExecutorCore<M, B>::release() {
   feed_.release(std::min(words_.blocks(), oldest_kept()));
 }
 
-}  // namespace detail
-
 }  // namespace cncplan
 
-#include "cncplan/detail/executor/executor_jogs-inl.hpp"
+#include "cncplan/executor_jogs-inl.hpp"

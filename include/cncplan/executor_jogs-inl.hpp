@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
-#include "cncplan/detail/executor/executor_core.hpp"
+#include "cncplan/executor_core.hpp"
 
-namespace cncplan::detail {
+namespace cncplan {
 
 template <MachineModel M, BlockModel B>
 Expected<void> ExecutorCore<M, B>::begin_jog() {
@@ -61,7 +61,7 @@ bool ExecutorCore<M, B>::find_path() {
     if (place) path_place_ = *place;
     return place.has_value();
   }
-  const BasicMotionSetPoint<Scalar> now = motion_executor_.place();
+  const detail::BasicMotionSetPoint<Scalar> now = motion_executor_.place();
   if (now.block < 0) return has_run_;
   const Cell& cell = motion_executor_[now.block];
   const auto path = feed_.path(cell.block);
@@ -99,4 +99,4 @@ void ExecutorCore<M, B>::end_jog(Scalar share) {
   goes_back_ = false;
 }
 
-}  // namespace cncplan::detail
+}  // namespace cncplan
