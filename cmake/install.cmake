@@ -1,4 +1,4 @@
-# Installation: the headers, the compiled library and the programs where they were built, the CMake package
+# Installation: the headers, the compiled library, the tools library and the programs where they were built, the CMake package
 # (find_package(cncplan)) and the pkg-config files. Nothing holds the prefix: the installed tree can be moved.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cncplan)
@@ -23,6 +23,8 @@ endforeach()
 
 file(RELATIVE_PATH library_from_package ${CMAKE_INSTALL_PREFIX}/${package_dir}
   ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/${CMAKE_STATIC_LIBRARY_PREFIX}cncplan${CMAKE_STATIC_LIBRARY_SUFFIX})
+file(RELATIVE_PATH tools_from_package ${CMAKE_INSTALL_PREFIX}/${package_dir}
+  ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/${CMAKE_STATIC_LIBRARY_PREFIX}cncplan_tools${CMAKE_STATIC_LIBRARY_SUFFIX})
 configure_package_config_file(cmake/cncplan-config.cmake.in cncplan-config.cmake
   INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(cncplan-config-version.cmake COMPATIBILITY SameMinorVersion)

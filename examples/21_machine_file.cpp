@@ -15,13 +15,16 @@ int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "usage: 21_machine_file MACHINE.toml PROGRAM\n"), 2;
   const auto file = tools::read_machine(argv[1]);
   if (!file) return std::fprintf(stderr, "%s\n", file.error().c_str()), 2;
-  const auto mill = tools::machine_of<Machine<3>>(*file, {30.0, 1000.0, 10000.0});  // of the tool: mm, s
+  const auto mill = tools::machine_of<3>(*file, {30.0, 1000.0, 10000.0});  // limits of the tool: mm, s
+  if (!mill) return std::fprintf(stderr, "%s: %s\n", argv[1], mill.error().c_str()), 2;
 
-  const auto trajectory = plan_file(argv[2], mill, {.dialect = file->dialect});
+  const auto trajectory = plan_file(argv[2], *mill, {.dialect = file->dialect});
   if (!trajectory) return std::fprintf(stderr, "%s\n", to_text(trajectory.error()).c_str()), 2;
 
   std::ofstream table("samples.csv"), page("report.html");
-  if (const auto ok = tools::write_samples(table, *trajectory, *file, 1e-3); !ok) return 1;
+  if (!tools::write_samples(table, *trajectory, *file, 1e-3)) return std::fputs("no samples\n", stderr), 1;
+  if (const auto missing = tools::report::missing_packages(); !missing.empty())
+    return std::fprintf(stderr, "no report: the library was built without%s\n", missing.data()), 1;
   std::ifstream program(argv[2]);
   const std::string text{std::istreambuf_iterator<char>(program), {}};
   const std::string seconds = std::to_string(trajectory->duration()) + " s";

@@ -74,18 +74,18 @@ int run(Options options) {
   if (file.kinematics == Kinematics::mapped) return run_mapped(options, file);
   if (options.serve) serve::check_libraries();
   if (file.kinematics == Kinematics::tire_mold) {
-    auto machine = cncplan::tools::machine_of<Rows>(file, options.limits);
+    auto machine = cncplan::tools::with_axes(Rows{}, file, options.limits);
     machine.tool_length = options.tool_length.value_or(0.0);
     return execute(options, file, machine);
   }
   if (file.kinematics == Kinematics::polar) {
-    auto machine = cncplan::tools::machine_of<Table>(file, options.limits);
+    auto machine = cncplan::tools::with_axes(Table{}, file, options.limits);
     machine.smallest_radius = file.smallest_radius.value_or(machine.smallest_radius);
     return execute(options, file, machine);
   }
   if (file.axes.size() > 3)
-    return execute(options, file, cncplan::tools::machine_of<Mill<6>>(file, options.limits));
-  return execute(options, file, cncplan::tools::machine_of<Mill<3>>(file, options.limits));
+    return execute(options, file, cncplan::tools::with_axes(Mill<6>{}, file, options.limits));
+  return execute(options, file, cncplan::tools::with_axes(Mill<3>{}, file, options.limits));
 }
 
 }  // namespace

@@ -113,11 +113,11 @@ struct MachineFile {
 [[nodiscard]] tl::expected<MachineFile, std::string> parse_machine(const std::string& text,
                                                                    const std::string& name);
 
-/// The machine of a file, whose axes are the first ones of the type, under limits of the tool (mm, s). X, Y
-/// and Z that are not in the file cannot move; other axes that are not there have no words.
+/// The axes of a file as those of a machine, from the first one on, under limits of the tool (mm, s). X, Y
+/// and Z that are not in the file cannot move; other axes that are not there have no words. The file has no
+/// more axes than the machine.
 template <MachineModel M>
-[[nodiscard]] M machine_of(const MachineFile& file, const Limits& limits) {
-  M machine;
+[[nodiscard]] M with_axes(M machine, const MachineFile& file, const Limits& limits) {
   machine.limits = limits;
   machine.rapid_rate = file.rapid_rate.value_or(0.0);
   if (std::isfinite(file.feed_limit)) machine.feed_limit = file.feed_limit;
@@ -127,6 +127,19 @@ template <MachineModel M>
     else
       machine.axes[i] = i < 3 ? Axis{.letter = "XYZ"[i], .low = 0.0, .high = 0.0} : Axis{};
   return machine;
+}
+
+/// The machine of N axes of a file, under limits of the tool (mm, s). Error: a sentence, for a file whose
+/// axes are not the coordinates of programs (`kinematics`, a rotary table), or are more than N.
+template <int N>
+[[nodiscard]] tl::expected<Machine<N>, std::string> machine_of(const MachineFile& file,
+                                                               const Limits& limits) {
+  if (file.kinematics != Kinematics::cartesian)
+    return tl::unexpected<std::string>("the axes of the machine are not the coordinates of its programs");
+  if (file.axes.size() > static_cast<std::size_t>(N))
+    return tl::unexpected("the machine has " + std::to_string(file.axes.size()) + " axes, " +
+                          std::to_string(N) + " at most are planned for");
+  return with_axes(Machine<N>{}, file, limits);
 }
 
 }  // namespace cncplan::tools

@@ -10,8 +10,8 @@
 
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/vector.hpp"
-#include "cncplan_tools/detail/motion_data.hpp"
 #include "cncplan_tools/machine_file.hpp"
+#include "cncplan_tools/motion_data.hpp"
 
 namespace cncplan::tools::report {
 

@@ -18,8 +18,8 @@
 
 namespace cncplan::tools {
 
-/// A report of a trajectory on a machine without a map, whose file says how its axes are called and shown.
-/// `report::write` makes a page of it.
+/// A report of a trajectory on a machine without a map, whose file says how its axes are called and shown:
+/// the machine is one of this file (`machine_of`). `report::write` makes a page of it.
 template <MachineModel M, BlockModel B>
   requires(!MappedModel<M>)
 [[nodiscard]] report::Report report_of(const Trajectory<M, B>& trajectory, const MachineFile& machine,

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "cncplan/gcode/controls.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
@@ -529,7 +530,8 @@ MapEntry table_map(const MachineFile& machine) {
 
 tl::expected<MachineFile, std::string> read_machine(const std::string& file) {
   const auto unreadable = [&] { return tl::unexpected(fmt::format("{}: cannot be read", file)); };
-  if (std::filesystem::is_directory(file)) return unreadable();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) return unreadable();
   try {
     return interpret(file, toml::parse_file(file));
   } catch (const toml::parse_error& error) {

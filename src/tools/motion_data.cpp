@@ -1,4 +1,4 @@
-#include "cncplan_tools/detail/motion_data.hpp"
+#include "cncplan_tools/motion_data.hpp"
 
 #include <algorithm>
 #include <array>

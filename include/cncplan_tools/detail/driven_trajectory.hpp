@@ -9,7 +9,7 @@
 #include "cncplan/tool.hpp"
 #include "cncplan_tools/detail/driven.hpp"
 #include "cncplan_tools/detail/limits_of_phases.hpp"
-#include "cncplan_tools/detail/motion_data.hpp"
+#include "cncplan_tools/motion_data.hpp"
 
 namespace cncplan::tools::report {
 

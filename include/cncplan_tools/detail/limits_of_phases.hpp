@@ -18,7 +18,7 @@ template <class T>
 [[nodiscard]] double wanted_speed_of(const T& trajectory, std::size_t piece) {
   const auto& own = trajectory.program()[trajectory.block_of(piece)];
   const auto& machine = trajectory.machine();
-  return detail::requested_speed(own, machine, length_of(own.path, machine));
+  return cncplan::detail::requested_speed(own, machine, length_of(own.path, machine));
 }
 
 namespace detail {

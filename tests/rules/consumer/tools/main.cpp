@@ -11,10 +11,11 @@ int main() {
   if (wrong || wrong.error() != "wrong.toml:1:8: error: unit must be \"mm\" or \"inch\"")
     return std::puts("a wrong file is not told"), 1;
 
-  const auto file = tools::parse_machine("[[axis]]\nname = \"X\"\n[[axis]]\nname = \"Y\"\n", "mill.toml");
+  const auto file = tools::parse_machine("[[axis]]\nletter = \"X\"\n[[axis]]\nletter = \"Y\"\n", "mill.toml");
   if (!file) return std::puts(file.error().c_str()), 1;
-  const auto mill = tools::machine_of<Machine<3>>(*file, {30.0, 1000.0, 10000.0});
-  const auto trajectory = plan_text("G1 X10 F600\nY10\n", mill, {});
+  const auto mill = tools::machine_of<3>(*file, {30.0, 1000.0, 10000.0});
+  if (!mill || tools::machine_of<1>(*file, {30.0, 1000.0, 10000.0})) return std::puts("number of axes"), 1;
+  const auto trajectory = plan_text("G1 X10 F600\nY10\n", *mill, {});
   if (!trajectory) return std::puts(to_text(trajectory.error()).c_str()), 1;
 
   std::ostringstream table, page;
