@@ -33,13 +33,13 @@ auto cells_of(const std::vector<bench::Block>& blocks) {
 bool look_ahead(const detail::BasicCells<double>& cells, std::vector<detail::ConstrainedJunction>& junctions,
                 Spans& spans) {
   spans.clear();
-  junctions.resize(cells.segments.size() + 1);
-  return detail::plan_spans(std::span<const detail::SegmentLimits>(cells.segments), profile::SevenPhase{},
-                            std::span(junctions), std::back_inserter(spans))
+  junctions.resize(cells.segment_limits.size() + 1);
+  return detail::plan_spans(std::span<const detail::SegmentLimits>(cells.segment_limits),
+                            profile::SevenPhase{}, std::span(junctions), std::back_inserter(spans))
       .has_value();
 }
 
-// Caps and spans over blocks in memory. An item is a block.
+// Cells and spans over blocks in memory. An item is a block.
 void plan_ball(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
   std::vector<detail::ConstrainedJunction> junctions;
@@ -52,7 +52,7 @@ void plan_ball(benchmark::State& state) {
 }
 BENCHMARK(plan_ball)->Name("plan/ball")->Unit(benchmark::kMillisecond);
 
-// The first half of it: joints, travel, and limits along cells. An item is a block.
+// The first half of it: junctions, travel, and limits along cells. An item is a block.
 void plan_ball_cells(benchmark::State& state) {
   const auto blocks = ball_blocks(state);
   for (auto _ : state) benchmark::DoNotOptimize(cells_of(blocks));
@@ -72,7 +72,7 @@ void plan_ball_look_ahead(benchmark::State& state) {
 }
 BENCHMARK(plan_ball_look_ahead)->Name("plan/ball/look_ahead")->Unit(benchmark::kMillisecond);
 
-// Programs whose segments, feeds and limits change all the time. An item is a block.
+// Programs whose caps, feeds and limits change all the time. An item is a block.
 void plan_random(benchmark::State& state) {
   test::Random random(1);
   std::vector<std::vector<detail::SegmentLimits>> programs;

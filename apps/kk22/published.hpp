@@ -25,9 +25,9 @@ inline MillTrajectory published_plan(const std::vector<MillBlock>& blocks, Lengt
                        : cncplan::detail::make_cells<published::WholeBlocks>(all, mill, rules))
                    .value();
   if (planar) published::to_plane(all, cells);
-  std::vector<double> speeds(cells.segments.size() + 1);
+  std::vector<double> speeds(cells.segment_limits.size() + 1);
   std::vector<cncplan::detail::Span> spans;
-  published::plan_blocks(std::span<const cncplan::detail::SegmentLimits>(cells.segments),
+  published::plan_blocks(std::span<const cncplan::detail::SegmentLimits>(cells.segment_limits),
                          cncplan::profile::FivePhase{}, std::span(speeds), std::back_inserter(spans))
       .value();
   auto phases = cncplan::detail::block_phases(std::span<const cncplan::detail::Span>(spans), cells);

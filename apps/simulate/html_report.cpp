@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cncplan_tools/detail/channels.hpp"
-#include "cncplan_tools/detail/motion_data.hpp"
+#include "cncplan_tools/motion_data.hpp"
 #include "deviation.hpp"
 #include "events.hpp"
 #include "path_distance.hpp"

@@ -52,17 +52,17 @@ std::vector<cncplan::detail::Span> spans_of(const Options& options,
 
 std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
     const Options& options, const cncplan::detail::BasicCells<double>& cells) {
-  const auto spans = spans_of(options, cells.segments);
+  const auto spans = spans_of(options, cells.segment_limits);
   return cncplan::detail::block_phases(std::span<const cncplan::detail::Span>(spans), cells);
 }
 
-std::pmr::vector<cncplan::BasicPiecePhase<double>> played(
+std::pmr::vector<cncplan::BasicPiecePhase<double>> simulated(
     const Options& options, const cncplan::detail::BasicCells<double>& cells,
     const std::vector<cncplan::detail::MotionBlock>& blocks, const std::vector<Event>& events) {
   std::vector<cncplan::detail::TimedRequest> requests;
   for (const Event& event : events)
     requests.push_back(
-        {event.time, [&event](cncplan::detail::MotionExecutor& player) { ask(player, event); }});
+        {event.time, [&event](cncplan::detail::MotionExecutor& executor) { ask(executor, event); }});
   auto phases = cncplan::detail::simulate_motion(
       std::span<const cncplan::detail::MotionBlock>(blocks), std::span<const std::size_t>(cells.blocks),
       std::span<const cncplan::detail::TimedRequest>(requests), options.period, most_periods);

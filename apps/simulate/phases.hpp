@@ -17,7 +17,7 @@ namespace simulate {
     const Options& options, const cncplan::detail::BasicCells<double>& cells);
 /// The program played: nothing is known of the events before they come, but how far the feed goes. `blocks`:
 /// the cells as a motion executor takes them. Throws `Failure` for what does not end.
-[[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> played(
+[[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> simulated(
     const Options& options, const cncplan::detail::BasicCells<double>& cells,
     const std::vector<cncplan::detail::MotionBlock>& blocks, const std::vector<Event>& events);
 

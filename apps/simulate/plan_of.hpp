@@ -46,11 +46,11 @@ template <class M>
 [[nodiscard]] std::size_t count_limited(const cncplan::detail::BasicCells<double>& cells, const M& machine,
                                         const Program<M>& program) {
   std::size_t count = 0;
-  for (std::size_t i = 1; i < cells.segments.size(); ++i) {
+  for (std::size_t i = 1; i < cells.segment_limits.size(); ++i) {
     const std::size_t before = cells.blocks[i - 1], after = cells.blocks[i];
     if (program.motion_of[before] != program.motion_of[after] &&
-        cells.segments[i].entry < std::min(requested_speed(program.blocks[before], machine),
-                                           requested_speed(program.blocks[after], machine)))
+        cells.segment_limits[i].entry < std::min(requested_speed(program.blocks[before], machine),
+                                                 requested_speed(program.blocks[after], machine)))
       ++count;
   }
   return count;
@@ -139,7 +139,7 @@ template <class M>
     };
     const auto blocks =
         cncplan::detail::motion_blocks(std::span<const Block>(program.blocks), cells, feed_of);
-    phases = played(options, cells, blocks, events);
+    phases = simulated(options, cells, blocks, events);
   } else {
     const auto cells = cells_of(options, machine, program, std::span<const Block>(driven), smoothing);
     result.junctions_limited = count_limited(cells, machine, program);

@@ -30,9 +30,9 @@ struct SetPoint {
 /// The most that a plan asks for.
 struct PlanPeaks {
   PerAxis velocity, acceleration, jerk;  ///< of the axes, inside blocks
-  PerAxis corner_velocity_step;          ///< of the axes, at joints
+  PerAxis corner_velocity_step;          ///< of the axes, at junctions
   cncplan::Limits tool, along;
-  std::size_t acceleration_jumps{};  ///< joints
+  std::size_t acceleration_jumps{};  ///< junctions
 };
 
 /// Speeds of a block, and s from when it first moves to when it last does.

@@ -25,11 +25,11 @@ class ExecutorRoom {
   static constexpr std::size_t room = 2 * capacity;
 
   [[nodiscard]] ExecutorMemory<M, B> memory() {
-    return {capacity, {played_, ahead_, junctions_, spare_junctions_}, feed_.memory()};
+    return {capacity, {blocks_, ahead_, junctions_, spare_junctions_}, feed_.memory()};
   }
 
  private:
-  std::array<BasicMotionBlock<S>, room> played_{};
+  std::array<BasicMotionBlock<S>, room> blocks_{};
   std::array<BasicSegmentLimits<S>, capacity> ahead_{};
   std::array<BasicConstrainedJunction<S>, capacity + 1> junctions_{};
   std::array<BasicConstrainedJunction<S>, capacity + 1> spare_junctions_{};
@@ -41,8 +41,8 @@ class ExecutorRoom {
 /// Runs a program on a machine: blocks go in, and each tick gives a set point. It is always on a plan that
 /// ends at rest on blocks that it has; a request is met by a new plan from the state of that instant, at the
 /// next tick. Whatever is asked for and however often, the tool and every axis keep their limits inside
-/// blocks, and at joints that are smoothed; at another one the velocity jumps, at no more than `plan_blocks`
-/// allows.
+/// blocks, and at junctions that are smoothed; at another one the velocity jumps, at no more than
+/// `plan_blocks` allows.
 ///
 /// Within a tolerance lines are merged and the path is smoothed, as by `plan_blocks`; no request changes it.
 /// What a block's path is depends on the blocks that follow: half of `capacity`, 66 at most, hold it back

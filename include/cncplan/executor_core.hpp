@@ -297,7 +297,7 @@ class ExecutorCore {
   void let_go_where_none_come(Scalar period);
   SetPoint advance(Scalar period, const Tell* tell);
   bool find_path();
-  detail::BasicMotionSetPoint<Scalar> play(Scalar period, const Tell* tell);
+  detail::BasicMotionSetPoint<Scalar> tick_of_program(Scalar period, const Tell* tell);
   SetPoint tick_of_level(Scalar period, const Tell* tell);
   SetPoint tick_of_jog(Scalar period, const Tell* tell);
   void evaluate(const Cell& cell, const detail::BasicMotionSetPoint<Scalar>& now);
@@ -476,7 +476,7 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
     return tick_of_jog(period, tell);
   }
   if (level_ != nullptr) return tick_of_level(period, tell);
-  const detail::BasicMotionSetPoint<Scalar> now = play(period, tell);
+  const detail::BasicMotionSetPoint<Scalar> now = tick_of_program(period, tell);
   std::int64_t reached = -1;
   if (now.block >= 0) {
     const Cell& cell = motion_executor_[now.block];
@@ -490,7 +490,8 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
 }
 
 template <MachineModel M, BlockModel B>
-detail::BasicMotionSetPoint<typename M::Scalar> ExecutorCore<M, B>::play(Scalar period, const Tell* tell) {
+detail::BasicMotionSetPoint<typename M::Scalar> ExecutorCore<M, B>::tick_of_program(Scalar period,
+                                                                                    const Tell* tell) {
   if (!words_.begin_tick(feed_) && tell == nullptr) return motion_executor_.tick(period);
   return motion_executor_.tick(period, [&](const detail::BasicMotionPart<Scalar>& part) {
     const Cell& cell = motion_executor_[part.block];

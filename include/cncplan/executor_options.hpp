@@ -25,9 +25,9 @@ struct BasicExecutorOptions {
   S tolerance = S(0.01);
   Level level{};                                 ///< of smoothing
   S rotary_tolerance = S(8.726646259971648e-4);  ///< rad, > 0: the same for rotary axes; 0.05 degrees
-  /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
+  /// mm, >= 0: junctions that are left exact are passed as fast as ones rounded within it would be
   S junction_deviation = S(0.01);
-  bool exact_between_rapids_and_feeds{};  ///< keeps the joints of rapids with feed moves exact
+  bool exact_between_rapids_and_feeds{};  ///< keeps the junctions of rapids with feed moves exact
   /// s at rest for which blocks are held back for the ones that follow them; and s without a new block, while
   /// there is room for one, after which they are let go before the motion slows down for want of blocks
   S longest_wait = S(0.05);

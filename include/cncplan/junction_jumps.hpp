@@ -1,4 +1,4 @@
-// What jumps at the joints of a trajectory's blocks (set-up).
+// What jumps at the junctions of a trajectory's blocks (set-up).
 #pragma once
 
 #include <concepts>
@@ -10,14 +10,15 @@
 
 namespace cncplan {
 
-/// What jumps at the joints between pieces.
+/// What jumps at the junctions between pieces.
 template <std::floating_point S, int N>
 struct BasicJunctionJumps {
   VectorN<S, N> velocity = VectorN<S, N>::Zero();  ///< of each axis, at most
-  std::size_t accelerations{};  ///< joints that are passed in motion and where some axis' acceleration jumps
+  std::size_t
+      accelerations{};  ///< junctions that are passed in motion and where some axis' acceleration jumps
 };
 
-/// Looks at every joint; what rounding leaves is no jump: of a velocity 1e-6 mm/s, of an acceleration 1e-3
+/// Looks at every junction; what rounding leaves is no jump: of a velocity 1e-6 mm/s, of an acceleration 1e-3
 /// mm/s^2 (on pieces of a micrometre it comes near that).
 template <MachineModel M, BlockModel B>
 [[nodiscard]] BasicJunctionJumps<typename M::Scalar, M::axis_count> junction_jumps(
@@ -45,7 +46,7 @@ template <MachineModel M, BlockModel B>
   return jumps;
 }
 
-/// The largest jump of any axis' velocity at a joint between two blocks.
+/// The largest jump of any axis' velocity at a junction between two blocks.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] typename M::Scalar corner_velocity_step(const Trajectory<M, B>& trajectory) {
   return junction_jumps(trajectory).velocity.maxCoeff();

@@ -15,7 +15,7 @@
 
 namespace cncplan {
 
-/// Largest magnitudes inside blocks; what jumps at a joint between two of them is not in it.
+/// Largest magnitudes inside blocks; what jumps at a junction between two of them is not in it.
 template <std::floating_point S, int N>
 struct BasicPeaks {
   VectorN<S, N> velocity = VectorN<S, N>::Zero();

@@ -86,7 +86,7 @@ template <MachineModel M, BlockModel B>
 /// of length changes. In a run that has rapids and feed moves the tool's velocity may be that of rapids.
 /// Corners that are left exact are passed as fast as ones rounded within the junction deviation would be,
 /// where the velocity jumps. Under a map the curve is one in the program's coordinates, the level `fast` is
-/// `good`, and what has no curve, as rapids straight in the joints, rests at its corners.
+/// `good`, and what has no curve, as rapids straight in the junctions, rests at its corners.
 ///
 /// Where a level cannot be had, a lower one takes its place, and `fallbacks` of the trajectory says where and
 /// why: `FallbackReason` lists it. Errors: those of `validate` for the machine and the options; a block that
@@ -103,8 +103,8 @@ template <BlockRange R, MachineModel M>
   return tl::unexpected(detail::interrupted(at, "planning"));
 }
 
-/// The same on the exact path, with a policy of one's own for joints (`JunctionPolicy`) and a law for changes
-/// of speed.
+/// The same on the exact path, with a policy of one's own for junctions (`JunctionPolicy`) and a law for
+/// changes of speed.
 template <BlockRange R, MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
           profile::RampLaw<typename M::Scalar> Law = profile::SevenPhase>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(R&& blocks, const M& machine,

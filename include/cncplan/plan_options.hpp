@@ -10,7 +10,7 @@
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/language/find_file.hpp"
 #include "cncplan/orientation.hpp"
-#include "cncplan/path/detail/arc_tolerance.hpp"
+#include "cncplan/path/arc_tolerance.hpp"
 #include "cncplan/reserve.hpp"
 #include "cncplan/smooth_level.hpp"
 
@@ -23,7 +23,7 @@ struct PlanOptions {
   double tolerance = 0.01;
   SmoothLevel level = SmoothLevel::best;           ///< how closely smoothing comes to the fastest motion
   double rotary_tolerance = 8.726646259971648e-4;  ///< rad, > 0: the same for rotary axes; 0.05 degrees
-  /// mm, >= 0: joints that are left exact are passed as fast as ones rounded within it would be
+  /// mm, >= 0: junctions that are left exact are passed as fast as ones rounded within it would be
   double junction_deviation = 0.01;
   /// In [0, 1): the share of the limits of acceleration and jerk that the plan leaves for holds. The more,
   /// the sooner a hold comes, and the longer the program takes
@@ -31,7 +31,7 @@ struct PlanOptions {
   /// How many times the least that a brake takes a hold may take, > 1; 0: no plan for it. At the levels
   /// `good` and `best` the plan is slower where a hold would come later.
   double hold_factor{};
-  bool exact_between_rapids_and_feeds{};    ///< keeps the joints of rapids with feed moves exact
+  bool exact_between_rapids_and_feeds{};    ///< keeps the junctions of rapids with feed moves exact
   std::array<double, 9> start{};            ///< where the motion starts, program coordinates, mm and rad
   std::optional<gcode::Dialect> dialect{};  ///< tables and words of the machine; its own axes if not given
   path::ArcTolerance<double> arcs{};        ///< how exact programmed arcs must be

@@ -11,7 +11,7 @@
 #include "blocks.hpp"
 #include "cncplan/executor_options.hpp"
 #include "cncplan/executor_state.hpp"
-#include "cncplan/jog.hpp"
+#include "cncplan/jog_speed.hpp"
 #include "cncplan/plan_options.hpp"
 #include "cncplan/program_error.hpp"
 #include "cncplan/set_point.hpp"

@@ -18,9 +18,9 @@ namespace {
 
 const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
-junction::Side side(const path::Segment<3>& segment, detail::PathEnd joint) {
+junction::Side side(const path::Segment<3>& segment, detail::PathEnd junction) {
   const Block<3> block{.path = segment};
-  return detail::tool_side(block.path, junction::Kind::line, detail::PathEnds(block.path), joint,
+  return detail::tool_side(block.path, junction::Kind::line, detail::PathEnds(block.path), junction,
                            tool_axes(mill));
 }
 
@@ -30,14 +30,14 @@ std::vector<detail::SegmentLimits> segments(const std::vector<Block<3>>& blocks,
   const auto cells =
       detail::make_cells(std::span(blocks), mill, detail::JunctionRules<double, Policy>{policy, -1, -1});
   REQUIRE(cells);
-  return {cells->segments.begin(), cells->segments.end()};
+  return {cells->segment_limits.begin(), cells->segment_limits.end()};
 }
 
 // Gives the joint's limits back, to see what policies are shown.
 struct Shown {
   double Limits::*member;
-  double speed_sq(const junction::Geometry& joint) const {
-    return joint.limits.*member * (joint.limits.*member);
+  double speed_sq(const junction::Geometry& junction) const {
+    return junction.limits.*member * (junction.limits.*member);
   }
 };
 
@@ -154,12 +154,12 @@ TEST_CASE("where the tool goes straight on and turns, its axes are held to a cor
   auto& table = tables.axes[4];
   table.kind = AxisKind::rotary;
   table.acceleration = 20;
-  detail::BasicBlockJunction<double, 5> joint;
-  joint.tool.before.tangent = joint.tool.after.tangent = Vector3(1, 0, 0);
-  joint.before << 1, 0, 0, 0, 0.01;
-  joint.after << 1, 0, 0, 0, 0.13;
+  detail::BasicBlockJunction<double, 5> junction;
+  junction.tool.before.tangent = junction.tool.after.tangent = Vector3(1, 0, 0);
+  junction.before << 1, 0, 0, 0, 0.01;
+  junction.after << 1, 0, 0, 0, 0.13;
   // A blend of half length l turns the axis by l 0.12 / 4 = 1e-3 rad at most, and v^2 0.12 / (2 l) = 20.
-  CHECK(detail::axis_corner_speed(joint, tables, 0.01, 1e-3) ==
+  CHECK(detail::axis_corner_speed(junction, tables, 0.01, 1e-3) ==
         Approx(std::sqrt(2 * (4 * 1e-3 / 0.12) * 20 / 0.12)));
   // Without angles among the coordinates the joints turn as the tool does.
   MappedMachine<kinematics::PolarMap> polar;

@@ -18,7 +18,7 @@ using namespace cncplan;
 
 namespace {
 
-using Level = detail::BasicLimitSmoothing<double>;
+using Smoothing = detail::BasicLimitSmoothing<double>;
 
 constexpr Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 1e4}};
 
@@ -44,7 +44,7 @@ std::vector<Block<3>> rings(double radius, int count, double side) {
 TEST_CASE("limits made alike are no higher, and lose no more than is said") {
   test::Random random;
   for (int run = 0; run < 200; ++run) {
-    Level level;
+    Smoothing level;
     Limits before{};
     Limits center{random.log_uniform(1, 100), random.log_uniform(10, 1e4), random.log_uniform(1e3, 1e6)};
     const double spread = random.log_uniform(1.001, 3.0);
@@ -64,7 +64,7 @@ TEST_CASE("limits made alike are no higher, and lose no more than is said") {
       if (limits.velocity < own.velocity) {
         REQUIRE(limits.velocity == before.velocity);
         lost += length / limits.velocity - length / own.velocity;
-        REQUIRE(lost <= Level::loss * std::sqrt(own.velocity / own.jerk) * (1 + 1e-12));
+        REQUIRE(lost <= Smoothing::loss * std::sqrt(own.velocity / own.jerk) * (1 + 1e-12));
       } else {
         lost = 0;
       }
@@ -74,7 +74,7 @@ TEST_CASE("limits made alike are no higher, and lose no more than is said") {
 }
 
 TEST_CASE("limits stay the same while those that come serve them, until a motion begins") {
-  Level level;
+  Smoothing level;
   const Limits low{20, 400, 5000};
   CHECK(level.next(low, 0.1) == low);
   CHECK(level.next({20.001, 700, 9000}, 0.1) == low);
@@ -91,12 +91,12 @@ TEST_CASE("rings of short lines have about a cell a block, and few junctions") {
     const auto smoothing = detail::smoothing(std::span(blocks), mill, {0.01, 1e-3, false});
     const detail::JunctionRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
     const auto cells = detail::make_cells(std::span(blocks), mill, rules, smoothing).value();
-    CHECK(10 * cells.segments.size() < 11 * blocks.size());
-    std::vector<detail::ConstrainedJunction> junctions(cells.segments.size() + 1);
-    CHECK(detail::make_junctions(std::span<const detail::SegmentLimits>(cells.segments), 0.0,
+    CHECK(10 * cells.segment_limits.size() < 11 * blocks.size());
+    std::vector<detail::ConstrainedJunction> junctions(cells.segment_limits.size() + 1);
+    CHECK(detail::make_junctions(std::span<const detail::SegmentLimits>(cells.segment_limits), 0.0,
                                  std::span(junctions)) < blocks.size() / 4);
     double length = 0;
-    for (const detail::SegmentLimits& cell : cells.segments) length += cell.length;
+    for (const detail::SegmentLimits& cell : cells.segment_limits) length += cell.length;
     double programmed = 0;
     for (const Block<3>& block : blocks) programmed += block.path.length();
     CHECK_THAT(length, Catch::Matchers::WithinRel(programmed, 1e-12));

@@ -16,7 +16,7 @@ namespace {
 // Blocks of one cell each.
 detail::BasicCells<double> cells_of(const std::vector<detail::SegmentLimits>& segments) {
   detail::BasicCells<double> cells;
-  cells.segments.assign(segments.begin(), segments.end());
+  cells.segment_limits.assign(segments.begin(), segments.end());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     cells.blocks.push_back(i);
     if (segments[i].pause > 0.0) cells.pauses.push_back({i + 1, i, segments[i].pause});

@@ -1,4 +1,4 @@
-// Random programs as look-ahead sees them: lengths, segments, limits, pauses.
+// Random programs as look-ahead sees them: lengths, caps, limits, pauses.
 #pragma once
 
 #include <algorithm>

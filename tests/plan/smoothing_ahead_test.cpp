@@ -115,5 +115,5 @@ TEST_CASE("a block is known once those are there that can act on it, or none wil
   finish(ahead);
   CHECK(ahead.known() == 6);
   CHECK(ahead.junction_mode(4) == detail::JunctionMode::stop);
-  CHECK(ahead.junction_mode(5) == detail::JunctionMode::blend);
+  CHECK(ahead.junction_mode(5) == detail::JunctionMode::smooth);
 }

@@ -93,7 +93,7 @@ TEST_CASE("random programs break no cap, no feed and no limit, and join without 
   CHECK(worst.misplaced == 0);
 }
 
-TEST_CASE("spans are never slower than block by block under the same segments") {
+TEST_CASE("spans are never slower than block by block under the same caps") {
   test::Random random;
   double worst = 0.0, saved = 0.0;
   std::vector<detail::SegmentLimits> where;

@@ -105,7 +105,7 @@ TEST_CASE("plans block by block break nothing, under both laws") {
 }
 
 TEST_CASE("a chain of ramps up and down") {
-  // 1 mm blocks without segments: from each junction the next is just within reach
+  // 1 mm blocks without caps: from each junction the next is just within reach
   const Limits limits{1000.0, 1e6, 10000.0};
   std::vector<detail::SegmentLimits> blocks(6, {1.0, 1e9, limits, 0.0});
   blocks.front().entry = 0.0;

@@ -26,14 +26,14 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   const detail::JunctionRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};
   auto cells = detail::make_cells<published::ToolLimits>(all, mill, rules).value();
   published::to_plane(all, cells);
-  REQUIRE(cells.segments.size() == 8);
+  REQUIRE(cells.segment_limits.size() == 8);
   for (std::size_t i = 0; i < 6; ++i)
-    CHECK(cells.segments[i].length == Approx(10 * std::numbers::pi).epsilon(1e-14));
-  CHECK(cells.segments[6].length == 10);
-  std::vector<double> speeds(cells.segments.size() + 1);
+    CHECK(cells.segment_limits[i].length == Approx(10 * std::numbers::pi).epsilon(1e-14));
+  CHECK(cells.segment_limits[6].length == 10);
+  std::vector<double> speeds(cells.segment_limits.size() + 1);
   std::vector<detail::Span> spans;
-  REQUIRE(published::plan_blocks(std::span<const detail::SegmentLimits>(cells.segments), profile::FivePhase{},
-                                 std::span(speeds), std::back_inserter(spans)));
+  REQUIRE(published::plan_blocks(std::span<const detail::SegmentLimits>(cells.segment_limits),
+                                 profile::FivePhase{}, std::span(speeds), std::back_inserter(spans)));
   auto phases = detail::block_phases(std::span<const detail::Span>(spans), cells);
   published::to_space(all, std::span(phases));
   const Trajectory<Machine<3>, ProgramBlock<Machine<3>>> planned(mill, {blocks.begin(), blocks.end()},

@@ -3,7 +3,7 @@
 #   cmake -DSOURCE=. -P boundary.cmake
 cmake_minimum_required(VERSION 3.22)
 file(GLOB files RELATIVE ${SOURCE} ${SOURCE}/examples/*.cpp ${SOURCE}/examples/papers/*.cpp ${SOURCE}/python/examples/*.py ${SOURCE}/README.md
-  ${SOURCE}/docs/*.md ${SOURCE}/tests/rules/components/*.cpp ${SOURCE}/tests/rules/consumer/*.cpp)
+  ${SOURCE}/docs/*.md ${SOURCE}/tests/rules/components/*.cpp ${SOURCE}/tests/rules/consumer/*.cpp ${SOURCE}/tests/rules/consumer/*/*.cpp)
 set(found FALSE)
 foreach(file IN LISTS files)
   file(STRINGS ${SOURCE}/${file} lines)

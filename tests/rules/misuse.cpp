@@ -123,9 +123,9 @@ struct MotionsOnly {
 };
 auto sink = gcode::read_program(gcode::TextLines(""), reader, MotionsOnly{});
 
-// expect NoTurning, SteppablePath: path.next_reversal(axis, x)
-struct NoTurning : NoInverse {};
-auto steppable = step::block_edges(NoTurning{}, step::PhaseClock(phases), steps_per_mm);
+// expect NoReversal, SteppablePath: path.next_reversal(axis, x)
+struct NoReversal : NoInverse {};
+auto steppable = step::block_edges(NoReversal{}, step::PhaseClock(phases), steps_per_mm);
 
 // expect BasicProfile, Clock: clock.lengths_to_times(lengths)
 auto clock_of_profile = step::block_edges(line, travel, steps_per_mm);

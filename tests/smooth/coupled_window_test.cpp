@@ -38,7 +38,7 @@ struct Example {
       cell.weights = path::cubic_weights<double>(
           {length(i), length(i + 1), length(i + 2), length(i + 3), length(i + 4)});
       cell.third = Vector3(0.3, -1, 2);
-      cell.barrier_weight = 0.1;
+      cell.jerk_weight = 0.1;
       cell.first_sample = samples.size();
       for (const double share : {0.0, 0.5}) {
         BasicBandSample<double, 3> sample;

@@ -36,8 +36,8 @@ TEST_CASE("the use of limits by a phase is bounded, and not by much too high") {
     const auto pair =
         phases_between(h, v, random.uniform(-0.2, 0.2) * v / T, next, random.uniform(-0.2, 0.2) * v / T);
     for (const Phase& phase : pair) {
-      const Use bound = utilisation_of(phase, cell, limits);
-      Use most;
+      const Utilisation bound = utilisation_of(phase, cell, limits);
+      Utilisation most;
       for (int k = 0; k <= 200; ++k) {
         const State along = phase.at(phase.duration * k / 200);
         const PathPoint<VectorN<double, 4>> at{VectorN<double, 4>::Zero(), cell.first_at(along.position),
@@ -49,7 +49,7 @@ TEST_CASE("the use of limits by a phase is bounded, and not by much too high") {
                       std::max(tool(axes.acceleration) / 1000, std::abs(axes.acceleration[2]) / 300),
                       std::max(tool(axes.jerk) / 1e4, std::abs(axes.jerk[2]) / 3e3)});
       }
-      for (const auto part : {&Use::velocity, &Use::acceleration, &Use::jerk}) {
+      for (const auto part : {&Utilisation::velocity, &Utilisation::acceleration, &Utilisation::jerk}) {
         below = std::max(below, most.*part / (bound.*part) - 1);
         above = std::max(above, bound.*part / (most.*part) - 1);
       }
@@ -102,11 +102,11 @@ TEST_CASE("what is not known of the third derivative is in the bounds") {
     const auto pair =
         phases_between(h, v, random.uniform(-0.2, 0.2) * v / T, next, random.uniform(-0.2, 0.2) * v / T);
     for (const Phase& phase : pair) {
-      const Use bound = utilisation_of(phase, cell, limits);
+      const Utilisation bound = utilisation_of(phase, cell, limits);
       SpeedCell<2> known = cell;
       known.spread.setZero();
       least_of_spread = std::min(least_of_spread, utilisation_of(phase, known, limits).jerk / bound.jerk);
-      Use most;
+      Utilisation most;
       for (int k = 0; k <= 100; ++k) {
         const State along = phase.at(phase.duration * k / 100);
         const double x = along.position;
@@ -123,7 +123,7 @@ TEST_CASE("what is not known of the third derivative is in the bounds") {
                       std::max(axes.acceleration.norm() / 1000, std::abs(axes.acceleration[1]) / 300),
                       std::max(axes.jerk.norm() / 1e4, std::abs(axes.jerk[1]) / 3e3)});
       }
-      for (const auto part : {&Use::velocity, &Use::acceleration, &Use::jerk})
+      for (const auto part : {&Utilisation::velocity, &Utilisation::acceleration, &Utilisation::jerk})
         below = std::max(below, most.*part / (bound.*part) - 1);
     }
   }

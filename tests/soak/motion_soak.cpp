@@ -30,7 +30,7 @@ int soak(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
   std::uint64_t ticks = 0, blocks = 0, requests = 0, unfinished = 0;
   for (std::uint64_t sequence = first; sequence < first + count; ++sequence) {
     test::Random random(seed + sequence * 0x9e3779b97f4a7c15);
-    const auto program = test::random_played(random, random.integer(1, 30));
+    const auto program = test::random_motion_program(random, random.integer(1, 30));
     const int gap = random.integer(0, 3) == 0 ? 1 : random.integer(2, 100);
     const auto window = static_cast<std::size_t>(random.integer(4, 64));
     const auto faults = test::run(program, random, gap, window, 1000);

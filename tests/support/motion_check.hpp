@@ -61,7 +61,7 @@ inline path::Segment<3> random_segment(Random& random, const Vector3& start, dou
 }
 
 /// Short and long lines, arcs and helices, slow and free junctions, some with lower limits.
-inline MotionProgram random_played(Random& random, int count) {
+inline MotionProgram random_motion_program(Random& random, int count) {
   MotionProgram program;
   const double longest = random.log_uniform(0.05, 10.0);
   const double deviation = random.coin() ? 0.01 : 1.0;
@@ -86,14 +86,14 @@ inline MotionProgram random_played(Random& random, int count) {
     const double feed = random.uniform(5.0, 30.0);
     const bool rapid = random.integer(0, 6) == 0;
     double from = 0.0;
-    for (std::size_t k = 0; k < cells.segments.size(); ++k) {
+    for (std::size_t k = 0; k < cells.segment_limits.size(); ++k) {
       if (cells.blocks[k] + 1 != pair.size()) continue;
       detail::MotionBlock cell{
-          .segment = cells.segments[k], .feed = feed, .rapid = rapid, .line = block.line};
-      if (slowed && from == 0.0) cell.segment.entry = std::min(cell.segment.entry, slow);
+          .segment_limits = cells.segment_limits[k], .feed = feed, .rapid = rapid, .line = block.line};
+      if (slowed && from == 0.0) cell.segment_limits.entry = std::min(cell.segment_limits.entry, slow);
       program.blocks.push_back(cell);
       program.motions.push_back({block.path, from, machine.limits});
-      from += cells.segments[k].length;
+      from += cells.segment_limits[k].length;
     }
   }
   return program;
@@ -131,7 +131,7 @@ inline MotionFaults run(const MotionProgram& of, Random& random, int mean_gap, s
   std::vector<detail::ConstrainedJunction> junctions(window + 1), spare(window + 1);
   detail::MotionExecutor executor({blocks, ahead, junctions, spare}, 16);
   std::vector<double> start(program.size() + 1);
-  for (std::size_t i = 0; i < program.size(); ++i) start[i + 1] = start[i] + program[i].segment.length;
+  for (std::size_t i = 0; i < program.size(); ++i) start[i + 1] = start[i] + program[i].segment_limits.length;
 
   MotionFaults faults;
   const auto grow = [](double& worst, double value) { worst = std::max(worst, value); };
@@ -177,21 +177,21 @@ inline MotionFaults run(const MotionProgram& of, Random& random, int mean_gap, s
     const auto high = static_cast<std::size_t>(std::max(before.block, now.block));
     // it may have been in the block beside: where it turned round within the tick, or but for rounding
     const auto at_junction = [&](const detail::MotionSetPoint& at) {
-      const double length = program[static_cast<std::size_t>(at.block)].segment.length;
+      const double length = program[static_cast<std::size_t>(at.block)].segment_limits.length;
       return std::min(at.along, length - at.along) < 1e-9;
     };
     const bool turned = before.velocity * now.velocity < 0.0;
     const std::size_t beside = turned || at_junction(before) || at_junction(now) ? 1 : 0;
     Limits limits{0.0, 0.0, 0.0};
     for (std::size_t i = low - std::min(low, beside); i <= std::min(high + beside, program.size() - 1); ++i) {
-      limits.velocity = std::max(limits.velocity, program[i].segment.limits.velocity);
-      limits.acceleration = std::max(limits.acceleration, program[i].segment.limits.acceleration);
-      limits.jerk = std::max(limits.jerk, program[i].segment.limits.jerk);
+      limits.velocity = std::max(limits.velocity, program[i].segment_limits.limits.velocity);
+      limits.acceleration = std::max(limits.acceleration, program[i].segment_limits.limits.acceleration);
+      limits.jerk = std::max(limits.jerk, program[i].segment_limits.limits.jerk);
     }
     {
       const double here = start[static_cast<std::size_t>(now.block)] + now.along;
       for (std::size_t i = low; i <= high; ++i) {
-        const double pause = i > 0 ? program[i - 1].segment.pause : 0.0;
+        const double pause = i > 0 ? program[i - 1].segment_limits.pause : 0.0;
         const bool passed = position < start[i] + 1e-9 && here > start[i] + 1e-9;
         const double waited =
             std::abs(position - start[i]) < 1e-9 ? static_cast<double>(still) * period : 0.0;
@@ -204,11 +204,12 @@ inline MotionFaults run(const MotionProgram& of, Random& random, int mean_gap, s
     grow(faults.acceleration, std::abs(now.acceleration) / limits.acceleration - 1);
     grow(faults.speed, std::abs(now.velocity) / limits.velocity - 1);
     for (std::size_t i = low + 1; i <= high; ++i)
-      grow(faults.junction,
-           std::min(std::abs(now.velocity), std::abs(before.velocity)) - slack - program[i].segment.entry);
+      grow(faults.junction, std::min(std::abs(now.velocity), std::abs(before.velocity)) - slack -
+                                program[i].segment_limits.entry);
     const double moved = start[static_cast<std::size_t>(now.block)] + now.along - position;
-    grow(faults.travel,
-         std::max(-now.along, now.along - program[static_cast<std::size_t>(now.block)].segment.length));
+    grow(
+        faults.travel,
+        std::max(-now.along, now.along - program[static_cast<std::size_t>(now.block)].segment_limits.length));
     grow(faults.travel, std::abs(moved - period * (now.velocity + before.velocity) / 2) - slack * period / 4);
     still = std::abs(moved) < 1e-9 ? still + 1 : 0;
     position += moved;

@@ -1,4 +1,4 @@
-// Limits of a machine's motion as smoothing sees them: of each axis, and of the tool's vector.
+// Limits of a machine's motion: of each axis, and of the tool's vector.
 #pragma once
 
 #include <algorithm>

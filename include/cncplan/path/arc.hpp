@@ -258,7 +258,7 @@ class BasicArc {
   }
 
   /// The box that the arc touches on all sides. The radius is monotone, so the first and the last two
-  /// turnings of an axis hold its extrema, however many turns there are.
+  /// reversals of an axis hold its extrema, however many turns there are.
   [[nodiscard]] BasicBox<S> box() const {
     BasicBox<S> box{start_.cwiseMin(end_), start_.cwiseMax(end_)};
     for (const int axis : {axes(plane_).first, axes(plane_).second}) {

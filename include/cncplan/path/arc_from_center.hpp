@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "cncplan/path/arc.hpp"
-#include "cncplan/path/detail/arc_tolerance.hpp"
+#include "cncplan/path/arc_tolerance.hpp"
 
 namespace cncplan::path {
 

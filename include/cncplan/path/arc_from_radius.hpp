@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "cncplan/path/arc.hpp"
-#include "cncplan/path/detail/arc_tolerance.hpp"
+#include "cncplan/path/arc_tolerance.hpp"
 
 namespace cncplan::path {
 
@@ -19,8 +19,8 @@ namespace cncplan::path {
 ///
 /// The centre lies on the chord's perpendicular bisector at the distance h = sqrt((R - d/2)(R + d/2)), to the
 /// left of the chord for counter-clockwise short arcs; this is what KK22 Eqs. 1-7 and Table 1 select (see
-/// published_selection.hpp), without their division by y0 - y1. The angle is 2 atan2(d/2, h) (KK22 Eqs.
-/// 10-11).
+/// published/center_selection.hpp), without their division by y0 - y1. The angle is 2 atan2(d/2, h) (KK22
+/// Eqs. 10-11).
 ///
 /// A radius that is half the chord up to rounding (of the relative bound `semicircle`, or of the coordinates'
 /// own digits), or too short within tolerance, gives the semicircle about the midpoint; radius_adjustment()

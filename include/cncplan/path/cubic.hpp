@@ -1,4 +1,4 @@
-// A cubic piece of a smoothed path, by the programmed length.
+// A cubic piece of a path by a length of its own: smoothed paths, and splines.
 #pragma once
 
 #include <algorithm>

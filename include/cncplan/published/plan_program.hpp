@@ -31,9 +31,9 @@ template <MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
         const auto cells = detail::make_cells<WholeBlocks>(all, machine, rules);
         if (!cells) return tl::unexpected(detail::error_in(all, cells.error()));
         std::vector<detail::BasicSpan<S>> spans;
-        std::vector<S> speeds(cells->segments.size() + 1);
-        const auto done = plan_blocks(std::span<const detail::BasicSegmentLimits<S>>(cells->segments), law,
-                                      std::span(speeds), std::back_inserter(spans));
+        std::vector<S> speeds(cells->segment_limits.size() + 1);
+        const auto done = plan_blocks(std::span<const detail::BasicSegmentLimits<S>>(cells->segment_limits),
+                                      law, std::span(speeds), std::back_inserter(spans));
         if (!done) return tl::unexpected(ProgramError{{done.error(), 0, 0, {}}});
         auto phases = detail::block_phases(std::span<const detail::BasicSpan<S>>(spans), *cells);
         return Trajectory<M, B>(machine, std::move(blocks), std::move(phases));

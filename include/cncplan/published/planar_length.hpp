@@ -55,8 +55,8 @@ template <BlockModel B>
 /// Makes the cells of blocks ones in their planes: lengths, speeds and limits then count there.
 template <BlockModel B, std::floating_point S>
 void to_plane(std::span<const B> blocks, detail::BasicCells<S>& cells) {
-  for (std::size_t i = 0; i < cells.segments.size(); ++i)
-    cells.segments[i].length /= space_over_plane(blocks[cells.blocks[i]]);
+  for (std::size_t i = 0; i < cells.segment_limits.size(); ++i)
+    cells.segment_limits[i].length /= space_over_plane(blocks[cells.blocks[i]]);
 }
 
 /// Makes the phases of a plan in the plane ones along the blocks' paths in space.

@@ -44,7 +44,7 @@ struct Reversal {
 ///             n |- - -/- - - - - - - - - -\- -
 ///
 /// Count n stands for all positions in [n - 1/2, n + 1/2], ends included, so an edge needs the position to go
-/// beyond the boundary. Between two turnings the axis goes one way: how many boundaries it crosses follows
+/// beyond the boundary. Between two reversals the axis goes one way: how many boundaries it crosses follows
 /// from the position at the piece's end alone. The count can therefore not drift, whatever rounding does to
 /// the single times, and what a block leaves over is taken up at the start of the next. The first edge after
 /// a reversal is late by its hysteresis, or comes where the piece ends.
@@ -124,7 +124,7 @@ class StepCursor {
     return forward * std::min(late, std::max(forward * border, forward * target_));
   }
 
-  // Goes on to the next stretch between turnings; false behind the last.
+  // Goes on to the next stretch between reversals; false behind the last.
   [[nodiscard]] bool open_piece() {
     if (!(piece_end_ < parameter_end_)) return false;
     parameter_ = piece_end_;
@@ -165,7 +165,7 @@ class StepCursor {
   std::int64_t count_;
   bool goes_on_;
   Reversal<Scalar> reversal_;
-  std::int64_t left_ = 0;  // edges before the next turning, those in the batch not counted
+  std::int64_t left_ = 0;  // edges before the next reversal, those in the batch not counted
   Scalar parameter_end_;
   Scalar parameter_{};  // of the last edge, or where the piece starts
   Scalar piece_end_{};

@@ -99,7 +99,7 @@ TrajectoryPointer plan_text<SIZE>(const AnyMachine& given, std::string_view text
     planned.error().file = program.file_of(planned.error().block.value_or(0));
     raise(planned.error());
   }
-  detail::tell(*planned, program, level_of(options) != SmoothLevel::exact);
+  cncplan::detail::tell(*planned, program, level_of(options) != SmoothLevel::exact);
   return any_trajectory<SIZE>(given, std::move(*planned));
 }
 

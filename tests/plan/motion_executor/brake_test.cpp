@@ -18,7 +18,7 @@ struct Stop {
   State end;
 };
 
-// Profile after profile to rest, as a player drives them.
+// Profile after profile to rest, as a motion executor drives them.
 Stop brake(State now, std::vector<detail::SegmentLimits> zones) {
   Stop stop;
   for (int leg_number = 0; leg_number < 100; ++leg_number) {

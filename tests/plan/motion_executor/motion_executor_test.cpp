@@ -113,9 +113,10 @@ TEST_CASE("a hold takes the least time where limits differ from block to block")
     if (then.block != now.block + 1) continue;
     ++held;
     const double time = 1.0 - rig.motion_executor.rested();
-    const double best = test::BrakeOracle(now.velocity, now.acceleration, room,
-                                          program[number].segment.limits, program[number + 1].segment.limits)
-                            .least_time();
+    const double best =
+        test::BrakeOracle(now.velocity, now.acceleration, room, program[number].segment_limits.limits,
+                          program[number + 1].segment_limits.limits)
+            .least_time();
     slower += time > best * 1.001 ? 1 : 0;
     worst = std::max(worst, time / best - 1);
   }
@@ -161,7 +162,7 @@ TEST_CASE("a stop ends the program where it comes to rest") {
 TEST_CASE("a stop cuts a dwell short") {
   Rig rig(8);
   auto block = straight(1.0);
-  block.segment.pause = 10.0;
+  block.segment_limits.pause = 10.0;
   rig.motion_executor.push(block);
   rig.motion_executor.push(straight(1.0));
   rig.motion_executor.tick(1.0);
@@ -216,7 +217,7 @@ TEST_CASE("until the next change the jerk is what it was") {
 TEST_CASE("random requests break no limit, and the end stays exact") {
   test::Random random;
   for (int sequence = 0; sequence < 200; ++sequence) {
-    const auto program = test::random_played(random, random.integer(1, 60));
+    const auto program = test::random_motion_program(random, random.integer(1, 60));
     const int gap = random.integer(0, 3) == 0 ? 1 : random.integer(2, 200);
     const auto window = static_cast<std::size_t>(random.integer(4, 64));
     const auto faults = test::run(program, random, gap, window, 20000);
@@ -243,7 +244,8 @@ TEST_CASE("junctions that are too few shorten the look-ahead") {
   detail::MotionExecutor motion_executor(
       {blocks, ahead, std::span(junctions).first(8), std::span(spare).first(3)});
   for (int i = 0; i < 12; ++i)
-    REQUIRE(motion_executor.push({.segment = {1.0, i == 0 ? 0.0 : 1e3, limits, 0.0}, .feed = 20.0 + i % 2}));
+    REQUIRE(motion_executor.push(
+        {.segment_limits = {1.0, i == 0 ? 0.0 : 1e3, limits, 0.0}, .feed = 20.0 + i % 2}));
   int ticks = 0;
   while (!motion_executor.finished() && ticks < 10000) motion_executor.tick(1e-3), ++ticks;
   CHECK(motion_executor.finished());
@@ -254,7 +256,7 @@ TEST_CASE("junctions that are too few shorten the look-ahead") {
 TEST_CASE("the same requests at the same ticks give the same samples bit for bit") {
   const auto run = [] {
     test::Random random(7);
-    const auto program = test::random_played(random, 40).blocks;
+    const auto program = test::random_motion_program(random, 40).blocks;
     Rig rig(64);
     for (const auto& block : program) rig.motion_executor.push(block);
     std::vector<detail::MotionSetPoint> samples;
@@ -403,13 +405,13 @@ TEST_CASE("a quick stop with no more than the blocks' limits is a hold") {
     Rig rig(8);
     rig.motion_executor.push(straight(50.0));
     auto last = straight(50.0);
-    last.segment.limits.acceleration /= 2;
+    last.segment_limits.limits.acceleration /= 2;
     rig.motion_executor.push(last);
     detail::MotionSetPoint now;
     do now = rig.motion_executor.tick(1e-4);
     while (place(now) < at);
     const auto best =
-        profile::stop({now.velocity, now.acceleration}, at < 50.0 ? limits : last.segment.limits);
+        profile::stop({now.velocity, now.acceleration}, at < 50.0 ? limits : last.segment_limits.limits);
     REQUIRE(best);
     const double from = place(now);
     double moved = 0.0;
@@ -480,10 +482,10 @@ TEST_CASE("in float a hold brakes on where it comes to other limits at next to n
 TEST_CASE("a dwell is waited for") {
   Rig rig(8);
   auto block = straight(1.0);
-  block.segment.pause = 0.5;
+  block.segment_limits.pause = 0.5;
   rig.motion_executor.push(block);
   auto next = straight(1.0);
-  next.segment.entry = 0.0;
+  next.segment_limits.entry = 0.0;
   rig.motion_executor.push(next);
   int ticks = 0;
   while (!rig.motion_executor.finished() && ticks < 10000) rig.motion_executor.tick(1e-3), ++ticks;
@@ -496,7 +498,7 @@ TEST_CASE("a hold on the way down to a dwell does not swallow it") {
     CAPTURE(before_end);
     Rig rig(8);
     auto block = straight(10.0);
-    block.segment.pause = 0.5;
+    block.segment_limits.pause = 0.5;
     rig.motion_executor.push(block);
     rig.motion_executor.push(straight(1.0));
     const double move = profile::seven_phase(10.0, {0.0, 0.0}, limits)->duration();
@@ -514,7 +516,7 @@ TEST_CASE("a hold on the way down to a dwell does not swallow it") {
 
 TEST_CASE("ticks allocate nothing") {
   test::Random random;
-  const auto program = test::random_played(random, 50).blocks;
+  const auto program = test::random_motion_program(random, 50).blocks;
   Rig rig(64);
   const auto allocations = test::heap_allocations_of([&] {
     for (const auto& block : program) rig.motion_executor.push(block);

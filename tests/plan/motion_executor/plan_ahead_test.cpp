@@ -37,7 +37,7 @@ TEST_CASE("a plan made bit by bit is the one made at once") {
   }
 }
 
-TEST_CASE("the next plan begins at the last steady junction that is settled, and not too early") {
+TEST_CASE("the next plan begins at the last zero-acceleration junction that is settled, and not too early") {
   std::array<detail::ConstrainedJunction, 6> junctions{};
   for (detail::ConstrainedJunction& junction : junctions) {
     junction.gap = 3.0;

@@ -81,7 +81,7 @@ TEST_CASE("between two threads nothing is lost, torn or out of order") {
   CHECK(queue.size() == 0);
 }
 
-TEST_CASE("a player is fed from another thread, with requests from a third") {
+TEST_CASE("a motion executor is fed from another thread, with requests from a third") {
   constexpr int count = 3000;
   constexpr Limits limits{30.0, 1000.0, 10000.0};
   static cncplan::Queue<detail::MotionBlock, 32> blocks;

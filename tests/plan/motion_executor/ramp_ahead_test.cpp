@@ -29,7 +29,7 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
       path.ring.push({{random.log_uniform(0.05, 5), cap, of_block, 0.0}, 30.0});
     }
     path.ring.take();
-    const Limits& here = path.ring[0].segment.limits;
+    const Limits& here = path.ring[0].segment_limits.limits;
     const double a = random.uniform(-1, 1) * here.acceleration;
     const double v = random.uniform(0, here.velocity) + (a < 0 ? a * a / (2 * here.jerk) : 0.0);
     const auto ramp = detail::ramp_ahead(path, {0, 0.0}, {0, v, a, 0}, random.uniform(0, 30));
@@ -41,13 +41,13 @@ TEST_CASE("a ramp keeps the limits of every block that it touches, or there is n
       const State state = ramp->at(ramp->duration() * k / 400);
       const auto before = at.block;
       at = path.advance({0, 0.0}, state.position);
-      const Limits& there = path.ring[at.block].segment.limits;
+      const Limits& there = path.ring[at.block].segment_limits.limits;
       const double allowed = std::max(there.velocity, at.block == 0 ? v : 0.0);
       excess = std::max({excess, state.velocity / allowed - 1,
                          std::abs(state.acceleration) / there.acceleration - 1,
                          std::abs(state.jerk) / there.jerk - 1});
       if (at.block == before) continue;
-      const double cap = path.ring[at.block].segment.entry;
+      const double cap = path.ring[at.block].segment_limits.entry;
       const double crossed = ramp->at(ramp->time_at(state.position - at.along)).velocity;
       excess = std::max(excess, (crossed - cap) / 30.0);
     }

@@ -91,9 +91,10 @@ TEST_CASE("a block of no length waits where it stands: first, between others, la
     double dwells = 0.0;
     for (int i = 0, kinds = pattern; i < 4; ++i, kinds /= 3) {
       const int kind = kinds % 3;
-      const double entry = program.empty() || program.back().segment.length == 0.0 || kind > 0 ? 0.0 : 1e3;
+      const double entry =
+          program.empty() || program.back().segment_limits.length == 0.0 || kind > 0 ? 0.0 : 1e3;
       program.push_back(straight(kind == 0 ? 0.7 : 0.0, kind == 1 ? 0.1 : 0.0, i, entry));
-      dwells += program.back().segment.pause;
+      dwells += program.back().segment_limits.pause;
     }
     for (int at = 0; at < 400; at += 7) {
       BasicRig<double> rig;

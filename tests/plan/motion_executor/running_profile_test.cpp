@@ -38,7 +38,7 @@ TEST_CASE("edges are where the jerk changes, the turn lies in the cruise, before
   const auto phases = profile->phases();
   detail::BasicRunningProfile<double> running(*profile);
   const double down = profile->duration() - phases[4].time;
-  CHECK(running.to_turn() == Approx(phases[4].time - 0.25 * down));
+  CHECK(running.to_cruise_end() == Approx(phases[4].time - 0.25 * down));
   for (const double jerk : {10000.0, -10000.0, 0.0, -10000.0, 10000.0}) {
     CHECK(running.state().jerk == jerk);
     const double edge = running.to_edge();
@@ -47,13 +47,13 @@ TEST_CASE("edges are where the jerk changes, the turn lies in the cruise, before
     CHECK(running.to_edge() == Approx(edge / 2));
     running.advance(running.to_edge());
   }
-  CHECK(running.to_turn() < 0.0);
+  CHECK(running.to_cruise_end() < 0.0);
   CHECK(running.left() == Approx(0.0).margin(1e-15));
 }
 
 TEST_CASE("without a cruise the turn is at the top, no phases are rest") {
   const auto profile = profile::seven_phase(0.5, {0.0, 0.0}, Limits{30.0, 1000.0, 10000.0});
-  CHECK(detail::BasicRunningProfile<double>(*profile).to_turn() == Approx(profile->duration() / 2));
+  CHECK(detail::BasicRunningProfile<double>(*profile).to_cruise_end() == Approx(profile->duration() / 2));
   const detail::BasicRunningProfile<double> none;
   CHECK(none.state() == State{});
   CHECK(none.left() == 0.0);

@@ -12,7 +12,7 @@
 
 using namespace cncplan;
 
-TEST_CASE("a shared count is what was stored, whatever it passes", "[player]") {
+TEST_CASE("a shared count is what was stored, whatever it passes", "[motion_executor]") {
   detail::SharedCount count;
   CHECK(count.load() == 0);
   for (const int bit : {0, 30, 31, 32, 33, 40, 61})
@@ -25,7 +25,7 @@ TEST_CASE("a shared count is what was stored, whatever it passes", "[player]") {
     }
 }
 
-TEST_CASE("a shared count that another thread raises never goes back, nor ahead", "[player]") {
+TEST_CASE("a shared count that another thread raises never goes back, nor ahead", "[motion_executor]") {
   for (const std::int64_t border : {std::int64_t{1} << 31, std::int64_t{1} << 32, std::int64_t{5} << 31}) {
     static detail::SharedCount count;
     constexpr std::int64_t counts = 200'000;
@@ -49,7 +49,7 @@ TEST_CASE("a shared count that another thread raises never goes back, nor ahead"
   }
 }
 
-TEST_CASE("numbers that follow each other have places of their own, up to any number", "[player]") {
+TEST_CASE("numbers that follow each other have places of their own, up to any number", "[motion_executor]") {
   test::Random random;
   for (const std::size_t size : {1U, 5U, 12U, 72U}) {
     detail::RingPlaces places(size);
@@ -68,7 +68,7 @@ TEST_CASE("numbers that follow each other have places of their own, up to any nu
   }
 }
 
-TEST_CASE("a ring of blocks goes on where a word of 32 bits ends", "[player]") {
+TEST_CASE("a ring of blocks goes on where a word of 32 bits ends", "[motion_executor]") {
   std::array<detail::MotionBlock, 6> memory;
   detail::BlockRing<double> ring(memory);
   const std::int64_t start = (std::int64_t{1} << 32) - 20;

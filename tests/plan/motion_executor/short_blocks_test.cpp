@@ -19,7 +19,7 @@ class Run {
   Run() : motion_executor_({blocks_, ahead_, junctions_, spare_}) {}
 
   detail::MotionSetPoint tick(double seconds = period) {
-    while (motion_executor_.push(next_)) next_.segment.length = random_.log_uniform(0.01, 0.1);
+    while (motion_executor_.push(next_)) next_.segment_limits.length = random_.log_uniform(0.01, 0.1);
     return motion_executor_.tick(seconds);
   }
   detail::MotionSetPoint tick(int count) {
@@ -31,7 +31,7 @@ class Run {
 
  private:
   test::Random random_;
-  detail::MotionBlock next_{.segment = {0.05, 1e3, limits, 0.0}, .feed = feed};
+  detail::MotionBlock next_{.segment_limits = {0.05, 1e3, limits, 0.0}, .feed = feed};
   std::vector<detail::MotionBlock> blocks_{80};
   std::vector<detail::SegmentLimits> ahead_{64};
   std::vector<detail::ConstrainedJunction> junctions_{65}, spare_{65};
@@ -42,7 +42,7 @@ constexpr int first = 100, last = 500;  // ticks at which something is asked for
 
 }  // namespace
 
-TEST_CASE("a hold on short blocks comes to rest in the least time, whenever it comes", "[player]") {
+TEST_CASE("a hold on short blocks comes to rest in the least time, whenever it comes", "[motion_executor]") {
   for (int at = 5; at < last; ++at) {
     CAPTURE(at);
     Run run;
@@ -58,7 +58,7 @@ TEST_CASE("a hold on short blocks comes to rest in the least time, whenever it c
   }
 }
 
-TEST_CASE("an override on short blocks changes the speed within a tick, up and down", "[player]") {
+TEST_CASE("an override on short blocks changes the speed within a tick, up and down", "[motion_executor]") {
   for (const double share : {0.0, 0.3, 0.9, 1.2, 2.0})
     for (int at = first; at < last; ++at) {
       CAPTURE(share, at);
@@ -71,7 +71,7 @@ TEST_CASE("an override on short blocks changes the speed within a tick, up and d
     }
 }
 
-TEST_CASE("running back begins with braking within a tick on short blocks too", "[player]") {
+TEST_CASE("running back begins with braking within a tick on short blocks too", "[motion_executor]") {
   for (int at = first; at < last; at += 7) {
     CAPTURE(at);
     Run run, calm;

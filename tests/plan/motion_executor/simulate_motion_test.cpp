@@ -1,5 +1,5 @@
-// Whole runs of a player without requests against the plan of the whole, within a tolerance, where cells are
-// short.
+// Whole runs of a motion executor without requests against the plan of the whole, within a tolerance, where
+// cells are short.
 #include "cncplan/detail/executor/simulate_motion.hpp"
 
 #include <fstream>
@@ -52,7 +52,7 @@ std::pair<double, double> durations(const std::string& text, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("short blocks within a tolerance are played in the time that is planned", "[player]") {
+TEST_CASE("short blocks within a tolerance are played in the time that is planned", "[motion_executor]") {
   std::stringstream program;
   generate::write(program, generate::Kind::finishing);
   const std::string text = first_lines(program, 400);
@@ -63,7 +63,7 @@ TEST_CASE("short blocks within a tolerance are played in the time that is planne
   }
 }
 
-TEST_CASE("programs of others are played in the time that is planned", "[player][slow]") {
+TEST_CASE("programs of others are played in the time that is planned", "[motion_executor][slow]") {
   const auto shared = test::shared();
   if (!shared) {
     WARN("SKIPPED: CNCPLAN_SHARED is not set");

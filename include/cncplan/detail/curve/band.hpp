@@ -512,7 +512,7 @@ int BasicBand<S, N>::smoothen(std::span<const S> speeds_sq, const Progress& prog
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const S feed = this->feed(cell);
     const S v = std::sqrt(speeds_sq[cell]);
-    cells_[cell].barrier_weight = v * v * v * feed * feed * feed * lengths_[cell];
+    cells_[cell].jerk_weight = v * v * v * feed * feed * feed * lengths_[cell];
     if (v < S(0.998) * feed)
       for (std::size_t k = cell >= reach_ ? cell - reach_ : 0; k < std::min(cell + 4 + reach_, slow.size());
            ++k)
@@ -533,14 +533,14 @@ int BasicBand<S, N>::improve(std::span<const S> speeds_sq, std::span<const S> sk
                              std::span<const BasicLimitedRow<S, N>> limited,
                              const BasicCoupledOptions<S>& solver, const Progress& progress) {
   constexpr S slow = S(0.97);
-  constexpr S barrier_weight = S(0.05);  // of a q''' that takes the whole limit of the jerk
+  constexpr S jerk_weight = S(0.05);  // of a q''' that takes the whole limit of the jerk
   const std::size_t cells = cell_count();
   std::pmr::vector<S> feeds(cells, memory_), speeds(points_.size(), S(0), memory_);
   std::pmr::vector<char> moves(points_.size(), 0, memory_);
   for (std::size_t cell = 0; cell < cells; ++cell) {
     feeds[cell] = feed(cell);
     speeds[cell + 1] = speeds_sq[cell];
-    cells_[cell].barrier_weight = barrier_weight * speeds_sq[cell] * speeds_sq[cell] * speeds_sq[cell];
+    cells_[cell].jerk_weight = jerk_weight * speeds_sq[cell] * speeds_sq[cell] * speeds_sq[cell];
     if (speeds_sq[cell] < slow * feeds[cell] * feeds[cell])
       for (std::size_t k = cell >= reach_ ? cell - reach_ : 0; k < std::min(cell + 4 + reach_, moves.size());
            ++k)

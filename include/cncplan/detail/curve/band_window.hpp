@@ -22,7 +22,7 @@ struct BasicBandCell {
   path::CubicWeights<S> weights{};
   VectorN<S, N> third = VectorN<S, N>::Zero();  ///< q''' of the programmed path
   S length{};
-  S barrier_weight{};  ///< of |q''' - third|^2
+  S jerk_weight{};  ///< of |q''' - third|^2
   std::size_t first_sample{};
 };
 
@@ -42,7 +42,7 @@ struct BasicBandProblem {
   std::span<const BasicBandCell<S, N>> cells;  ///< one more than there are: its first sample is the end
   std::span<const BasicBandSample<S, N>> samples;
   VectorN<S, N> jerk_scale = VectorN<S, N>::Ones();
-  S centring{};  ///< barrier_weight of a mm at the edge of the tube
+  S centring{};  ///< what a mm at the edge of the tube costs
 
   [[nodiscard]] std::size_t cell_count() const { return cells.size() - 1; }
 };
@@ -134,7 +134,7 @@ void find_step(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows, std::span<
 }
 
 /// Moves the points [first, last), at least three from each end of the curve, to where the sum of
-/// barrier_weight |jerk_scale (q''' - third)|^2 is least within the tube. The curve is in the tube when it
+/// jerk_weight |jerk_scale (q''' - third)|^2 is least within the tube. The curve is in the tube when it
 /// comes and when it goes. At most as many points move as the memory holds.
 template <std::floating_point S, int N>
 BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, N>> points, std::size_t first,
@@ -159,7 +159,7 @@ BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, 
       const Vector* four = &at[cell - low];
       Vector third = -here.third;
       for (std::size_t q = 0; q < 4; ++q) third += here.weights[3][q] * four[q];
-      cost.energy += here.barrier_weight * third.cwiseAbs2().dot(jerk_sq);
+      cost.energy += here.jerk_weight * third.cwiseAbs2().dot(jerk_sq);
       S room = S(1);
       for (std::size_t i = here.first_sample; i < problem.cells[cell + 1].first_sample; ++i) {
         const auto& sample = problem.samples[i];
@@ -195,8 +195,8 @@ BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, 
       const auto moves = [&](std::size_t q) { return cell + q - first < count; };
       Vector third = -here.third;
       for (std::size_t q = 0; q < 4; ++q) third += here.weights[3][q] * four[q];
-      const Vector pull = (S(2) * here.barrier_weight) * third.cwiseProduct(jerk_sq);
-      const Vector stiff = (S(2) * here.barrier_weight) * jerk_sq;
+      const Vector pull = (S(2) * here.jerk_weight) * third.cwiseProduct(jerk_sq);
+      const Vector stiff = (S(2) * here.jerk_weight) * jerk_sq;
       for (std::size_t q = 0; q < 4; ++q) {
         if (!moves(q)) continue;
         const std::size_t at = cell + q - first;

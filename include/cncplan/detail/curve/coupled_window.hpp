@@ -30,7 +30,7 @@ struct BasicLimitedRow {
 };
 
 /// A curve in its tube and a speed along it. Cell k hangs on control points k to k + 3 and on coefficients of
-/// speed k to k + 2, the middle one its own. The barrier_weights that the cells have of q''' belong to the
+/// speed k to k + 2, the middle one its own. The weights that the cells give to q''' belong to the
 /// barrier and vanish with it. The tube leaves a curve room to go to and fro along itself with a speed that
 /// makes up for it, which costs a law of b nothing; phases of constant jerk cannot follow it.
 template <std::floating_point S, int N>
@@ -265,7 +265,7 @@ class CoupledWindow {
         barrier.settle();
       }
       if (!barrier.kept()) return {none, none};
-      thirds += curve_.cells[cell].barrier_weight * third_off(cell, four).cwiseAbs2().dot(jerk_sq_);
+      thirds += curve_.cells[cell].jerk_weight * third_off(cell, four).cwiseAbs2().dot(jerk_sq_);
     }
     return {time, barrier.sum() + thirds};
   }
@@ -340,7 +340,7 @@ class CoupledWindow {
       bend.diagonal().template head<N>() += once * scale_sq;
       model.add_position(sample.weights, once * scaled, bend);
     }
-    const Vector stiff = (S(2) * weight * curve_.cells[cell].barrier_weight) * jerk_sq_;
+    const Vector stiff = (S(2) * weight * curve_.cells[cell].jerk_weight) * jerk_sq_;
     typename CoupledModel<S, N>::Matrix stiffness = CoupledModel<S, N>::Matrix::Zero();
     stiffness.diagonal().template head<N>() = stiff;
     model.add_position(curve_.cells[cell].weights[3], third_off(cell, four).cwiseProduct(stiff), stiffness);

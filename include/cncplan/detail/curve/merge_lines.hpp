@@ -154,7 +154,7 @@ class LineMerger {
   S share_ = S(-1);                   // of the tolerances, that merging them takes; < 0: one line alone
 };
 
-/// Merges the lines of a program in place; see `LineMerger`. `plan_blocks`, `plan_smooth` and
+/// Merges the lines of a program in place; see `LineMerger`. `plan_blocks`, `SmoothStream` and
 /// `Executor` do it by themselves.
 template <MachineModel M, BlockModel B>
 void merge_lines(std::span<B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules) {

@@ -80,7 +80,7 @@ template <BlockModel B, MachineModel M>
   const bool exact = !(std::min(tolerance_of(before, rules), tolerance_of(after, rules)) > S(0)) ||
                      (rules.exact_between_rapids_and_feeds && before.rapid != after.rapid);
   if (exact) return turn > flattest_stop<S> ? JunctionMode::stop : JunctionMode::exact;
-  return turn > sharpest_smooth_turn<S> ? JunctionMode::stop : JunctionMode::blend;
+  return turn > sharpest_smooth_turn<S> ? JunctionMode::stop : JunctionMode::smooth;
 }
 
 /// The limits of a block as it is programmed.

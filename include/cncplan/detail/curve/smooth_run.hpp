@@ -40,7 +40,7 @@ struct BasicSmoothOptions {
   int coupled_rounds = 2;  ///< of geometry and speed together
   S smooth_loss = S(0.1);  ///< of the time that is lost to the feeds: smoothing that costs more is taken back
   S coupled_loss = S(0.03);  ///< the same of a round
-  BasicCoupledOptions<S> joint{};
+  BasicCoupledOptions<S> coupled{};
   S coarse_gap = S(0.05);          ///< of the speeds that only weigh the geometry
   S gap = S(2e-3);                 ///< of the last one: from the least time, as a share of it
   S coarseness = S(1);             ///< how many times longer the cells are
@@ -178,7 +178,7 @@ class SmoothRun {
       limited_.clear();
       speed_.limited_rows(band_, limited_);
       band_.improve(speed_.uncut_speeds_sq(band_.cell_count()), speed_.uncut_skews(band_.cell_count()),
-                    speed_.limits_of_curve(), limited_, options_.joint, work_.next(Work::curve_and_speed));
+                    speed_.limits_of_curve(), limited_, options_.coupled, work_.next(Work::curve_and_speed));
       time = coarse_time();
       // Both times are coarse: what seems a little worse may be better. Not where the way in which the limits
       // see the curve is a different one at every place.
@@ -342,7 +342,7 @@ auto SmoothRun<S, N, Seen>::cuts(std::size_t from_block, std::size_t to_block)
   const S from = band_.block_start(from_block), to = band_.block_start(to_block);
   constexpr std::size_t calm = 12;
   struct Choice {
-    S barrier_weight = std::numeric_limits<S>::infinity();
+    S cost = std::numeric_limits<S>::infinity();
     std::size_t cell{};
     S speed{};
   };
@@ -367,18 +367,16 @@ auto SmoothRun<S, N, Seen>::cuts(std::size_t from_block, std::size_t to_block)
                              sampled_utilisation(cells[i], limits_, {b, b, b}).force());
     const auto part = static_cast<std::size_t>((at - from) / (to - from) * S(most_cuts));
     const S beyond = (to - at) / (to - from);
-    const S barrier_weight =
-        (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) + S(3) * beyond;
+    const S cost = (fast ? force : S(2) - speed / feed) + S(10) * static_cast<S>(calm - flat) + S(3) * beyond;
     // Not slower from cut to cut, where what is held has no room for ramps.
-    const Choice choice{barrier_weight, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
+    const Choice choice{cost, cell, std::max(S(0.5) * speed, std::min(speed, ends_.start))};
     Choice& last = best[std::min(part, most_cuts - 1)];
-    if (choice.barrier_weight < last.barrier_weight) last = choice;
+    if (choice.cost < last.cost) last = choice;
   }
-  std::sort(best.begin(), best.end(),
-            [](const Choice& a, const Choice& b) { return a.barrier_weight < b.barrier_weight; });
+  std::sort(best.begin(), best.end(), [](const Choice& a, const Choice& b) { return a.cost < b.cost; });
   FixedList<std::pair<std::size_t, Cut>, most_cuts> result;
   for (const Choice& choice : best)
-    if (choice.barrier_weight < std::numeric_limits<S>::infinity())
+    if (choice.cost < std::numeric_limits<S>::infinity())
       result.push_back({choice.cell, {band_.cut_before(choice.cell), choice.speed}});
   return result;
 }

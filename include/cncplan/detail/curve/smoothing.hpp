@@ -79,9 +79,9 @@ class Smoother {
       if (block.path.length() > S(0)) {
         own.junction_mode =
             rests ? JunctionMode::stop : junction_mode_between(blocks_[last_], block, machine_, rules_);
-        if (own.junction_mode != JunctionMode::blend) finish(place);
+        if (own.junction_mode != JunctionMode::smooth) finish(place);
         if (rests || !blocks_[last_].straight_on) {
-          if (own.junction_mode == JunctionMode::blend) add_junction(last_, i);
+          if (own.junction_mode == JunctionMode::smooth) add_junction(last_, i);
           moving_.push_back(i);
         }
         last_ = i;
@@ -168,7 +168,7 @@ class Smoother {
     const auto& own = result_.corrections[correction];
     const S support = own.support();
     const LongLength<S> from = own.at - support, to = own.at + support;
-    const auto utilisation = [&](std::size_t i) {
+    const auto act_on = [&](std::size_t i) {
       auto& block = result_.blocks[i];
       if (block.count == 0) block.first = correction;
       block.count = correction + 1 - block.first;
@@ -177,13 +177,13 @@ class Smoother {
     const std::size_t behind = moving_[junction];
     for (std::size_t i = behind; i-- > moving_.front();) {
       if (!moves(i)) continue;
-      utilisation(i);
+      act_on(i);
       if (!(result_.blocks[i].start > from)) break;
     }
     for (std::size_t i = behind; i <= last_; ++i) {
       if (!moves(i)) continue;
       if (i > behind && !(result_.blocks[i].start < to)) break;
-      utilisation(i);
+      act_on(i);
     }
   }
 

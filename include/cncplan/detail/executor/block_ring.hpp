@@ -14,22 +14,22 @@
 
 namespace cncplan::detail {
 
-/// A block as real-time control needs it, a cell of one that `Executor` was given. The limits in `segment`
-/// hold for speeds up to the feed; its velocity is what shape and axes bear. Domain, which is not checked: a
-/// finite length >= 0, limits that `validate` accepts and whose jerk is finite, entry and pause finite, >= 0.
-/// A block of no length waits where it stands: the motion rests before it, as its entry says, and behind it.
-/// A feed that is not positive, or NaN, is never run: the motion rests before it.
+/// A block as real-time control needs it, a cell of one that `Executor` was given. The limits in
+/// `segment_limits` hold for speeds up to the feed; its velocity is what shape and axes bear. Domain, which
+/// is not checked: a finite length >= 0, limits that `validate` accepts and whose jerk is finite, entry and
+/// pause finite, >= 0. A block of no length waits where it stands: the motion rests before it, as its entry
+/// says, and behind it. A feed that is not positive, or NaN, is never run: the motion rests before it.
 template <std::floating_point S>
 struct BasicMotionBlock {
-  BasicSegmentLimits<S> segment;
+  BasicSegmentLimits<S> segment_limits;
   S feed{};              ///< mm/s, what the override acts on
   bool rapid{};          ///< obeys the rapid override
   bool optional_stop{};  ///< the motion stops behind it where that is switched on (M1)
   int line{};            ///< of the program, for pauses
   bool goes_on{};        ///< the next one is of the same block of the program: no single step ends here
   bool program_stop{};   ///< the motion stops behind it where that is switched on (M0)
-  /// Limits up to twice the feed: velocity not below, acceleration and jerk not above those of `segment`. A
-  /// velocity of 0: those of `segment`.
+  /// Limits up to twice the feed: velocity not below, acceleration and jerk not above those of
+  /// `segment_limits`. A velocity of 0: those of `segment_limits`.
   BasicLimits<S> above{S(0), S(0), S(0)};
   std::int64_t block{};  ///< number of the block of the program that it is a cell of
   S from{};              ///< mm from the start of that block to its own
@@ -91,7 +91,7 @@ class BlockRing {
   [[nodiscard]] std::int64_t end() const { return end_; }
   [[nodiscard]] std::int64_t capacity() const { return places_.size(); }
   [[nodiscard]] bool holds(std::int64_t number) const { return number >= oldest_ && number < end_; }
-  [[nodiscard]] S length(std::int64_t number) const { return (*this)[number].segment.length; }
+  [[nodiscard]] S length(std::int64_t number) const { return (*this)[number].segment_limits.length; }
   [[nodiscard]] const Block& operator[](std::int64_t number) const { return memory_[places_(number)]; }
 
   /// Forgets all blocks; the next one has this number. Not while anything is pushed.

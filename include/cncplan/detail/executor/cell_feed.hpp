@@ -206,7 +206,7 @@ class CellFeed {
   // A rest on the way. Its limits play no part.
   [[nodiscard]] Cell rest(const B& block, Scalar seconds) const {
     Cell result = common(block);
-    result.segment = {Scalar(0), Scalar(0), {Scalar(1), Scalar(1), Scalar(1)}, seconds};
+    result.segment_limits = {Scalar(0), Scalar(0), {Scalar(1), Scalar(1), Scalar(1)}, seconds};
     result.feed = Scalar(1);
     return result;
   }
@@ -387,7 +387,7 @@ typename CellFeed<M, B>::Cell CellFeed<M, B>::motion_block(const B& block,
   const auto& [from, to, limits] = cell.part;
   const bool last = maker_.done();
   Cell result = common(block);
-  result.segment = {to - from, cell.entry, finite_limits(limits), last ? block.pause : Scalar(0)};
+  result.segment_limits = {to - from, cell.entry, finite_limits(limits), last ? block.pause : Scalar(0)};
   result.goes_on = !last || block.goes_on;
   result.from = from;
   result.feed = !block.rapid && std::isfinite(block.feed)
@@ -395,8 +395,8 @@ typename CellFeed<M, B>::Cell CellFeed<M, B>::motion_block(const B& block,
                     : std::min(maker_.requested_speed(), limits.velocity);
   const BasicLimits<Scalar> above = finite_limits(cell.above);
   result.above = {std::max(above.velocity, limits.velocity),
-                  std::min(above.acceleration, result.segment.limits.acceleration),
-                  std::min(above.jerk, result.segment.limits.jerk)};
+                  std::min(above.acceleration, result.segment_limits.limits.acceleration),
+                  std::min(above.jerk, result.segment_limits.limits.jerk)};
   return result;
 }
 

@@ -24,8 +24,8 @@ template <std::floating_point S>
 
 /// What a motion executor says of a state at a place, which is in a block: in that block's own direction.
 template <std::floating_point S>
-[[nodiscard]] BasicMotionSetPoint<S> played_at(const BasicPathAhead<S>& path, const BasicPlace<S>& at,
-                                               const BasicState<S>& now, bool at_rest) {
+[[nodiscard]] BasicMotionSetPoint<S> set_point_at(const BasicPathAhead<S>& path, const BasicPlace<S>& at,
+                                                  const BasicState<S>& now, bool at_rest) {
   const S whole = path.ring.length(at.block);
   const S travelled = std::min(at.along, whole);
   const S sign = static_cast<S>(path.direction);

@@ -1,4 +1,4 @@
-// Plays planned blocks in real time: hold, resume, override, stop, backwards, at any instant, one tick after
+// Runs planned blocks in real time: hold, resume, override, stop, backwards, at any instant, one tick after
 // another.
 #pragma once
 
@@ -24,7 +24,7 @@ namespace cncplan::detail {
 
 /// Runs along the blocks it is given, always on a plan that ends at rest on the path it has. A request (hold,
 /// override, new blocks) is met by a new plan from the state the machine is in: a ramp to a speed with zero
-/// acceleration, then spans. A plan that could not keep the junctions' segments is not taken: the one before
+/// acceleration, then spans. A plan that could not keep the junctions' caps is not taken: the one before
 /// goes on, and the request is tried again a tick later. So whatever is asked for and however often, speed,
 /// acceleration and jerk stay within limits.
 ///
@@ -145,7 +145,7 @@ class BasicMotionExecutor {
         left -= waited;
       } else if (idle_) {
         if (!pending_ || !start()) break;
-      } else if (const S turn = running_.to_turn(); turn > S(0) && turn <= left && could_better()) {
+      } else if (const S turn = running_.to_cruise_end(); turn > S(0) && turn <= left && could_better()) {
         advance(turn, left);
         left -= turn;
         take_over(locate(), running_.state().velocity, at_cruise_end);
@@ -170,7 +170,7 @@ class BasicMotionExecutor {
   [[nodiscard]] S until_change() const {
     if (waits() > S(0)) return waits();
     if (idle_) return std::numeric_limits<S>::infinity();
-    const S turn = running_.to_turn();
+    const S turn = running_.to_cruise_end();
     return could_better() && turn > S(0) ? std::min(turn, running_.to_edge()) : running_.to_edge();
   }
 
@@ -189,7 +189,7 @@ class BasicMotionExecutor {
   /// Whether it begins to slow down within so many seconds, or has begun, as there are no more blocks to run.
   [[nodiscard]] bool starves(S seconds) const {
     return !idle_ && !running_is_final_ && path_.direction > 0 && plans_.ends_for_want_of_blocks() &&
-           path_.ring.pushed() == path_.ring.end() && running_.to_turn() <= seconds;
+           path_.ring.pushed() == path_.ring.end() && running_.to_cruise_end() <= seconds;
   }
   /// Where it is, at rest or in motion.
   [[nodiscard]] BasicMotionSetPoint<S> place() {
@@ -264,15 +264,15 @@ class BasicMotionExecutor {
     const std::int64_t done = at.block - path_.direction;
     if (!path_.ring.holds(at.block) || (waits() > S(0) && path_.ring.holds(done)))
       at = {done, path_.ring.length(done)};  // behind the last, or dwelling
-    return played_at(path_, at, now, idle_);
+    return set_point_at(path_, at, now, idle_);
   }
 
-  // Answers a request, if there is a plan that keeps all segments; else it is tried again at the next tick.
+  // Answers a request, if there is a plan that keeps all caps; else it is tried again at the next tick.
   // So is the way down that blocks could spare. Whether there was a request.
   bool answer(std::size_t attempts) {
     const bool requested = pending_;
     for (; attempts > 0 && !idle_; --attempts) {
-      if (!pending_ && !(running_.to_turn() <= S(0) && could_better())) break;
+      if (!pending_ && !(running_.to_cruise_end() <= S(0) && could_better())) break;
       const bool asked = std::exchange(pending_, false);
       if (replan(asked)) break;
       pending_ = asked;
@@ -373,14 +373,14 @@ class BasicMotionExecutor {
     }
     if (next_junction_ == no_junction || !(plans_.lacks_blocks() || plans_.ends_at_stop())) return;
     const S lead = period * plans_.ticks_ahead(static_cast<std::size_t>(cells_ahead()));
-    if (running_.to_turn() > lead) return;
-    if (!(running_.to_turn() > S(0) && could_better()))
-      return plans_.begin_next_at_waypoint(path_, next_junction_, running_.left(), lead, period);
+    if (running_.to_cruise_end() > lead) return;
+    if (!(running_.to_cruise_end() > S(0) && could_better()))
+      return plans_.begin_next_at_junction(path_, next_junction_, running_.left(), lead, period);
     BasicRunningProfile<S> until = running_;
-    until.advance(until.to_turn());
+    until.advance(until.to_cruise_end());
     const BasicState<S> turn = until.state();
     plans_.begin_next_if_borne(path_, path_.advance(at_, turn.position), turn.velocity, at_cruise_end,
-                               running_.to_turn() / period);
+                               running_.to_cruise_end() / period);
   }
 
   // Cells from here on, in the direction of travel.
@@ -439,7 +439,7 @@ class BasicMotionExecutor {
     const std::int64_t done = at_.block - path_.direction;
     if (rests && at_junction && path_.ring.holds(done) && path_.stops_behind(done)) return rest_as_planned();
     if (plans_.next_begins_at() == at_cruise_end) plans_.drop_next();
-    // nothing that comes can change where a span ends that is settled
+    // nothing that comes can change where a final span ends
     const std::size_t junction = next_junction_;
     if ((plans_.next().begun() || plans_.improves_behind(junction)) &&
         take_over(at_, plans_.junction(junction).speed, junction))
@@ -452,7 +452,7 @@ class BasicMotionExecutor {
     const std::int64_t done = at_.block - path_.direction;
     const Block* const block = path_.ring.holds(done) ? &path_.ring[done] : nullptr;
     BasicRequests<S>& asked = path_.asked;
-    if (block != nullptr && path_.direction > 0) wait_for(block->segment.pause);
+    if (block != nullptr && path_.direction > 0) wait_for(block->segment_limits.pause);
     if (block != nullptr ? path_.holds_behind(done) : asked.single_step) asked.held = true;
     program_holds_ = block != nullptr && path_.program_holds_behind(done);
     pauses_here();

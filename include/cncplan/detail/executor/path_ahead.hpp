@@ -87,7 +87,7 @@ class BasicPathAhead {
   /// Whether the motion rests behind a block.
   [[nodiscard]] bool stops_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return b.segment.pause > S(0) || holds_behind(block) || pauses_before(block + 1, b.line);
+    return b.segment_limits.pause > S(0) || holds_behind(block) || pauses_before(block + 1, b.line);
   }
 
   /// Whether it is held behind a block, which is kept, until it is told to go on.
@@ -108,7 +108,7 @@ class BasicPathAhead {
 
   /// Highest speed at the junction between a block and the one behind it.
   [[nodiscard]] S junction_cap(std::int64_t block) const {
-    return direction > 0 ? ring[block].segment.entry : ring[block + 1].segment.entry;
+    return direction > 0 ? ring[block].segment_limits.entry : ring[block + 1].segment_limits.entry;
   }
 
   /// Whether the junction behind a block is passed at rest only.
@@ -167,12 +167,12 @@ class BasicPathAhead {
       // One by one: the processor waits where it loads as a whole what has just been stored in parts.
       const BasicLimits<S>& own = limits_of(block);
       BasicSegmentLimits<S>& segment = out[ahead.blocks++];
-      segment.length = std::max(block.segment.length - at.along, S(0));
+      segment.length = std::max(block.segment_limits.length - at.along, S(0));
       segment.entry = first ? speed : junction_cap(at.block);
       segment.limits.velocity = velocity;
       segment.limits.acceleration = own.acceleration;
       segment.limits.jerk = own.jerk;
-      segment.pause = block.segment.pause;
+      segment.pause = block.segment_limits.pause;
       if (stops_behind(at.block)) return ahead;
       const bool zero_acceleration = !shared || !shared->take(segment.limits, segment.length);
       if (zero_acceleration) shared.emplace(segment.limits, segment.length);
@@ -223,7 +223,7 @@ class BasicPathAhead {
     return !ring.holds(block - 1) || !ring[block - 1].goes_on;
   }
   [[nodiscard]] const BasicLimits<S>& limits_of(const Block& b) const {
-    return above && b.above.velocity > S(0) ? b.above : b.segment.limits;
+    return above && b.above.velocity > S(0) ? b.above : b.segment_limits.limits;
   }
   [[nodiscard]] S wanted_speed_of(const Block& b) const {
     return std::min((b.rapid ? asked.rapid_share : asked.feed_share) * b.feed, limits_of(b).velocity);

@@ -85,7 +85,7 @@ struct BasicJunctionAhead {
 
 /// The zero-acceleration junction of a plan from which the next one can be made before the motion comes
 /// there, so that no time is lost: the last, from `junction` on, whose speed nothing that comes can change.
-/// `junction` comes next, in `time` seconds. The start of a plan is is_final, and where all is (`all_final`)
+/// `junction` comes next, in `time` seconds. The start of a plan is final, and where all is (`all_final`)
 /// so is each zero-acceleration junction. Nothing where there is no such zero-acceleration junction, or while
 /// it is more than `lead` seconds away.
 template <std::floating_point S>
@@ -93,9 +93,7 @@ template <std::floating_point S>
     std::span<const BasicConstrainedJunction<S>> junctions, std::size_t junction, S time, S lead,
     bool all_final) {
   constexpr S slowest = S(1e-6);  // mm/s
-  const auto is_final = [&](std::size_t zero_acceleration) {
-    return zero_acceleration == 0 || junctions[zero_acceleration].is_final || all_final;
-  };
+  const auto is_final = [&](std::size_t at) { return at == 0 || junctions[at].is_final || all_final; };
   while (junction + 1 < junctions.size()) {
     const std::size_t next = next_zero_acceleration<S>(junctions, junction);
     if (!is_final(next)) break;

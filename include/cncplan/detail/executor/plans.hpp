@@ -108,7 +108,7 @@ class BasicPlans {
     if (!bears(path, from, speed)) return false;
     const std::size_t most = std::min(ahead_.size(), most_short_blocks);
     const std::size_t blocks = std::min(path.blocks_to_rest(from, speed, most) + more_short_blocks, most);
-    short_plan_.begin(path, from, speed, ahead_.first(blocks), short_waypoints_);
+    short_plan_.begin(path, from, speed, ahead_.first(blocks), short_junctions_);
     short_plan_.work(short_rounds * passes * (short_plan_.junctions().size() + 1));
     return short_plan_.holds();
   }
@@ -144,7 +144,7 @@ class BasicPlans {
 
   /// Begins it where it takes over from a final junction, and soon: `junction` comes next, in `time`
   /// seconds, and nothing more than `lead` seconds away counts.
-  void begin_next_at_waypoint(BasicPathAhead<S>& path, std::size_t junction, S time, S lead, S period) {
+  void begin_next_at_junction(BasicPathAhead<S>& path, std::size_t junction, S time, S lead, S period) {
     const auto start = junction_to_plan_from(std::span<const ConstrainedJunction>(junctions_.first(size_)),
                                              junction, time, lead, ends_at_stop());
     if (!start) return;
@@ -244,7 +244,7 @@ class BasicPlans {
   BasicPlanAhead<S> next_;
   std::size_t next_begins_at_ = no_junction;
   BasicPlanAhead<S> short_plan_;
-  std::array<ConstrainedJunction, most_short_blocks + 1> short_waypoints_{};
+  std::array<ConstrainedJunction, most_short_blocks + 1> short_junctions_{};
   std::size_t rate_ = 0;     // junctions a tick that make the next plan in time
   std::size_t at_once_ = 0;  // plans that this tick may make to their end yet
   std::size_t budget_ = 0;   // junctions that this tick may look at yet

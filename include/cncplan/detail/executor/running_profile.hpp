@@ -44,7 +44,7 @@ class BasicRunningProfile {
   /// Seconds to its end.
   [[nodiscard]] S left() const { return time_.until(duration_); }
   /// Seconds until a profile has to be better, or it leaves its top speed; negative behind that.
-  [[nodiscard]] S to_turn() const { return time_.until(turn_); }
+  [[nodiscard]] S to_cruise_end() const { return time_.until(turn_); }
   /// Seconds to the end of the phase.
   [[nodiscard]] S to_edge() const {
     return phase_ + 1 < count_ ? time_.until(phases_[phase_ + 1].time) : left();

@@ -1,4 +1,4 @@
-// Definitions of play.hpp.
+// Definitions of simulate_motion.hpp.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class SimulationRecord {
   SimulationRecord(std::span<const MotionBlock> cells, std::span<const std::size_t> blocks) : cells_(cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const bool same = i > 0 && blocks[i] == blocks[i - 1];
-      places_.push_back({blocks[i], same ? places_.back().from + cells[i - 1].segment.length : 0.0});
+      places_.push_back({blocks[i], same ? places_.back().from + cells[i - 1].segment_limits.length : 0.0});
     }
   }
 
@@ -32,7 +32,7 @@ class SimulationRecord {
     close();
     double along = now.along;
     for (auto cell = static_cast<std::size_t>(now.block); cell < cell_; ++cell)  // by rounding still before
-      along = std::max(along - cells_[cell].segment.length, 0.0);
+      along = std::max(along - cells_[cell].segment_limits.length, 0.0);
     cell_ = std::max(cell_, static_cast<std::size_t>(now.block));
     open_ = {time, lasts, along, now.velocity, now.acceleration, now.jerk};
   }
@@ -50,7 +50,7 @@ class SimulationRecord {
 
   void close() {
     for (; open_.duration > 0.0; ++cell_) {
-      const double length = cells_[cell_].segment.length;
+      const double length = cells_[cell_].segment_limits.length;
       if (cell_ + 1 == cells_.size() || open_.at(open_.duration).position < length + rounding) {
         push(open_);
         break;

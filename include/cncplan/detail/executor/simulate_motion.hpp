@@ -40,15 +40,15 @@ template <BlockModel B, std::invocable<const B&> Feed>
     double rest = 0.0;
     for (const auto& pause : cells.pauses)
       if (pause.cells == 0) rest += pause.seconds;
-    cells.segments.insert(cells.segments.begin(), {0.0, 0.0, {1.0, 1.0, 1.0}, rest});
+    cells.segment_limits.insert(cells.segment_limits.begin(), {0.0, 0.0, {1.0, 1.0, 1.0}, rest});
     cells.blocks.insert(cells.blocks.begin(), cells.pauses.front().block);
   }
   std::vector<MotionBlock> cells_of_blocks;
-  cells_of_blocks.reserve(cells.segments.size());
-  for (std::size_t i = 0; i < cells.segments.size(); ++i) {
+  cells_of_blocks.reserve(cells.segment_limits.size());
+  for (std::size_t i = 0; i < cells.segment_limits.size(); ++i) {
     const B& block = blocks[cells.blocks[i]];
-    const bool more = i + 1 < cells.segments.size();
-    cells_of_blocks.push_back({.segment = cells.segments[i],
+    const bool more = i + 1 < cells.segment_limits.size();
+    cells_of_blocks.push_back({.segment_limits = cells.segment_limits[i],
                                .feed = feed_of(block),
                                .rapid = block.rapid,
                                .line = block.line,

@@ -156,7 +156,7 @@ bool SmoothingAhead<M, B>::push(const B& block, const M& machine, Scalar line) {
       if (moves) {
         const JunctionMode junction_mode =
             rests_ ? JunctionMode::stop : junction_mode_between(*last_, block, machine, rules_);
-        if (junction_mode != JunctionMode::blend && begin_ != end_) {
+        if (junction_mode != JunctionMode::smooth && begin_ != end_) {
           ends_ = true;
           return false;
         }
@@ -205,7 +205,7 @@ void SmoothingAhead<M, B>::add(const B& block, JunctionMode junction_mode, const
          {line, top_limits(block, machine)},
          sizings_end_,
          0};
-  if (junction_mode == JunctionMode::blend) add_junction(own, block, machine);
+  if (junction_mode == JunctionMode::smooth) add_junction(own, block, machine);
   place_ += block.path.length();
   last_ = &block;
   rests_ = false;

@@ -55,8 +55,8 @@ template <MachineModel M, BlockModel B, profile::RampLaw<typename M::Scalar> Law
   using S = typename M::Scalar;
   std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
   std::pmr::vector<BasicSpan<S>> spans(memory);
-  std::pmr::vector<BasicConstrainedJunction<S>> junctions(cells.segments.size() + 1, memory);
-  const auto planned = plan_spans(std::span<const BasicSegmentLimits<S>>(cells.segments), law,
+  std::pmr::vector<BasicConstrainedJunction<S>> junctions(cells.segment_limits.size() + 1, memory);
+  const auto planned = plan_spans(std::span<const BasicSegmentLimits<S>>(cells.segment_limits), law,
                                   std::span(junctions), std::back_inserter(spans));
   if (!planned) return tl::unexpected(ProgramError{{planned.error(), 0, 0, {}}});
   auto phases = block_phases(std::span<const BasicSpan<S>>(spans), cells);

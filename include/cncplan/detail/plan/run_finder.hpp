@@ -64,7 +64,7 @@ class RunFinder {
       if (moves(i)) {
         if (i > first &&
             (!smooth(i) ||
-             junction_mode_between(blocks_[last], blocks_[i], machine_, rules_) != JunctionMode::blend ||
+             junction_mode_between(blocks_[last], blocks_[i], machine_, rules_) != JunctionMode::smooth ||
              !maps_agree(blocks_[last].path, blocks_[i].path, machine_)))
           break;
         last = i;
@@ -136,7 +136,7 @@ class RunFinder {
     for (std::size_t before = i; before-- > first;) {
       if (rests(before)) return false;
       if (moves(before))
-        return junction_mode_between(blocks_[before], blocks_[i], machine_, rules_) == JunctionMode::blend;
+        return junction_mode_between(blocks_[before], blocks_[i], machine_, rules_) == JunctionMode::smooth;
     }
     return false;
   }

@@ -123,7 +123,7 @@ struct BasicCell {
   S rest{};  ///< s, which motors with backlash need there where the motion stops, beyond the block's pause
 };
 
-/// Makes the cells of one block after another: of a whole program, or of blocks as they come in. A joint
+/// Makes the cells of one block after another: of a whole program, or of blocks as they come in. A junction
 /// within one motion has no rules of its own; where an axis with backlash turns round, the speed leaves its
 /// motors time for that. Limits within a motion are made alike (`BasicLimitSmoothing`), and what has the same
 /// limits within a block is one cell.
@@ -143,7 +143,7 @@ class CellMaker {
         tool_(tool_axes(machine)),
         travel_(travel(machine)),
         above_(above),
-        turnings_(machine),
+        reversals_(machine),
         cut_(machine) {
     for (const auto& axis : machine.axes) axes_limited_ = axes_limited_ || has_limits(axis);
   }
@@ -209,7 +209,7 @@ class CellMaker {
     has_ahead_ = false;
     parts_ = 0;
     length_ = cut_until_ = Scalar(0);
-    turnings_ = Reversals<M>(machine_);
+    reversals_ = Reversals<M>(machine_);
     reversal_count_ = 0;
     moved_ = false;
     pause_ = paused_ = Scalar(0);
@@ -219,7 +219,7 @@ class CellMaker {
   static constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
   static constexpr int most_parts = 8;  // of a cell: bounds the work for one
 
-  // The block before a joint.
+  // The block before a junction.
   struct Before {
     Scalar wanted{};  // speed
     LengthOf counted{};
@@ -251,18 +251,18 @@ class CellMaker {
       if (counted != LengthOf::tool)
         if (auto ok = limited(block, machine_); !ok) return ok;
       entry_ = Scalar(0);
-      joint_.after = ends.start.first;
+      junction_.after = ends.start.first;
       const auto kind = block.rapid ? junction::Kind::rapid : junction::Kind::line;
-      joint_.tool.after = tool_side(path, kind, ends, PathEnd::start, tool_);
+      junction_.tool.after = tool_side(path, kind, ends, PathEnd::start, tool_);
       if (before_ && counted == before_->counted && junction_mode != JunctionMode::stop)
-        entry_ = before_->goes_on || junction_mode == JunctionMode::blend ? infinity : junction_speed(speed);
-      joint_.before = ends.end.first;
-      joint_.tool.before =
-          path::is_line<P> ? joint_.tool.after : tool_side(path, kind, ends, PathEnd::end, tool_);
+        entry_ = before_->goes_on || junction_mode == JunctionMode::smooth ? infinity : junction_speed(speed);
+      junction_.before = ends.end.first;
+      junction_.tool.before =
+          path::is_line<P> ? junction_.tool.after : tool_side(path, kind, ends, PathEnd::end, tool_);
       before_ = Before{speed, counted, block.exact_path, block.goes_on};
       block_ = &block;
       driven_ = driven;
-      turnings_.begin(block.path);
+      reversals_.begin(block.path);
       length_ = length;
       cut_until_ = Scalar(0);
     } else {
@@ -273,16 +273,16 @@ class CellMaker {
     return {};
   }
 
-  // At a joint with a block of this speed.
+  // At a junction with a block of this speed.
   [[nodiscard]] Scalar junction_speed(Scalar wanted) {
-    joint_.tool.limits = machine_.limits;
-    joint_.tool.limits.velocity = std::min(before_->wanted, wanted);
-    Scalar speed_sq = rules_.policy.speed_sq(joint_.tool);
+    junction_.tool.limits = machine_.limits;
+    junction_.tool.limits.velocity = std::min(before_->wanted, wanted);
+    Scalar speed_sq = rules_.policy.speed_sq(junction_.tool);
     if (before_->exact_path)
-      speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<Scalar>{}.speed_sq(joint_.tool));
+      speed_sq = std::min(speed_sq, junction::BasicStopAtCorners<Scalar>{}.speed_sq(junction_.tool));
     const Scalar speed = speed_sq > Scalar(0) ? std::sqrt(speed_sq) : Scalar(0);
     if (rules_.tolerance < Scalar(0) || !axes_limited_) return speed;
-    return std::min(speed, axis_corner_speed(joint_, machine_, rules_.tolerance, rules_.rotary_tolerance));
+    return std::min(speed, axis_corner_speed(junction_, machine_, rules_.tolerance, rules_.rotary_tolerance));
   }
 
   // The cell begins with the part ahead.
@@ -296,10 +296,10 @@ class CellMaker {
     cell.entry = std::exchange(entry_, infinity);
     cell.rest = Scalar(0);
     for (; reversal_count_ > 0; --reversal_count_) {
-      const auto& turning = turning_[reversal_count_ - 1];
-      cell.entry = std::min(cell.entry, turning.speed(cell.part.limits));
+      const auto& reversal = reversals_here_[reversal_count_ - 1];
+      cell.entry = std::min(cell.entry, reversal.speed(cell.part.limits));
       if (moved_ && !(cell.entry > Scalar(0)))
-        cell.rest = std::max(cell.rest, turning.pause(cell.part.limits) - paused_);
+        cell.rest = std::max(cell.rest, reversal.pause(cell.part.limits) - paused_);
     }
     paused_ = Scalar(0);
     moved_ = true;
@@ -339,12 +339,12 @@ class CellMaker {
 
   // Begins with the piece from a length to the next place within the block where an axis turns round.
   void cut_on(Scalar from) {
-    while (!(turnings_.next() > from)) {
-      const auto turning = turnings_.take(block_->path);
-      if (reversal_count_ < turning_.size()) turning_[reversal_count_++] = turning;
+    while (!(reversals_.next() > from)) {
+      const auto reversal = reversals_.take(block_->path);
+      if (reversal_count_ < reversals_here_.size()) reversals_here_[reversal_count_++] = reversal;
     }
     constexpr Scalar apart = Scalar(0.5);  // shorter pieces would gain little
-    const Scalar to = std::min(driven_.next_change(from, apart), turnings_.next());
+    const Scalar to = std::min(driven_.next_change(from, apart), reversals_.next());
     cut_.begin(*block_, driven_, from, to, wanted_, top_speed(*block_, machine_));
   }
 
@@ -354,8 +354,9 @@ class CellMaker {
   BasicBox<Scalar, M::axis_count> travel_;
   bool above_;
   bool axes_limited_ = false;  // any of them
-  Reversals<M> turnings_;
-  std::array<BasicReversal<Scalar>, static_cast<std::size_t>(M::axis_count)> turning_{};  // at the next cell
+  Reversals<M> reversals_;
+  std::array<BasicReversal<Scalar>, static_cast<std::size_t>(M::axis_count)>
+      reversals_here_{};  // at the next cell
   std::size_t reversal_count_ = 0;
   Cut cut_;
   BasicLimitSmoothing<Scalar> level_, level_above_;
@@ -372,7 +373,7 @@ class CellMaker {
   LengthOf counted_{};
   Scalar entry_{};
   std::optional<Before> before_;  // that moved last, where the motion does not stop behind it
-  BasicBlockJunction<Scalar, M::axis_count> joint_{};
+  BasicBlockJunction<Scalar, M::axis_count> junction_{};
   std::optional<Vector> end_;
   Scalar pause_{};      // s at rest since the last motion
   Scalar paused_{};     // the same before this block

@@ -26,12 +26,13 @@ struct BasicBlockPause {
 /// The blocks of a program cut into cells, over each of which one set of limits holds.
 template <std::floating_point S>
 struct BasicCells {
-  std::pmr::vector<BasicSegmentLimits<S>> segments;  ///< of each cell, in order
-  std::pmr::vector<std::size_t> blocks;              ///< to which each belongs
-  std::pmr::vector<BasicBlockPause<S>> pauses;  ///< in order; the segments have those behind a cell as a sum
+  std::pmr::vector<BasicSegmentLimits<S>> segment_limits;  ///< of each cell, in order
+  std::pmr::vector<std::size_t> blocks;                    ///< to which each belongs
+  std::pmr::vector<BasicBlockPause<S>> pauses;  ///< in order; the limits have those behind a cell as a sum
 
   BasicCells() = default;
-  explicit BasicCells(std::pmr::memory_resource* memory) : segments(memory), blocks(memory), pauses(memory) {}
+  explicit BasicCells(std::pmr::memory_resource* memory)
+      : segment_limits(memory), blocks(memory), pauses(memory) {}
 };
 
 /// What went wrong with a block.
@@ -48,12 +49,12 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
     std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
   using S = typename M::Scalar;
   BasicCells<S> cells(memory);
-  cells.segments.reserve(blocks.size());
+  cells.segment_limits.reserve(blocks.size());
   cells.blocks.reserve(blocks.size());
   const auto rest = [&](std::size_t block, S seconds) {
     if (!(seconds > S(0))) return;
-    if (!cells.segments.empty()) cells.segments.back().pause += seconds;
-    cells.pauses.push_back({cells.segments.size(), block, seconds});
+    if (!cells.segment_limits.empty()) cells.segment_limits.back().pause += seconds;
+    cells.pauses.push_back({cells.segment_limits.size(), block, seconds});
   };
   CellMaker<M, B, Policy, Cut<M, B>> maker(machine, rules);
   const auto tool = tool_axes(machine);
@@ -68,7 +69,7 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
       if (const auto ok = maker.next(); !ok) return tl::unexpected(BlockFault{ok.error(), i});
       const auto& [from, to, limits] = maker.cell().part;
       if (!cells.blocks.empty()) rest(cells.blocks.back(), maker.cell().rest);
-      cells.segments.push_back({to - from, maker.cell().entry, limits, S(0)});
+      cells.segment_limits.push_back({to - from, maker.cell().entry, limits, S(0)});
       cells.blocks.push_back(i);
     }
     rest(i, blocks[i].pause);

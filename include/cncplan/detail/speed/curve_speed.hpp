@@ -143,7 +143,7 @@ class CurveSpeed {
       const S before = last_speed(starts_[i], knot), after = last_speed(starts_[i] + cells_[i].length, knot);
       cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
     }
-    set_paces();
+    set_scales();
     const std::size_t n = cells_.size();
     scales_.resize(n);
     levels_.resize(n);
@@ -307,7 +307,7 @@ class CurveSpeed {
     origins_.push_back(origin);
   }
 
-  void set_paces() {
+  void set_scales() {
     for (const auto& [from, to, share] : slow_)
       for (std::size_t i = 0; i < cells_.size(); ++i) {
         const bool has_law = i > 0 && i <= ends_.given;

@@ -1,4 +1,4 @@
-// How fast the joint between two blocks may be passed: a policy for the tool, the corners of the axes.
+// How fast the junction between two blocks may be passed: a policy for the tool, the corners of the axes.
 #pragma once
 
 #include <algorithm>
@@ -16,31 +16,31 @@
 
 namespace cncplan::detail {
 
-/// How a joint between two blocks looks to the axes and to the tool.
+/// How a junction between two blocks looks to the axes and to the tool.
 template <std::floating_point S, int N>
 struct BasicBlockJunction {
   VectorN<S, N> before, after;  ///< derivatives of the axes by length
   junction::BasicGeometry<S> tool;
 };
 
-/// The highest speed at which the axes may change from one block's direction to the next one's, if the joint
-/// were rounded within the tolerances: over a blend of half length l the derivative of an axis changes by d,
-/// so v^2 d / (2 l) is its acceleration; where that has no limit, a blend at the jerk J has v^3 d / l^2 = J.
-/// The tool's deviation of a blend with jump D of its direction is l D / 4, that of an axis l d / 4 (a rotary
-/// one: rad): the shortest l that one of them allows holds. Infinite where no axis with a limit of
-/// acceleration or jerk changes its direction.
+/// The highest speed at which the axes may change from one block's direction to the next one's, if the
+/// junction were rounded within the tolerances: over a blend of half length l the derivative of an axis
+/// changes by d, so v^2 d / (2 l) is its acceleration; where that has no limit, a blend at the jerk J has v^3
+/// d / l^2 = J. The tool's deviation of a blend with jump D of its direction is l D / 4, that of an axis l d
+/// / 4 (a rotary one: rad): the shortest l that one of them allows holds. Infinite where no axis with a limit
+/// of acceleration or jerk changes its direction.
 template <MachineModel M>
 [[nodiscard]] typename M::Scalar axis_corner_speed(
-    const BasicBlockJunction<typename M::Scalar, M::axis_count>& joint, const M& machine,
+    const BasicBlockJunction<typename M::Scalar, M::axis_count>& junction, const M& machine,
     typename M::Scalar tolerance, typename M::Scalar rotary_tolerance) {
   using S = typename M::Scalar;
   constexpr S none = std::numeric_limits<S>::infinity();
   constexpr S rounding = S(64) * std::numeric_limits<S>::epsilon();
   S blend = none;
-  const S tool_jump = (joint.tool.after.tangent - joint.tool.before.tangent).norm();
+  const S tool_jump = (junction.tool.after.tangent - junction.tool.before.tangent).norm();
   if (tool_jump > rounding) blend = S(4) * tolerance / tool_jump;
   const auto jump_of = [&](int axis) {
-    const S before = joint.before[axis], after = joint.after[axis];
+    const S before = junction.before[axis], after = junction.after[axis];
     const S jump = std::abs(after - before);
     return jump > rounding * (std::abs(before) + std::abs(after)) ? jump : S(0);
   };
@@ -86,19 +86,19 @@ template <class Vector>
   return v / std::sqrt(norm_sq);
 }
 
-/// Where a path meets a joint.
+/// Where a path meets a junction.
 enum class PathEnd : std::uint8_t { start, end };
 
-/// One side of a joint, as junction policies see it: a path of a kind (an arc is told by the path itself),
+/// One side of a junction, as junction policies see it: a path of a kind (an arc is told by the path itself),
 /// with what its axes are at its ends.
 template <Path P>
 [[nodiscard]] inline junction::BasicSide<typename P::Scalar> tool_side(
-    const P& path, junction::Kind kind, const PathEnds<typename P::Vector>& ends, PathEnd joint,
+    const P& path, junction::Kind kind, const PathEnds<typename P::Vector>& ends, PathEnd junction,
     const std::array<int, 3>& tool) {
   using S = typename P::Scalar;
   using Vector3 = BasicVector3<S>;
   if constexpr (requires { path.visit([](const auto&) {}); }) {
-    return path.visit([&](const auto& inside) { return tool_side(inside, kind, ends, joint, tool); });
+    return path.visit([&](const auto& inside) { return tool_side(inside, kind, ends, junction, tool); });
   } else {
     junction::BasicSide<S> side;
     side.kind = kind;
@@ -110,10 +110,10 @@ template <Path P>
     if constexpr (tells_tool<P>) {
       const auto start = tool_point(path, S(0), tool);
       const auto end = tool_point(path, path.length(), tool);
-      const auto& at = joint == PathEnd::end ? end : start;
+      const auto& at = junction == PathEnd::end ? end : start;
       set(at.first, at.second, end.position - start.position);
     } else {
-      const auto& at = joint == PathEnd::end ? ends.end : ends.start;
+      const auto& at = junction == PathEnd::end ? ends.end : ends.start;
       set(in_space(at.first, tool), path::is_line<P> ? Vector3(Vector3::Zero()) : in_space(at.second, tool),
           in_space(VectorN<S, P::Vector::RowsAtCompileTime>(ends.end.position - ends.start.position), tool));
     }

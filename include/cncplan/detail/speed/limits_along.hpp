@@ -146,11 +146,10 @@ template <std::floating_point S>
   if (!(v > S(0) && a > S(0) && j > S(0))) return std::numeric_limits<S>::infinity();
   const S share = length / ramps;
   const S by_jerk = std::cbrt(share * share * j / S(4));  // share = 2 v sqrt(v / j)
-  const S zero_acceleration = a / j;
-  const S by_acceleration =
-      (std::sqrt(zero_acceleration * zero_acceleration + S(4) * share / a) - zero_acceleration) * a / S(2);
-  const S top = std::min(v, by_jerk > a * zero_acceleration ? by_acceleration : by_jerk);
-  const S ramp = top > a * zero_acceleration ? top / a + zero_acceleration : S(2) * std::sqrt(top / j);
+  const S rise = a / j;
+  const S by_acceleration = (std::sqrt(rise * rise + S(4) * share / a) - rise) * a / S(2);
+  const S top = std::min(v, by_jerk > a * rise ? by_acceleration : by_jerk);
+  const S ramp = top > a * rise ? top / a + rise : S(2) * std::sqrt(top / j);
   return length / top + ramps * ramp;
 }
 

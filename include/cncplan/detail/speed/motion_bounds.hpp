@@ -34,7 +34,7 @@ struct BasicUtilisation {
   [[nodiscard]] S slow_down() const { return std::max(velocity, force()); }
 };
 
-using Use = BasicUtilisation<double>;
+using Utilisation = BasicUtilisation<double>;
 
 /// A polynomial over [0, 1] by its powers, lowest first.
 template <std::floating_point S, std::size_t Size>

@@ -19,8 +19,8 @@ namespace cncplan::detail {
 template <std::floating_point S>
 [[nodiscard]] std::pmr::vector<BasicPiecePhase<S>> block_phases(std::span<const BasicSpan<S>> spans,
                                                                 const BasicCells<S>& cells) {
-  std::pmr::vector<BasicPiecePhase<S>> table(cells.segments.get_allocator());
-  table.reserve(cells.segments.size() + 7 * spans.size());
+  std::pmr::vector<BasicPiecePhase<S>> table(cells.segment_limits.get_allocator());
+  table.reserve(cells.segment_limits.size() + 7 * spans.size());
   S start = S(0);
   S travelled = S(0);  // of the block that goes on, in the spans before
   S finished = S(0);   // length of the block that was finished last
@@ -45,7 +45,7 @@ template <std::floating_point S>
     const std::size_t end = span.first + span.count;
     for (std::size_t cell = span.first; cell < end; ++cell) {
       const std::size_t block = cells.blocks[cell];
-      position += cells.segments[cell].length;
+      position += cells.segment_limits[cell].length;
       const bool block_ends = cell + 1 == cells.blocks.size() || cells.blocks[cell + 1] != block;
       if (!block_ends && cell + 1 < end) continue;
       const S until = cell + 1 == end ? duration : std::max(span.profile.time_at(position), time);

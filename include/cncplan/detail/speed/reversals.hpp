@@ -19,7 +19,7 @@ namespace cncplan::detail {
 /// A place in a block where an axis turns round.
 template <std::floating_point S>
 struct BasicReversal {
-  S at{};    ///< length from the block's start; 0 for the joint before it
+  S at{};    ///< length from the block's start; 0 for the junction before it
   S rate{};  ///< the axis' first and second derivative by length behind it
   S bend{};
   step::BasicReversalRule<S> rule;
@@ -41,7 +41,7 @@ template <MachineModel M>
 class Reversals {
  public:
   using Scalar = typename M::Scalar;
-  using Turning = BasicReversal<Scalar>;
+  using Reversal = BasicReversal<Scalar>;
 
   explicit Reversals(const M& machine) {
     for (std::size_t i = 0; i < axes_.size(); ++i)
@@ -68,7 +68,7 @@ class Reversals {
 
   /// Takes it from the path.
   template <Path P>
-  [[nodiscard]] Turning take(const P& path) {
+  [[nodiscard]] Reversal take(const P& path) {
     const std::size_t i = nearest();
     const Scalar at = axes_[i].next;
     const auto k = static_cast<int>(i);

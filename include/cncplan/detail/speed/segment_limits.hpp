@@ -1,4 +1,4 @@
-// Caps: what look-ahead needs to know of a block, or of a part of one.
+// Segment limits: what look-ahead needs to know of a cell.
 #pragma once
 
 #include <concepts>

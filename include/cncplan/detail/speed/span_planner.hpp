@@ -20,8 +20,8 @@
 
 namespace cncplan::detail {
 
-/// A junction at which limits change or the speed's is lower than on both sides: the only junctions
-/// look-ahead has to look at.
+/// A junction at which limits change, or whose cap is lower than the speed limits on both sides: the only
+/// junctions that look-ahead has to look at.
 template <std::floating_point S>
 struct BasicConstrainedJunction {
   std::size_t block{};       ///< the block that starts here
@@ -100,7 +100,7 @@ template <std::floating_point S>
 /// That nearest zero-acceleration junctions suffice: with r(v, d) the speed reached from v over d, r(r(v,
 /// d1), d2) <= r(v, d1 + d2), so a zero-acceleration junction within reach of its neighbour is a stronger
 /// bound on what lies beyond it than the neighbour is. Where limits differ and that fails, there is no
-/// profile between two steady junctions, and the junctions between them become fixed.
+/// profile between two such junctions, and the junctions between them become fixed.
 template <std::floating_point S, profile::RampLaw<S> Law = profile::SevenPhase>
 class JunctionPlanner {
  public:
@@ -182,7 +182,7 @@ class JunctionPlanner {
   }
 
   void begin_at(std::size_t junction) {
-    zero_acceleration_ = at_ = junction;
+    last_zero_ = at_ = junction;
     distance_ = S(0);
     limits_ = {fastest_, infinity, infinity};
   }
@@ -192,13 +192,13 @@ class JunctionPlanner {
     for (const ConstrainedJunction& junction : junctions_)
       fastest_ = std::max({fastest_, junction.limits.velocity, junction.cap});
     begin_at(junctions_.size() - 1);
-    junctions_[zero_acceleration_].speed = junctions_[zero_acceleration_].cap;
+    junctions_[last_zero_].speed = junctions_[last_zero_].cap;
     pass_ = Pass::backward;
   }
 
   void go_backward(std::size_t i) {
     ConstrainedJunction& junction = junctions_[i];
-    const ConstrainedJunction& right = junctions_[zero_acceleration_];
+    const ConstrainedJunction& right = junctions_[last_zero_];
     distance_ += junction.gap;
     share(limits_, junction.limits);
     const S reachable = solver_(limits_).reachable_speed(right.speed, distance_);
@@ -221,7 +221,7 @@ class JunctionPlanner {
     distance_ += junctions_[i - 1].gap;
     share(limits_, junctions_[i - 1].limits);
     if (!junction.zero_acceleration) return;
-    const S reachable = solver_(limits_).reachable_speed(junctions_[zero_acceleration_].speed, distance_);
+    const S reachable = solver_(limits_).reachable_speed(junctions_[last_zero_].speed, distance_);
     junction.zero_acceleration = junction.fixed || junction.speed <= reachable;
     if (!junction.zero_acceleration) return;
     junction.speed = std::min(junction.speed, reachable);
@@ -300,10 +300,10 @@ class JunctionPlanner {
   S fastest_{};
   Pass pass_ = Pass::begin;
   int round_ = 0;
-  std::size_t at_ = 0;                 // the junction looked at
-  std::size_t zero_acceleration_ = 0;  // the one at zero acceleration before it, in the direction of the pass
-  S distance_{};                       // from there
-  BasicLimits<S> limits_{};            // on the way
+  std::size_t at_ = 0;         // the junction looked at
+  std::size_t last_zero_ = 0;  // the one at zero acceleration before it, in the direction of the pass
+  S distance_{};               // from there
+  BasicLimits<S> limits_{};    // on the way
   bool violated_ = false;
 };
 

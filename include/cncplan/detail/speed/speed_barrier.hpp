@@ -37,16 +37,16 @@ struct BasicLawPlace {
 /// What the time gains by a higher limit, the multiplier of an interior-point method; and its share as
 /// `cell_model` found it last.
 template <std::floating_point S>
-struct BasicBarrierWeight {
-  S barrier_weight{};
-  S multiplier = 1;       ///< 1 / (1 - share)
+struct BasicMultiplier {
+  S multiplier{};
+  S inverse_room = 1;     ///< 1 / (1 - share)
   std::array<S, 3> by{};  ///< the derivatives of the share by b, b' and b''
 
-  /// Moves the barrier_weight by a part of its Newton step, where b, b' and b'' make these steps: to where
-  /// barrier_weight (1 - share) is the weight, to first order.
+  /// Moves the multiplier by a part of its Newton step, where b, b' and b'' make these steps: to where
+  /// multiplier (1 - share) is the weight, to first order.
   constexpr void move(const std::array<S, 3>& step, S weight, S part) {
     const S rise = by[0] * step[0] + by[1] * step[1] + by[2] * step[2];
-    barrier_weight += part * ((weight + barrier_weight * rise) * multiplier - barrier_weight);
+    multiplier += part * ((weight + multiplier * rise) * inverse_room - multiplier);
   }
 };
 
@@ -57,8 +57,8 @@ struct BasicForceShare {
   std::array<S, 6> p{};  ///< products of q', q'', q'''
   S acceleration_sq{};   ///< reciprocal square of the limit; 0: none
   S jerk_sq{};           ///< the same of jerk
-  BasicBarrierWeight<S> of_acceleration{};
-  BasicBarrierWeight<S> of_jerk{};
+  BasicMultiplier<S> of_acceleration{};
+  BasicMultiplier<S> of_jerk{};
 
   /// acceleration = q'' b + q' b'/2
   [[nodiscard]] S acceleration(S b, S slope) const {
@@ -81,12 +81,12 @@ struct BasicForceShare {
   }
 };
 
-/// The limit of b at one place: its reciprocal, and its barrier_weight.
+/// The limit of b at one place: its reciprocal, and its multiplier.
 template <std::floating_point S>
 struct BasicSpeedShare {
   BasicLawPlace<S> place{};
   S speed_sq{};
-  BasicBarrierWeight<S> of_speed{};
+  BasicMultiplier<S> of_speed{};
 };
 
 /// The limits of a cell at its start, its middle and its end: three of the speed, and all others of one place
@@ -184,7 +184,7 @@ template <std::floating_point S, int N>
   return count;
 }
 
-/// Writes the limits of a cell, lowered to a scale, and leaves places and barrier_weights.
+/// Writes the limits of a cell, lowered to a scale, and leaves places and multipliers.
 template <std::floating_point S, int N>
 void set_shares(const BasicSpeedCell<S, N>& cell, const BasicMotionLimits<S, N>& limits,
                 const BasicLimitScale<S>& scale, const BasicCellShares<S>& shares) {
@@ -289,7 +289,7 @@ template <std::floating_point S>
 }
 
 /// Gradient of time + weight * barrier, and the Hessian of the time and of the shares at their
-/// barrier_weights. The barrier_weights are kept near to what the barrier makes them, weight / (1 - share),
+/// multipliers. The multipliers are kept near to what the barrier makes them, weight / (1 - share),
 /// by a factor `spread`: 1 gives the Hessian of the barrier itself. All terms are convex but the jerk's: with
 /// u = b |y|^2 / J^2 and y = q''' b + 3/2 q'' b' + q' b''/2, linear in (b, b', b''), the Hessian of u is
 /// positive but for -2 u / b^2 in its first entry, which is taken off what the time has there, as far as that
@@ -299,12 +299,12 @@ template <std::floating_point S>
                                            S spread) {
   BasicCellModel<S> model;
   const S least = S(1) / spread;
-  const auto settle = [&](BasicBarrierWeight<S>& own, S share, const std::array<S, 3>& by) {
-    own.multiplier = S(1) / (S(1) - share);
+  const auto settle = [&](BasicMultiplier<S>& own, S share, const std::array<S, 3>& by) {
+    own.inverse_room = S(1) / (S(1) - share);
     own.by = by;
-    const S multiplier = weight * own.multiplier;
-    own.barrier_weight = std::clamp(own.barrier_weight, multiplier * least, multiplier * spread);
-    return own.barrier_weight;
+    const S central = weight * own.inverse_room;
+    own.multiplier = std::clamp(own.multiplier, central * least, central * spread);
+    return own.multiplier;
   };
   for (std::size_t i = 0; i < 3; ++i) {
     BasicSpeedShare<S>& speed = shares.speeds[i];
@@ -317,15 +317,15 @@ template <std::floating_point S>
     const S inverse = S(1) / b, time = place.time * std::sqrt(inverse);
     g[0] = S(-0.5) * time * inverse;
     S own = S(0.75) * time * inverse * inverse;
-    const S cap = speed.speed_sq, barrier_weight = settle(speed.of_speed, b * cap, {cap, S(0), S(0)});
-    g[0] += weight * speed.of_speed.multiplier * cap;
-    H[0] += barrier_weight * speed.of_speed.multiplier * cap * cap;
+    const S cap = speed.speed_sq, of_speed = settle(speed.of_speed, b * cap, {cap, S(0), S(0)});
+    g[0] += weight * speed.of_speed.inverse_room * cap;
+    H[0] += of_speed * speed.of_speed.inverse_room * cap * cap;
     for (BasicForceShare<S>& force : shares.forces_at(i)) {
       const auto& p = force.p;
       if (const S k = force.acceleration_sq; k > S(0)) {
         const auto [x, y] = force.by_acceleration(b, slope);
         const S multiplier = settle(force.of_acceleration, force.acceleration(b, slope), {x, y, S(0)});
-        const S f = force.of_acceleration.multiplier;
+        const S f = force.of_acceleration.inverse_room;
         g[0] += weight * f * x;
         g[1] += weight * f * y;
         H[0] += multiplier * (f * x * x + k * S(2) * p[3]);
@@ -336,7 +336,7 @@ template <std::floating_point S>
         const auto y = force.pull(b, slope, bend);
         const S square = y[0] * b + y[1] * slope + y[2] * bend, two = S(2) * k;
         const std::array<S, 3> d{k * (square + S(2) * b * y[0]), two * b * y[1], two * b * y[2]};
-        const S multiplier = settle(force.of_jerk, k * b * square, d), f = force.of_jerk.multiplier,
+        const S multiplier = settle(force.of_jerk, k * b * square, d), f = force.of_jerk.inverse_room,
                 pf = multiplier * f;
         for (std::size_t q = 0; q < 3; ++q) g[q] += weight * f * d[q];
         const S bent = multiplier * two, part = square * inverse;
@@ -365,10 +365,10 @@ template <std::floating_point S>
   return model;
 }
 
-/// Moves the barrier_weights by a part of the Newton step that belongs to a step of the law from where
+/// Moves the multipliers by a part of the Newton step that belongs to a step of the law from where
 /// `cell_model` was asked last.
 template <std::floating_point S>
-void move_barrier_weights(const BasicCellShares<S>& shares, const S* step, S weight, S part) {
+void move_multipliers(const BasicCellShares<S>& shares, const S* step, S weight, S part) {
   for (std::size_t i = 0; i < 3; ++i) {
     const BasicLawPlace<S>& place = shares.speeds[i].place;
     const std::array<S, 3> by_place{place.row(place.b, step), place.row(place.slope, step),

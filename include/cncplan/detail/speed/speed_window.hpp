@@ -158,9 +158,9 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
   // By proof. Phases use a little more of the limits than the law does at three places: that comes off the
   // limits of their cell before the law comes to them, so that it keeps what is left as a rule. The law that
   // is kept keeps it in any case.
-  const auto prove = [&](std::span<const S> numbers, bool pace_too) {
+  const auto prove = [&](std::span<const S> numbers, bool scale_too) {
     bool proven = true;
-    const std::span<const S> before = pace_too ? between(S(0)) : numbers;
+    const std::span<const S> before = scale_too ? between(S(0)) : numbers;
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
       const BasicCellSpeed<S> b = speed_in(cell, numbers);
       const BasicUtilisation<S> sampled = sampled_utilisation(problem.cells[cell], *problem.limits, b);
@@ -172,8 +172,8 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
         utilisation.include(utilisation_of(phase, problem.cells[cell], *problem.limits));
       });
       proven = proven && utilisation.slow_down() <= S(1);
-      if (!pace_too && !proven) return false;
-      if (!pace_too) continue;
+      if (!scale_too && !proven) return false;
+      if (!scale_too) continue;
       const BasicUtilisation<S> old =
           sampled_utilisation(problem.cells[cell], *problem.limits, speed_in(cell, before));
       const auto scaled = [](S at_places, S in_phases, S of_kept, S less) {
@@ -200,7 +200,7 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
   if (!(cost.barrier < none) || count == 0) return result;
   const auto terms = static_cast<S>(3 * (1 + 2 * limits) * (cell1 - cell0));
   S weight = S(0.5) * cost.time / terms;
-  constexpr S far = S(1e4);  // of the barrier_weights from what the barrier would have
+  constexpr S far = S(1e4);  // of the multipliers from what the barrier would have
   S spread = S(1);
   for (; result.rounds < options.rounds; ++result.rounds) {
     std::fill(gradient.begin(), gradient.end(), S(0));
@@ -241,7 +241,7 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     }
     if (moved) {
       for (std::size_t cell = cell0; cell < cell1; ++cell)
-        move_barrier_weights(shares_of(cell), &step[cell - cell0], weight, share);
+        move_multipliers(shares_of(cell), &step[cell - cell0], weight, share);
       take(trial);
       spread = far;
       if (decrease > weight * terms * S(0.05)) continue;

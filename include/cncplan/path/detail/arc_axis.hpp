@@ -69,7 +69,7 @@ struct ArcAxis {
     return std::ceil(turns - rounding(turns)) - S(1);
   }
 
-  /// The u in [low, high] with x(u) = wanted, for a piece without a turning inside.
+  /// The u in [low, high] with x(u) = wanted, for a piece without a reversal inside.
   [[nodiscard]] S crossing(S wanted, S low, S high) const {
     const S middle = (low + high) / 2;
     const S turns = std::floor(turning_phase(middle) / std::numbers::pi_v<S>);
@@ -96,7 +96,7 @@ struct ArcAxis {
   }
 
   /// From the circle through the piece's middle, steps to the root of the parabola that agrees in value and
-  /// two derivatives, within a bracket that shrinks: turnings, where Newton's method crawls, are no harder
+  /// two derivatives, within a bracket that shrinks: reversals, where Newton's method crawls, are no harder
   /// than the rest. A step leaves an error of third order in x, hence the end at |step|^3 < rounding: seven
   /// steps at most in 5e6 random crossings of spirals with radius ratios to 1e3, one to three where the ratio
   /// is 1 +- 1e-3.
@@ -104,7 +104,7 @@ struct ArcAxis {
     constexpr int crossing_steps = 16;
     const S middle = (low + high) / 2;
     const S delta = (wanted - start - growth * middle * radial) / (S(1) + growth * middle);
-    // The radius at the crossing, not at the middle, to first order; damped towards turnings, where v = 0.
+    // The radius at the crossing, not at the middle, to first order; damped towards reversals, where v = 0.
     const S u_circle = circle_crossing(delta, middle, sense);
     const S q = radial + delta;
     const S v_sq = std::max(S(0), tangential * tangential - delta * (delta + 2 * radial));
