@@ -28,10 +28,6 @@ namespace {
 using support::Exit;
 using support::Failure;
 
-// Most problems of a program that are told: of one that was to be run, and of one that is checked.
-constexpr std::size_t told_problems = 20;
-constexpr std::size_t checked_problems = 100;
-
 // A pause before a line without motion never comes.
 void tell_pauses(const Options& options, ProgramText& program) {
   if (!options.events) return;
@@ -48,15 +44,9 @@ void tell_pauses(const Options& options, ProgramText& program) {
 
 template <class M>
 int execute(const Options& options, const support::Machine& file, const M& machine) {
-  Problems problems(options.program, options.check ? checked_problems : told_problems);
+  Problems problems(options);
   auto program = read_program(options, file, machine, problems);
-  if (options.check) {  // says all that is wrong, and by kind; plans nothing
-    if (options.json)
-      support::print(kinds_json(problems, program.lines, program.warnings.size()));
-    else if (!options.quiet)
-      support::print(kinds_table(problems));
-  }
-  problems.refuse();
+  tell(options, problems, program.lines, program.warnings.size());
   if (options.check) return static_cast<int>(Exit::done);
   tell_pauses(options, program);
 

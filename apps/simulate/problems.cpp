@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "support/failure.hpp"
+#include "support/main_program.hpp"
 
 namespace simulate {
 
@@ -30,6 +31,30 @@ std::vector<Kind> kinds_of(const Problems& problems) {
     kind->lines.push_back(problem.line);
   }
   return kinds;
+}
+
+// The kinds in order of their first lines, with how many there are and where.
+std::string kinds_table(const Problems& problems) {
+  constexpr std::size_t shown = 8;
+  std::string table;
+  for (const auto& [name, lines] : kinds_of(problems)) {
+    table += fmt::format("{:4}  {}: line", lines.size(), name);
+    for (std::size_t i = 0; i < std::min(lines.size(), shown); ++i)
+      table += fmt::format("{} {}", i == 0 ? "" : ",", lines[i]);
+    table += lines.size() > shown ? ", ...\n" : "\n";
+  }
+  return table.empty() ? "no problems\n" : table;
+}
+
+std::string kinds_json(const Problems& problems, std::size_t lines, std::size_t warnings) {
+  nlohmann::ordered_json json;
+  json["lines"] = lines;
+  json["warnings"] = warnings;
+  json["problems"] = problems.found().size();
+  json["kinds"] = nlohmann::ordered_json::array();
+  for (const Kind& kind : kinds_of(problems))
+    json["kinds"].push_back({{"kind", kind.name}, {"count", kind.lines.size()}, {"lines", kind.lines}});
+  return json.dump(2) + "\n";
 }
 
 // Radii of an arc at its start and its end.
@@ -70,6 +95,12 @@ void Problems::add(const gcode::Motion& motion, const Error& error) {
   add({motion.line, motion.column, kind, mismatch ? kind + radii_text(motion) : text});
 }
 
+void Problems::add(const cncplan::Problem& problem, std::string kind, std::string text) {
+  stand_in(problem.file == file_ ? std::string_view() : problem.file);
+  add({problem.about.line, problem.about.column, std::move(kind), std::move(text)});
+  stand_in({});
+}
+
 void Problems::refuse() const {
   if (found_.empty()) return;
   const auto text = [this](const Problem& problem) {
@@ -81,27 +112,14 @@ void Problems::refuse() const {
   throw support::Failure(support::Exit::bad_input, text(found_.back()));
 }
 
-std::string kinds_table(const Problems& problems) {
-  constexpr std::size_t shown = 8;
-  std::string table;
-  for (const auto& [name, lines] : kinds_of(problems)) {
-    table += fmt::format("{:4}  {}: line", lines.size(), name);
-    for (std::size_t i = 0; i < std::min(lines.size(), shown); ++i)
-      table += fmt::format("{} {}", i == 0 ? "" : ",", lines[i]);
-    table += lines.size() > shown ? ", ...\n" : "\n";
+void tell(const Options& options, const Problems& problems, std::size_t lines, std::size_t warnings) {
+  if (options.check) {
+    if (options.json)
+      support::print(kinds_json(problems, lines, warnings));
+    else if (!options.quiet)
+      support::print(kinds_table(problems));
   }
-  return table.empty() ? "no problems\n" : table;
-}
-
-std::string kinds_json(const Problems& problems, std::size_t lines, std::size_t warnings) {
-  nlohmann::ordered_json json;
-  json["lines"] = lines;
-  json["warnings"] = warnings;
-  json["problems"] = problems.found().size();
-  json["kinds"] = nlohmann::ordered_json::array();
-  for (const Kind& kind : kinds_of(problems))
-    json["kinds"].push_back({{"kind", kind.name}, {"count", kind.lines.size()}, {"lines", kind.lines}});
-  return json.dump(2) + "\n";
+  problems.refuse();
 }
 
 }  // namespace simulate

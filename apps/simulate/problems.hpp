@@ -10,6 +10,8 @@
 #include "cncplan/core/error.hpp"
 #include "cncplan/gcode/diagnostic_text.hpp"
 #include "cncplan/gcode/motion.hpp"
+#include "cncplan/program_record.hpp"
+#include "options.hpp"
 
 namespace simulate {
 
@@ -26,7 +28,8 @@ struct Problem {
 
 class Problems {
  public:
-  Problems(std::string file, std::size_t most) : file_(std::move(file)), most_(most) {}
+  /// Takes twenty problems of a program that is to be run, a hundred of one that is checked.
+  explicit Problems(const Options& options) : file_(options.program), most_(options.check ? 100 : 20) {}
 
   /// What a loop meets in every pass is told once.
   void add(Problem problem) {
@@ -34,6 +37,8 @@ class Problems {
     const bool told = std::find(found_.begin(), found_.end(), problem) != found_.end();
     if (has_room() && !told) found_.push_back(std::move(problem));
   }
+  /// One of a program that the library has read; `text` says it. Of one kind whatever its amounts are.
+  void add(const cncplan::Problem& problem, std::string kind, std::string text);
   /// The file that is being read where it is not the program itself; else empty.
   void stand_in(std::string_view called) { called_ = called; }
   void add(const cncplan::gcode::Diagnostic& diagnostic);
@@ -56,8 +61,8 @@ class Problems {
   std::vector<Problem> found_;
 };
 
-/// The kinds in order of their first lines, with how many there are and where: a table, and as JSON.
-[[nodiscard]] std::string kinds_table(const Problems& problems);
-[[nodiscard]] std::string kinds_json(const Problems& problems, std::size_t lines, std::size_t warnings);
+/// Where a program is only checked, says by kind what was found in so many lines: a table, or JSON. Throws
+/// `Failure` as `Problems::refuse` does.
+void tell(const Options& options, const Problems& problems, std::size_t lines, std::size_t warnings);
 
 }  // namespace simulate

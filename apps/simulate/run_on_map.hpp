@@ -19,6 +19,7 @@
 #include "options.hpp"
 #include "outputs.hpp"
 #include "plan.hpp"
+#include "problems.hpp"
 #include "program.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
@@ -41,23 +42,23 @@ using cncplan::junction::Kind;
   return file.kinematics == support::Kinematics::polar ? file.smallest_radius.value_or(1.0) : 0.0;
 }
 
-/// A problem; of travel in mm or degrees.
-[[nodiscard]] inline std::string problem_text(const cncplan::Problem& problem, const support::Machine& file) {
+/// Takes an error of a program; of travel in mm or degrees.
+inline void add(Problems& problems, const cncplan::Problem& problem, const support::Machine& file) {
   const cncplan::Error& error = problem.about.error;
-  const auto placed = [&](const std::string& text) {
-    return fmt::format("{}:{}:{}: error: {}", problem.file, problem.about.line, problem.about.column, text);
-  };
   const double least = least_radius(file);
-  if (problem.is_error() && error.code == cncplan::ErrorCode::below_limit && error.bound == least &&
-      least > 0.0 && error.field == cncplan::axis_name(file.axes[0].letter))
-    return placed(
+  if (error.code == cncplan::ErrorCode::below_limit && error.bound == least && least > 0.0 &&
+      error.field == cncplan::axis_name(file.axes[0].letter))
+    return problems.add(
+        problem, "too near to the table's axis",
         fmt::format("{:.6g} mm from the table's axis: no nearer than {:.6g} is driven", error.value, least));
   const bool travel =
       error.code == cncplan::ErrorCode::above_limit || error.code == cncplan::ErrorCode::below_limit;
   for (const support::MachineAxis& axis : file.axes)
-    if (travel && problem.is_error() && error.field == cncplan::axis_name(axis.letter))
-      return placed(support::beyond_travel(axis, error.value));
-  return to_text(problem);
+    if (travel && error.field == cncplan::axis_name(axis.letter))
+      return problems.add(problem, fmt::format("axis {} would leave its travel", axis.letter),
+                          support::beyond_travel(axis, error.value));
+  const std::string text = cncplan::gcode::to_text(problem.about);
+  problems.add(problem, text, text);
 }
 
 /// A program's text, and of each block which of its motions it is part of.
@@ -136,21 +137,17 @@ int run_on_map(const Options& options, const support::Machine& file, const std::
   }
 
   const cncplan::Program<cncplan::MappedMachine<Map>> program(text, machine, planning, options.program);
-  constexpr std::size_t told = 20;
-  std::size_t errors = 0;
+  Problems problems(options);
   std::vector<std::string> warnings;
-  const auto tell = [&](const cncplan::Problem& problem) {
-    const std::string line = detail::problem_text(problem, file);
-    if (problem.is_error())
-      ++errors;
-    else
-      warnings.push_back(line);
-    if (!problem.is_error() || errors <= told) fmt::print(stderr, "{}\n", line);
+  const auto take = [&](const cncplan::Problem& problem) {
+    if (problem.is_error()) return detail::add(problems, problem, file);
+    warnings.push_back(to_text(problem));
+    fmt::print(stderr, "{}\n", warnings.back());
   };
-  for (const cncplan::Problem& problem : program.problems()) tell(problem);
+  for (const cncplan::Problem& problem : program.problems()) take(problem);
   if (!(options.tolerance > 0.0))
-    for (const cncplan::Problem& problem : program.if_not_smoothed()) tell(problem);
-  if (errors > 0) return static_cast<int>(Exit::bad_input);
+    for (const cncplan::Problem& problem : program.if_not_smoothed()) take(problem);
+  tell(options, problems, static_cast<std::size_t>(program.lines()), warnings.size());
   if (options.check) return static_cast<int>(Exit::done);
 
   auto origin = detail::text_of(program, machine);

@@ -51,6 +51,28 @@ TEST_CASE("a check (--check) of a program without problems") {
   CHECK(folder.files() == std::set<std::string>{"program.ngc"});
 }
 
+TEST_CASE("a check (--check) says the same on a machine behind a map") {
+  const test::Folder folder;
+  folder.write(
+      "m.toml",
+      "kinematics = \"core-xy\"\n[[axis]]\nletter = \"A\"\n[[axis]]\nletter = \"B\"\n[[axis]]\nletter = "
+      "\"Z\"\ntravel = [-5, 5]\n");
+  std::string program = "G21 G90 F600\nG1 X1 D1\nZ9\nZ1\nX2 D2\nM30\n";
+  const auto run = folder.run_text(program, "--machine m.toml --check");
+  INFO(run.err);
+  CHECK(run.exit == 2);
+  CHECK(run.out ==
+        "   2  D is not supported: line 2, 5\n"
+        "   1  axis Z would leave its travel: line 3\n");
+  CHECK(folder.run("program.ngc --machine m.toml --check --json").json()["kinds"][0]["lines"] ==
+        std::vector<int>{2, 5});
+  for (int i = 0; i < 200; ++i) program.insert(0, "!\n");
+  CHECK(folder.run_text(program, "--machine m.toml --check --json").json()["problems"] == 100);
+  const auto told = folder.run("program.ngc --machine m.toml");
+  CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 20);
+  CHECK(folder.run_text("G1 X1 F600\n", "--machine m.toml --check").out == "no problems\n");
+}
+
 TEST_CASE("an arc whose radii differ is told with both, and how its centre was meant") {
   const test::Folder folder;
   const auto told = [&](const std::string& arc) { return folder.run_text("G21 G90 F600\n" + arc, "").err; };
