@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "cncplan/core/in_space.hpp"
+#include "cncplan/core/phase.hpp"
+#include "cncplan/core/state.hpp"
 #include "cncplan/detail/block_checks.hpp"
 #include "cncplan/tool.hpp"
 #include "cncplan_tools/detail/limited_by.hpp"
