@@ -24,11 +24,14 @@ int main(int argc, char** argv) {
   std::ofstream table("samples.csv"), page("report.html");
   if (!tools::write_samples(table, *trajectory, *file, 1e-3)) return std::fputs("no samples\n", stderr), 1;
   if (const auto missing = tools::report::missing_packages(); !missing.empty())
-    return std::fprintf(stderr, "no report: the library was built without%s\n", missing.data()), 1;
+    return std::fprintf(stderr, "no report: the library was built without%s\n", std::string(missing).c_str()),
+           1;
   std::ifstream program(argv[2]);
   const std::string text{std::istreambuf_iterator<char>(program), {}};
   const std::string seconds = std::to_string(trajectory->duration()) + " s";
-  tools::report::write(page, tools::report_of(*trajectory, *file, {argv[2], text, {{"duration", seconds}}}));
+  const auto report = tools::report_of(*trajectory, *file, {argv[2], text, {{"duration", seconds}}});
+  if (!report) return std::fprintf(stderr, "%s\n", to_text(report.error()).c_str()), 1;
+  tools::report::write(page, *report);
   std::printf("%.3f s: samples.csv, report.html\n", trajectory->duration());
   return table && page ? 0 : 1;
 }

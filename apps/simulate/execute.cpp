@@ -19,7 +19,6 @@
 #include "run.hpp"
 #include "serve.hpp"
 #include "support/failure.hpp"
-#include "support/main_program.hpp"
 
 namespace simulate {
 

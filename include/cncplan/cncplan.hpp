@@ -220,6 +220,7 @@
 #include "cncplan/kinematics/wrist_arm.hpp"
 #include "cncplan/live_steps.hpp"
 #include "cncplan/machine.hpp"
+#include "cncplan/motion_limits.hpp"
 #include "cncplan/motor_edge.hpp"
 #include "cncplan/move_to.hpp"
 #include "cncplan/orientation.hpp"

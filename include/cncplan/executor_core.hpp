@@ -171,7 +171,9 @@ class ExecutorCore {
   /// the program stands: of a map that is switched off, the axes'; so they are before anything has moved.
   /// Increments are from where such a jog goes, or else from where the tool is now. While it moves, a point
   /// straight on is gone to without a stop where limits allow; else the tool, or joints that move, come to
-  /// rest first. Errors: those of `validate` for the speed, and of `ToolJog::line`; as for `jog`.
+  /// rest first. Errors: those of `validate` for the speed; not_finite for a point that is
+  /// none; those of a block that goes there, as an axis that leaves its travel; unreachable, with the axis,
+  /// where the joints have no bounded speed along the way; as for `jog`.
   template <class Model = M>  // clang 14 instantiates members of a class whose constraints do not hold
     requires detail::ToolJogModel<Model>
   [[nodiscard]] Expected<void> jog_tool_to(const Coordinates& point, const JogSpeed& speed = {}) {

@@ -14,6 +14,8 @@
 
 #include <tl/expected.hpp>
 
+#include "cncplan/core/error.hpp"
+#include "cncplan/core/error_text.hpp"
 #include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/gcode/dialect.hpp"
@@ -129,6 +131,14 @@ template <MachineModel M>
   return machine;
 }
 
+/// Nothing, or above_limit where a file has more axes than there are places for.
+[[nodiscard]] inline Expected<void> fits(const MachineFile& file, int most) {
+  const auto count = static_cast<int>(file.axes.size());
+  if (count <= most) return {};
+  return refusal(ErrorCode::above_limit, "axes of the machine's file", static_cast<double>(count),
+                 static_cast<double>(most));
+}
+
 /// The machine of N axes of a file, under limits of the tool (mm, s). Error: a sentence, for a file whose
 /// axes are not the coordinates of programs (`kinematics`, a rotary table), or are more than N.
 template <int N>
@@ -136,9 +146,7 @@ template <int N>
                                                                const Limits& limits) {
   if (file.kinematics != Kinematics::cartesian)
     return tl::unexpected<std::string>("the axes of the machine are not the coordinates of its programs");
-  if (file.axes.size() > static_cast<std::size_t>(N))
-    return tl::unexpected("the machine has " + std::to_string(file.axes.size()) + " axes, " +
-                          std::to_string(N) + " at most are planned for");
+  if (const auto ok = fits(file, N); !ok) return tl::unexpected(to_text(ok.error()));
   return with_axes(Machine<N>{}, file, limits);
 }
 

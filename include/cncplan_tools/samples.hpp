@@ -13,14 +13,12 @@ namespace cncplan::tools {
 
 /// A row every `period` seconds, on the grid of `Trajectory::samples`, from the start to the end: time, each
 /// axis of the machine's file (mm or degrees, machine coordinates), and place, speed, acceleration and jerk
-/// along the path (mm, s), in 17 digits. The trajectory is of a machine of this file (`machine_of`). Error:
-/// that of `samples`, of a period that is none.
+/// along the path (mm, s), in 17 digits. The trajectory is of a machine of this file (`machine_of`). Errors:
+/// that of `samples`, of a period that is none; above_limit for a file of more axes than the trajectory has.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<void> write_samples(std::ostream& out, const Trajectory<M, B>& trajectory,
                                            const MachineFile& machine, double period) {
-  if (const std::size_t most = M::axis_count; machine.axes.size() > most)
-    return refusal(ErrorCode::above_limit, "axes of the file", static_cast<double>(machine.axes.size()),
-                   static_cast<double>(most));
+  if (auto ok = fits(machine, M::axis_count); !ok) return ok;
   const auto samples = trajectory.samples(period);
   if (const auto error = samples.error()) return tl::unexpected(*error);
   const auto put = [&out](double number, char behind) {

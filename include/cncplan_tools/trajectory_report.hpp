@@ -19,11 +19,13 @@
 namespace cncplan::tools {
 
 /// A report of a trajectory on a machine without a map, whose file says how its axes are called and shown:
-/// the machine is one of this file (`machine_of`). `report::write` makes a page of it.
+/// the machine is one of this file (`machine_of`). `report::write` makes a page of it. Error: above_limit for
+/// a file of more axes than the trajectory has.
 template <MachineModel M, BlockModel B>
   requires(!MappedModel<M>)
-[[nodiscard]] report::Report report_of(const Trajectory<M, B>& trajectory, const MachineFile& machine,
-                                       const ReportText& text) {
+[[nodiscard]] Expected<report::Report> report_of(const Trajectory<M, B>& trajectory,
+                                                 const MachineFile& machine, const ReportText& text) {
+  if (const auto ok = fits(machine, M::axis_count); !ok) return tl::unexpected(ok.error());
   const auto channels = report::channels_of(machine);
   const auto tool = tool_axes(trajectory.machine());
   const auto channels_at = [&](std::size_t piece, double s) {

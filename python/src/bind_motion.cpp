@@ -6,13 +6,13 @@
 #include <span>
 
 #include "bindings.hpp"
+#include "cncplan/motion_limits.hpp"
 #include "cncplan/move_to.hpp"
 #include "cncplan/path/b_spline_through.hpp"
 #include "cncplan/path/spline_through.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/time_optimal.hpp"
-#include "cncplan/tool.hpp"
 #include "fault.hpp"
 
 namespace cncplan::python {

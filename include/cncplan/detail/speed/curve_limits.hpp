@@ -6,6 +6,7 @@
 
 #include "cncplan/core/motion_limits.hpp"
 #include "cncplan/fallback.hpp"
+#include "cncplan/motion_limits.hpp"
 #include "cncplan/step/drive.hpp"
 #include "cncplan/tool.hpp"
 

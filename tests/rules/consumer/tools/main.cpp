@@ -24,6 +24,8 @@ int main() {
     return std::puts("samples"), 1;
   if (!table.str().starts_with("t,X,Y,s,v,a,j\n0,") || !table.str().ends_with(",0\n"))
     return std::puts(table.str().c_str()), 1;
-  tools::report::write(page, tools::report_of(*trajectory, *file, {"corner.nc", "G1 X10 F600\nY10\n", {}}));
+  const auto report = tools::report_of(*trajectory, *file, {"corner.nc", "G1 X10 F600\nY10\n", {}});
+  if (!report) return std::puts("report"), 1;
+  tools::report::write(page, *report);
   return page.str().find("corner.nc") == std::string::npos;
 }
