@@ -7,12 +7,14 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 
 #include "cncplan/block.hpp"
 #include "cncplan/detail/curve/great_circle.hpp"
 #include "cncplan/detail/curve/mapped_paths.hpp"
+#include "cncplan/gcode/center_mode.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/gcode/motion.hpp"
 #include "cncplan/gcode/reader.hpp"
@@ -219,11 +221,16 @@ class BlockBuilder {
         path::BasicLine<Scalar, program_coordinates<M>>(piece.start, piece.end, turn, Scalar(0)));
   }
 
+  [[nodiscard]] static gcode::Diagnostic problem(const gcode::Motion& motion, const Error& error) {
+    const bool differ = error.code == ErrorCode::radius_mismatch;
+    return {error, motion.line, motion.column, differ ? gcode::center_mode(motion) : std::string_view()};
+  }
+
   // A block of a motion, or why there is none; what follows begins at its end.
   [[nodiscard]] Expected<std::optional<Block>, gcode::Diagnostic> moved(const gcode::Motion& motion,
                                                                         const Expected<Block>& made,
                                                                         const Coordinates& end) {
-    if (!made) return tl::unexpected(gcode::Diagnostic{made.error(), motion.line, motion.column, {}});
+    if (!made) return tl::unexpected(problem(motion, made.error()));
     state_.place = end;
     state_.tool_point = motion.tool_point;
     if constexpr (MappedModel<M>) state_.axes = made->path.end();

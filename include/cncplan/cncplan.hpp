@@ -145,6 +145,7 @@
 #include "cncplan/executor_state.hpp"
 #include "cncplan/fallback.hpp"
 #include "cncplan/follow_steps.hpp"
+#include "cncplan/gcode/center_mode.hpp"
 #include "cncplan/gcode/controls.hpp"
 #include "cncplan/gcode/detail/alphabet.hpp"
 #include "cncplan/gcode/detail/block.hpp"

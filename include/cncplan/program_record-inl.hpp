@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <optional>
 #include <variant>
@@ -13,6 +14,47 @@
 #include "cncplan/program_record.hpp"
 
 namespace cncplan {
+
+namespace detail {
+
+/// Lines of another source. It keeps the one that it gave last.
+template <class Lines>
+class KeptLine : public Lines {
+ public:
+  using Lines::Lines;
+
+  [[nodiscard]] std::optional<std::string_view> next() {
+    const auto line = Lines::next();
+    line_ = line.value_or(std::string_view());
+    return line;
+  }
+  /// Of a letter outside comments, from 1; 0 where there is none.
+  [[nodiscard]] int column_of(char letter) const {
+    bool comment = false;
+    for (std::size_t i = 0; i < line_.size() && (comment || line_[i] != ';'); ++i) {
+      comment = line_[i] == '(' || (comment && line_[i] != ')');
+      if (comment || std::toupper(static_cast<unsigned char>(line_[i])) != letter) continue;
+      const int found = static_cast<int>(i) + 1;
+      if constexpr (requires { this->column(found); })
+        return this->column(found);
+      else
+        return found;
+    }
+    return 0;
+  }
+
+ private:
+  std::string_view line_;
+};
+
+/// Whether one says of the same place what the other does, whatever their numbers are.
+[[nodiscard]] inline bool same_place(const Problem& a, const Problem& b) {
+  return a.about.line == b.about.line && a.about.column == b.about.column &&
+         a.error().code == b.error().code && a.error().field == b.error().field && a.warning == b.warning &&
+         a.file == b.file;
+}
+
+}  // namespace detail
 
 template <class T>
 auto ProgramRecord::at(const std::vector<From<T>>& list, std::size_t block) -> const From<T>* {
@@ -40,11 +82,21 @@ CNCPLAN_INLINE gcode::Position ProgramRecord::offset_of(std::size_t block) const
   return from == nullptr ? gcode::Position{} : from->second;
 }
 
+CNCPLAN_INLINE Plane ProgramRecord::plane_of(std::size_t block) const {
+  const auto* from = at(plane_from_, block);
+  return from == nullptr ? Plane::xy : from->second;
+}
+
 CNCPLAN_INLINE void ProgramRecord::add(ProgramError error, std::string_view file, bool warning) {
   error.file = file;
   Problem problem{std::move(error), warning};
   const bool of_smoothing = warning && gcode::void_if_smoothed(problem.about);
-  (of_smoothing ? if_not_smoothed_ : problems_).push_back(std::move(problem));
+  auto& told = of_smoothing ? if_not_smoothed_ : problems_;
+  constexpr std::size_t most = 1000;  // are looked at, where the program has gone back
+  const bool back = !told.empty() && problem.about.line <= told.back().about.line;
+  const auto first = told.end() - static_cast<std::ptrdiff_t>(back ? std::min(told.size(), most) : 0);
+  if (std::none_of(first, told.end(), [&](const Problem& it) { return detail::same_place(it, problem); }))
+    told.push_back(std::move(problem));
 }
 
 CNCPLAN_INLINE std::size_t ProgramRecord::file_number(std::string_view file) {
@@ -54,7 +106,8 @@ CNCPLAN_INLINE std::size_t ProgramRecord::file_number(std::string_view file) {
   return number;
 }
 
-CNCPLAN_INLINE void ProgramRecord::take(const gcode::Item& item, std::string_view file, Make make) {
+CNCPLAN_INLINE void ProgramRecord::take(const gcode::Item& item, std::string_view file, Make make,
+                                        ColumnOf column_of) {
   if (const auto* warning = std::get_if<gcode::Warning>(&item)) return add({warning->about}, file, true);
   if (const auto* word = std::get_if<gcode::Word>(&item)) {
     words_.push_back({*word, blocks_, file_number(file)});
@@ -64,19 +117,28 @@ CNCPLAN_INLINE void ProgramRecord::take(const gcode::Item& item, std::string_vie
   if (const auto* stop = std::get_if<gcode::Stop>(&item))
     words_.push_back({{'M', static_cast<double>(stop->code), stop->line, 0}, blocks_, file_number(file)});
   const auto made = make(item);
-  if (!made) return add(made.error(), file);
+  if (!made) {
+    ProgramError error = made.error();
+    const std::string_view field = error.error().field;  // of an axis: the last letter is its own
+    const int column = field.starts_with("axis ") ? column_of(error.about.line, field.back()) : 0;
+    if (column > 0) error.about.column = column;
+    return add(std::move(error), file);
+  }
   if (*made == blocks_) return;
   if (file_from_.empty() || file != files_[file_from_.back().second])
     change(file_from_, blocks_, file_number(file));
-  if (const auto* motion = std::get_if<gcode::Motion>(&item)) change(offset_from_, blocks_, motion->offset);
+  if (const auto* motion = std::get_if<gcode::Motion>(&item)) {
+    change(offset_from_, blocks_, motion->offset);
+    change(plane_from_, blocks_, motion->plane);
+  }
   blocks_ = *made;
 }
 
 CNCPLAN_INLINE void ProgramRecord::read(std::string_view text, const std::string& file, gcode::Reader& reader,
-                                        const PlanOptions& options, Make make) {
+                                        const PlanOptions& options, Make make, bool axes_are_words) {
   start_ = options.start;
   if (files_.empty()) files_.push_back(file);
-  gcode::TextLines lines(text);
+  detail::KeptLine<gcode::TextLines> lines(text);
   detail::Listening listening(options, 0.0, detail::reading_share(options));
   const Progress progress = listening.progress();
   std::size_t taken = 0;
@@ -90,7 +152,10 @@ CNCPLAN_INLINE void ProgramRecord::read(std::string_view text, const std::string
         source, reader,
         [&](const gcode::Item& item) {
           tell();
-          take(item, here(), make);
+          take(item, here(), make, [&](int line, char letter) {
+            const bool there = axes_are_words && line == reader.line();  // it was not held back
+            return there ? source.column_of(letter) : 0;
+          });
         },
         [&](const gcode::Diagnostic& problem) {
           tell();
@@ -102,7 +167,7 @@ CNCPLAN_INLINE void ProgramRecord::read(std::string_view text, const std::string
     if (options.flat) {
       run(lines, [&] { return std::string_view(file); });
     } else {
-      gcode::ProgramLines flat(lines, reader, options.subprograms);
+      detail::KeptLine<gcode::ProgramLines<gcode::TextLines>> flat(lines, reader, options.subprograms);
       run(flat, [&] { return flat.file().empty() ? std::string_view(file) : flat.file(); });
     }
   } catch (const detail::Interrupted& at) {

@@ -11,6 +11,7 @@
 
 #include "cncplan/core/compiled.hpp"
 #include "cncplan/core/detail/function_ref.hpp"
+#include "cncplan/core/plane.hpp"
 #include "cncplan/gcode/motion.hpp"
 #include "cncplan/gcode/reader.hpp"
 #include "cncplan/plan_options.hpp"
@@ -43,7 +44,8 @@ class ProgramRecord {
   /// Words and stops, in order.
   [[nodiscard]] std::span<const ProgramWord> words() const& { return {words_.data(), words_.size()}; }
   void words() const&& = delete;
-  /// All that is wrong and all that is without effect, in the order of the text as it runs.
+  /// All that is wrong and all that is without effect, in the order of the text as it runs. What a loop meets
+  /// in every pass is told once.
   [[nodiscard]] std::span<const Problem> problems() const& { return {problems_.data(), problems_.size()}; }
   void problems() const&& = delete;
   /// Whether any of them is an error: then the program cannot be planned.
@@ -61,6 +63,8 @@ class ProgramRecord {
   void file_of(std::size_t block) const&& = delete;
   /// What takes a block's work coordinates (G54 to G59.3, G92, tool length) to the machine's, mm and rad.
   [[nodiscard]] gcode::Position offset_of(std::size_t block) const;
+  /// The plane of arcs (G17, G18, G19) at a block.
+  [[nodiscard]] Plane plane_of(std::size_t block) const;
   /// Where the motion starts, program coordinates, mm and rad.
   [[nodiscard]] const std::array<double, 9>& start() const { return start_; }
   /// Number of the last line.
@@ -76,8 +80,9 @@ class ProgramRecord {
 
  protected:
   void add(ProgramError error, std::string_view file, bool warning = false);
+  /// `axes_are_words`: the machine's axes have words of their letters, where their errors are told.
   void read(std::string_view text, const std::string& file, gcode::Reader& reader, const PlanOptions& options,
-            Make make);
+            Make make, bool axes_are_words = true);
 
  private:
   template <class T>
@@ -88,7 +93,9 @@ class ProgramRecord {
   template <class T>
   static void change(std::vector<From<T>>& list, std::size_t block, const T& value);
   std::size_t file_number(std::string_view file);
-  void take(const gcode::Item& item, std::string_view file, Make make);
+  // The column of a letter in a line; 0 where it is not there, or the line is gone.
+  using ColumnOf = FunctionRef<int(int line, char letter)>;
+  void take(const gcode::Item& item, std::string_view file, Make make, ColumnOf column_of);
 
   std::vector<ProgramWord> words_;
   std::vector<Problem> problems_, if_not_smoothed_;
@@ -96,6 +103,7 @@ class ProgramRecord {
   std::vector<std::string> files_;
   std::vector<From<std::size_t>> file_from_;
   std::vector<From<gcode::Position>> offset_from_;
+  std::vector<From<Plane>> plane_from_;
   std::array<double, 9> start_{};
   std::size_t blocks_ = 0;
   int lines_{};

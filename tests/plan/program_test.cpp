@@ -201,6 +201,44 @@ TEST_CASE("a file that cannot be read is a program with that problem", "[program
   }
 }
 
+TEST_CASE("a program tells the planes of its blocks", "[program]") {
+  const auto program = read_text("G1 X1 F600\nG18 X2\nM3 S5\nG19\nG4 P1\nX3\nG17 G2 X5 I1\n", mill);
+  REQUIRE(problems(program).empty());
+  std::vector<Plane> planes;
+  for (std::size_t i = 0; i < program.blocks().size(); ++i) planes.push_back(program.plane_of(i));
+  CHECK(planes == std::vector<Plane>{Plane::xy, Plane::zx, Plane::zx, Plane::yz, Plane::xy});
+}
+
+TEST_CASE("what an axis cannot do is told at its word, once for all passes of a loop", "[program]") {
+  Machine<4> machine{.limits = mill.limits};
+  machine.axes[3] = {.letter = 'A', .kind = AxisKind::rotary, .velocity = 1, .acceleration = 1, .jerk = 1};
+  machine.axes[2].low = -5;
+  const auto told = [&](const std::string& text) { return problems(read_text(text, machine)); };
+  using Told = std::vector<std::string>;
+  CHECK(told("G1 F600\n(Z1) G1 X1 Z-9 ; Z\n") == Told{"2:12: error: axis Z: -9 is below the limit -5"});
+  CHECK(told("G1 F600\n#1=3\nG1 X[#1*2] z[#1-9] A2\n") ==
+        Told{"3:12: error: axis Z: -6 is below the limit -5"});
+  CHECK(told("G1 F600 G18\nG2 X20 I10 K0\n") ==  // no word of Z, but an arc that goes there
+        Told{"2:8: error: axis Z: -10 is below the limit -5"});
+  CHECK(told("G1 F600 G91\no1 repeat [50]\nX1 D2\nZ-2\nZ2\nZ-4 X1 A3\no1 endrepeat\n") ==
+        Told{"3:4: error: D is not supported", "4:1: error: axis Z: -6 is below the limit -5",
+             "6:1: error: axis Z: -8 is below the limit -5"});
+  // Held back under cutter compensation, its line is gone.
+  const auto held = told("G1 F600\nG41.1 D1 X5\nX20\nY20 Z-9\nX0\nG40\n");
+  REQUIRE_FALSE(held.empty());
+  CHECK(held[0] == "4:1: error: axis Z: -9 is below the limit -5");
+}
+
+TEST_CASE("an arc whose radii differ tells the mode in which they agree", "[program]") {
+  const auto told = [](const std::string& arc) { return problems(read_text("G1 F600\n" + arc, mill)); };
+  const std::string differ = "error: center: radii at start and end point differ";
+  CHECK(told("G0 X10 Y0\nG2 X0 Y10 I2 J0\n")[0] ==
+        "3:11: " + differ + " by 13.6205, at most 0.0282843 is allowed");
+  CHECK(told("G0 X10 Y10\nG2 X20 Y20 I10 J20\n")[0].ends_with("is allowed; they agree in G90.1"));
+  CHECK(told("G90.1 G0 X10 Y10\nG2 X20 Y20 I0 J10\n")[0].ends_with("is allowed; they agree in G91.1"));
+  CHECK(told("G18 G0 X10 Z10\nG2 X20 Z20 I20 K10\n")[0].ends_with("is allowed; they agree in G90.1"));
+}
+
 TEST_CASE("read flat, a program has no parameters and no O-words", "[program]") {
   const std::string text = "G21 F600\n#1=5\nG1 X#1\no1 repeat [2]\nG91 Y1\no1 endrepeat\nM98 P100\nX3\n";
   const auto flat = read_text(text, mill, {.flat = true});

@@ -14,8 +14,9 @@ struct Diagnostic {
   Error error;
   int line{};    ///< counted from 1
   int column{};  ///< in bytes, counted from 1; a byte order mark is before the first, as editors have it
-  std::string_view
-      other{};  ///< letter of the word that excludes this one, where words do; its number is `error.bound`
+  /// Letter of the word that excludes this one, where words do; its number is `error.bound`. Of an arc whose
+  /// radii differ, the mode in which they agree (`center_mode`).
+  std::string_view other{};
 
   friend bool operator==(const Diagnostic&, const Diagnostic&) = default;
 };

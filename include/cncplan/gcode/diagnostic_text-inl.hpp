@@ -39,7 +39,10 @@ CNCPLAN_INLINE std::string to_text(const Diagnostic& diagnostic) {
   text += amount_text(error);
   if (error.code == ErrorCode::missing_number && error.value != 0.0)
     text += ": " + detail::character_text(error.value) + " follows";
-  if (!diagnostic.other.empty())
+  if (diagnostic.other.empty()) return text;
+  if (error.code == ErrorCode::radius_mismatch)
+    text.append("; they agree in ").append(diagnostic.other);
+  else
     text += " (" + detail::word_text({error.code, diagnostic.other, error.bound, 0.0}) + ')';
   return text;
 }

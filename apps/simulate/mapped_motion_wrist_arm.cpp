@@ -1,8 +1,0 @@
-#include "mapped_motion_of.hpp"
-
-namespace simulate {
-
-template std::unique_ptr<Planned> mapped_motion(const support::Machine&,
-                                                MappedTrajectory<cncplan::kinematics::WristArm>&&);
-
-}  // namespace simulate

@@ -1,8 +1,0 @@
-#include "run_on_map.hpp"
-
-namespace simulate {
-
-template int run_on_map(const Options&, const support::Machine&, const std::string&,
-                        const cncplan::kinematics::ScaraWrist&);
-
-}  // namespace simulate
