@@ -59,9 +59,13 @@ int execute(const Options& options, const support::Machine& file, const M& machi
   return write_outputs(options, file, program, plan_as);
 }
 
+using namespace cncplan::kinematics;
 template int execute(const Options&, const support::Machine&, const Mill<3>&);
 template int execute(const Options&, const support::Machine&, const Mill<6>&);
-template int execute(const Options&, const support::Machine&, const Table&);
 template int execute(const Options&, const support::Machine&, const Rows&);
+template int execute(const Options&, const support::Machine&, const Mapped<ThreeJoints>&);
+template int execute(const Options&, const support::Machine&, const Mapped<ScaraWrist>&);
+template int execute(const Options&, const support::Machine&, const Mapped<FiveAxes>&);
+template int execute(const Options&, const support::Machine&, const Mapped<WristArm>&);
 
 }  // namespace simulate

@@ -61,7 +61,7 @@ report::Report html_report(const Options& options, const support::Machine& file,
                            const Measures& measures, const Plan& plan) {
   report::Report result{
       .file = program.file,
-      .text = program.kept ? *program.kept : support::read_text(program.file),
+      .text = program.text,
       .summary = summary_rows(program, options, measures),
       .warnings = program.warnings,
       .limits = options.limits,

@@ -25,21 +25,13 @@ serve::LiveRun::Fresh live_machines(const Options& options, const support::Machi
           row.push_back(file.shown(i, (*of)[static_cast<Eigen::Index>(i)]));
     };
     const double rotary_tolerance = options.rotary_tolerance * cncplan::gcode::radians_per_degree;
-    if constexpr (cncplan::MappedModel<M>)
-      return std::make_unique<Machine>(
-          machine, program.blocks,
-          cncplan::ExecutorOptions{.tolerance = options.tolerance,
-                                   .rotary_tolerance = rotary_tolerance,
-                                   .junction_deviation = options.corner_tolerance},
-          shown);
-    else
-      return std::make_unique<Machine>(
-          machine, program.blocks,
-          cncplan::LevelExecutorOptions{.tolerance = options.tolerance,
-                                        .level = options.level(),
-                                        .rotary_tolerance = rotary_tolerance,
-                                        .junction_deviation = options.corner_tolerance},
-          shown);
+    return std::make_unique<Machine>(
+        machine, program.blocks,
+        cncplan::LevelExecutorOptions{.tolerance = options.tolerance,
+                                      .level = options.level(),
+                                      .rotary_tolerance = rotary_tolerance,
+                                      .junction_deviation = options.corner_tolerance},
+        shown);
   };
 }
 

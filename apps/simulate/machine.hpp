@@ -1,23 +1,18 @@
-// The kinds of machine that programs run on, made from a machine file and the limits of the command line.
+// The kinds of machine that programs run on, and what programs are on each.
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <string>
 #include <type_traits>
 
 #include "cncplan/block.hpp"
 #include "cncplan/block_builder.hpp"
-#include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/row.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 #include "cncplan/machine.hpp"
 #include "cncplan/path/measured.hpp"
-#include "cncplan/path/spline.hpp"
 #include "cncplan/set_point.hpp"
-#include "cncplan/table_path.hpp"
+#include "maps/maps.hpp"
 #include "support/machine_file.hpp"
-#include "tool_path.hpp"
 
 namespace simulate {
 
@@ -28,10 +23,14 @@ using support::MachineAxis;
 template <int N>
 using Mill = cncplan::Machine<N>;
 
-/// Two slides and a rotary table, programmed in X Y Z. Tool positions are the table's, its axis at X0 Y0.
-struct Table : cncplan::MappedMachine<cncplan::kinematics::PolarMap> {
-  double smallest_radius = 1.0;  ///< mm; nothing nearer to the table's axis is driven
-};
+/// Behind one of the ready-made maps.
+template <class Map>
+using Mapped = cncplan::MappedMachine<Map>;
+
+/// mm from a table's axis: nothing nearer is driven; 0 for other machines.
+[[nodiscard]] inline double least_radius(const support::Machine& file) {
+  return file.kinematics == Kinematics::polar ? file.smallest_radius.value_or(1.0) : 0.0;
+}
 
 /// A row of the four-axis machine, by the way of the tool's tip.
 struct RowCurve {
@@ -55,6 +54,13 @@ struct RowCurve {
 struct Rows : cncplan::Machine<4> {
   using Row = cncplan::path::Measured<RowCurve, 16>;
   double tool_length = 0.0;  ///< mm
+
+  /// In the coordinates of the mold.
+  [[nodiscard]] cncplan::Vector3 tip(const cncplan::VectorN<double, 4>& joints) const {
+    const auto [x, y, z] = cncplan::kinematics::TireMold{.tool_length = tool_length}.tip(
+        std::array{joints[0], joints[1], joints[2], joints[3]});
+    return {x, y, z};
+  }
 };
 
 namespace detail {
@@ -62,10 +68,6 @@ namespace detail {
 template <class M>
 struct BlockType {
   using Type = cncplan::ProgramBlock<M>;
-};
-template <>
-struct BlockType<Table> {
-  using Type = cncplan::Block<3, cncplan::TablePath<cncplan::kinematics::PolarMap, ToolPath>>;
 };
 template <>
 struct BlockType<Rows> {
@@ -81,14 +83,10 @@ using BlockOf = typename detail::BlockType<M>::Type;
 /// The tool's place at a set point.
 template <class M>
 [[nodiscard]] cncplan::Vector3 tool_at(const M& machine, const cncplan::SetPoint<M::axis_count>& point) {
-  if constexpr (std::is_same_v<M, Rows>) {
-    const auto& q = point.position;
-    const auto [x, y, z] = cncplan::kinematics::TireMold{.tool_length = machine.tool_length}.tip(
-        std::array{q[0], q[1], q[2], q[3]});
-    return {x, y, z};
-  } else {
+  if constexpr (std::is_same_v<M, Rows>)
+    return machine.tip(point.position);
+  else
     return point.tool;
-  }
 }
 
 }  // namespace simulate

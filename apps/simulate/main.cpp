@@ -2,9 +2,11 @@
 // it into step edges, and says what it measured. Its options and outputs are the contract of
 // docs/simulate.md.
 
+#include <algorithm>
+#include <variant>
+
 #include "execute.hpp"
 #include "machine.hpp"
-#include "mapped.hpp"
 #include "options.hpp"
 #include "serve/web_server.hpp"
 #include "support/failure.hpp"
@@ -19,11 +21,12 @@ using cncplan::SmoothLevel;
 using support::Exit;
 using support::Failure;
 
-// An executor smooths in closed form unless another level is asked for.
-void settle_for_executor(Options& options) {
+// An executor smooths in closed form unless another level is asked for, or a map has no such form.
+void settle_for_executor(Options& options, bool mapped) {
   if (options.corner_tolerance < 0.0)
     throw Failure(Exit::bad_input, "--serve passes corners by --tolerance: it goes without --junction");
-  if (options.tolerance > 0.0 && !options.smooth) options.smooth = SmoothLevel::fast;
+  if (options.tolerance > 0.0 && !options.smooth)
+    options.smooth = mapped ? SmoothLevel::good : SmoothLevel::fast;
 }
 
 // Refuses what the options ask for and the machine cannot do.
@@ -46,7 +49,7 @@ void settle(Options& options, const support::Machine& machine) {
     refuse("--events goes with --profile seven, --plan span and --interpolator exact only");
   if (options.serve && !as_planned)
     refuse("--serve goes with --profile seven, --plan span and --interpolator exact only");
-  if (options.compare.value_or(0.0) > 0.0 && (!as_planned || machine.kinematics != Kinematics::cartesian))
+  if (options.compare.value_or(0.0) > 0.0 && (!as_planned || machine.kinematics == Kinematics::tire_mold))
     refuse("--compare above 0 is for what --tolerance above 0 is for");
   if (machine.kinematics == Kinematics::tire_mold && options.tolerance_given && options.tolerance > 0.0)
     refuse(
@@ -55,7 +58,8 @@ void settle(Options& options, const support::Machine& machine) {
         "exactly");
   const bool exact = machine.kinematics == Kinematics::tire_mold || machine.kinematics == Kinematics::polar;
   if (exact && !options.tolerance_given) options.tolerance = 0.0;
-  if (options.serve) settle_for_executor(options);
+  const bool mapped = machine.kinematics == Kinematics::polar || machine.kinematics == Kinematics::mapped;
+  if (options.serve) settle_for_executor(options, mapped);
   if (options.smooth && !(options.tolerance > 0.0)) refuse("--smooth goes with a --tolerance above 0");
   if (options.interpolator == Interpolator::taylor &&
       (machine.kinematics != Kinematics::cartesian || machine.axes.size() > 3))
@@ -67,25 +71,31 @@ int run(Options options) {
   if (options.machine) file = support::read_machine(*options.machine);
   settle(options, file);
   if (options.report || options.serve) support::check_report_libraries();
-  if (file.kinematics == Kinematics::polar && options.tolerance > 0.0) {
-    file.map = support::table_map(file);
-    return run_mapped(options, file);
-  }
-  if (file.kinematics == Kinematics::mapped) return run_mapped(options, file);
   if (options.serve) serve::check_libraries();
-  if (file.kinematics == Kinematics::tire_mold) {
-    auto machine = cncplan::tools::with_axes(Rows{}, file, options.limits);
-    machine.tool_length = options.tool_length.value_or(0.0);
-    return execute(options, file, machine);
+  using cncplan::tools::with_axes;
+  switch (file.kinematics) {
+    case Kinematics::cartesian:
+      if (file.axes.size() > 3) return execute(options, file, with_axes(Mill<6>{}, file, options.limits));
+      return execute(options, file, with_axes(Mill<3>{}, file, options.limits));
+    case Kinematics::tire_mold: {
+      auto machine = with_axes(Rows{}, file, options.limits);
+      machine.tool_length = options.tool_length.value_or(0.0);
+      return execute(options, file, machine);
+    }
+    case Kinematics::polar:
+      file.map = support::table_map(file);
+      break;
+    case Kinematics::mapped:
+      break;
   }
-  if (file.kinematics == Kinematics::polar) {
-    auto machine = cncplan::tools::with_axes(Table{}, file, options.limits);
-    machine.smallest_radius = file.smallest_radius.value_or(machine.smallest_radius);
-    return execute(options, file, machine);
-  }
-  if (file.axes.size() > 3)
-    return execute(options, file, cncplan::tools::with_axes(Mill<6>{}, file, options.limits));
-  return execute(options, file, cncplan::tools::with_axes(Mill<3>{}, file, options.limits));
+  return std::visit(
+      [&]<class Map>(const Map& map) {
+        auto machine = with_axes(Mapped<Map>{.map = map}, file, options.limits);
+        if (const double least = least_radius(file); least > 0.0)
+          machine.axes[0].low = std::max(machine.axes[0].low, least);
+        return execute(options, file, machine);
+      },
+      file.map.map);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ template <class M>
   return std::move(*cells);
 }
 
-/// At the levels good and best: by the library's own door, or live where there are events.
+/// Along curves: by the library's own door, or live where there are events.
 template <class M>
 [[nodiscard]] Plan plan_smooth(const Options& options, const support::Machine& file, const M& machine,
                                const Program<M>& program) {
@@ -84,8 +84,9 @@ template <class M>
   auto planned = [&]() -> cncplan::Expected<cncplan::Trajectory<M, Block>, cncplan::ProgramError> {
     if (options.events) {
       const cncplan::LevelExecutorOptions executor;  // by default
+      planning.level = std::max(planning.level, cncplan::SmoothLevel::good);
       planning.reserve = executor.reserve;
-      planning.hold_factor = executor.hold_factor;
+      planning.hold_factor = cncplan::MappedModel<M> ? 0.0 : executor.hold_factor;
       return drive_live(std::span<const Block>(program.blocks), machine, planning,
                         read_events(*options.events), options.period);
     }
@@ -113,8 +114,8 @@ template <class M>
                                    const Program<M>& program) {
   using Block = BlockOf<M>;
   using Trajectory = cncplan::Trajectory<M, Block>;
-  // A mill's paths are smoothed; a table's and rows R Z A C are driven exactly.
-  constexpr bool smoothed = !std::is_same_v<M, Table> && !std::is_same_v<M, Rows>;
+  // Of the others, maps have curves of their own, and rows R Z A C are driven exactly.
+  constexpr bool smoothed = !cncplan::MappedModel<M> && !std::is_same_v<M, Rows>;
   Plan result;
   result.motion_of = program.motion_of;
   std::pmr::vector<Block> driven(program.blocks.begin(), program.blocks.end());
@@ -158,8 +159,9 @@ Plan plan(const Options& options, const support::Machine& file, const M& machine
   double seconds = 0.0;
   Plan result = [&] {
     const Stopwatch watch(seconds);
-    if constexpr (std::is_same_v<M, Mill<3>> || std::is_same_v<M, Mill<6>>)
-      if (options.level() > cncplan::SmoothLevel::fast)
+    if constexpr (!std::is_same_v<M, Rows>)
+      if (options.level() >
+          (cncplan::MappedModel<M> ? cncplan::SmoothLevel::exact : cncplan::SmoothLevel::fast))
         return detail::plan_smooth(options, file, machine, program);
     return detail::plan_look_ahead(options, file, machine, program);
   }();

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cncplan/gcode/diagnostic_text.hpp"
+#include "machine.hpp"
 #include "support/failure.hpp"
 #include "support/main_program.hpp"
 
@@ -57,55 +58,47 @@ std::string kinds_json(const Problems& problems, std::size_t lines, std::size_t 
   return json.dump(2) + "\n";
 }
 
-// Radii of an arc at its start and its end.
-std::pair<double, double> radii(const gcode::Motion& motion, const Vector3& center) {
-  const PlaneAxes a = axes(motion.plane);
-  const auto from = [&](const gcode::Position& place) {
-    return std::hypot(place[static_cast<std::size_t>(a.first)] - center[a.first],
-                      place[static_cast<std::size_t>(a.second)] - center[a.second]);
-  };
-  return {from(motion.start), from(motion.end)};
-}
-
-std::string radii_text(const gcode::Motion& motion) {
-  const Vector3 start(motion.start[0], motion.start[1], motion.start[2]);
-  const auto [at_start, at_end] = radii(motion, motion.center);
-  std::string text = fmt::format(": {:.6g} mm at the start, {:.6g} mm at the end", at_start, at_end);
-  const auto fits = [&](const Vector3& center) {
-    const auto [first, second] = radii(motion, center);
-    return first > 0.0 && std::abs(first - second) <= 1e-3 * first;
-  };
-  if (fits(motion.center - start)) return text + "; they agree where I J K are absolute (G90.1)";
-  if (fits(motion.center + start)) return text + "; they agree where I J K are from the start (G91.1)";
-  return text;
+// What is wrong, by its kind and in full.
+std::pair<std::string, std::string> texts(const cncplan::Problem& problem, const support::Machine& machine,
+                                          std::span<const double> start) {
+  const Error& error = problem.error();
+  const bool beyond = error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit;
+  const double least = least_radius(machine);  // of the first axis
+  const bool unreachable = error.code == ErrorCode::unreachable && least > 0.0;
+  if ((beyond || unreachable) && error.field.starts_with("axis ")) {
+    const auto found = std::ranges::find(machine.axes, error.field.back(), &support::MachineAxis::letter);
+    const auto i = static_cast<std::size_t>(found - machine.axes.begin());
+    const bool there = found != machine.axes.end();  // else it cannot move
+    const support::MachineAxis axis =
+        there ? *found : support::MachineAxis{.letter = error.field.back(), .low = 0.0, .high = 0.0};
+    const bool near = least > 0.0 && i == 0 && error.code == ErrorCode::below_limit && error.bound == least;
+    if (near || unreachable)
+      return {"too near to the table's axis",
+              fmt::format("{:.6g} mm from the table's axis: no nearer than {:.6g} is driven",
+                          near ? error.value : 0.0, least)};
+    const bool at_start = there && problem.block == 0U && error.value == start[i];
+    return {fmt::format("axis {} would leave its travel", axis.letter),
+            support::beyond_travel(axis, error.value, at_start)};
+  }
+  const std::string text = gcode::to_text(problem.about), amount = amount_text(error);
+  return {amount.empty() ? text : text.substr(0, text.find(amount)), text};
 }
 
 }  // namespace
 
-void Problems::add(const gcode::Diagnostic& diagnostic) {
-  const std::string text = gcode::to_text(diagnostic);
-  add({diagnostic.line, diagnostic.column, text, text});
-}
-
-void Problems::add(const gcode::Motion& motion, const Error& error) {
-  const std::string text = gcode::to_text(gcode::Diagnostic{error, motion.line, motion.column, {}});
-  // Of one kind whatever the radii are; their amounts stand behind the sentence.
-  const std::string kind = text.substr(0, text.size() - amount_text(error).size());
-  const bool mismatch = error.code == ErrorCode::radius_mismatch;
-  add({motion.line, motion.column, kind, mismatch ? kind + radii_text(motion) : text});
-}
-
-void Problems::add(const cncplan::Problem& problem, std::string kind, std::string text) {
-  stand_in(problem.file == file_ ? std::string_view() : problem.file);
-  add({problem.about.line, problem.about.column, std::move(kind), std::move(text)});
-  stand_in({});
+void Problems::add(const cncplan::Problem& problem, const support::Machine& machine,
+                   std::span<const double> start) {
+  if (found_.size() == most_) return;
+  auto [kind, text] = texts(problem, machine, start);
+  found_.push_back(
+      {problem.about.line, problem.about.column, std::move(kind), std::move(text), problem.file});
 }
 
 void Problems::refuse() const {
   if (found_.empty()) return;
-  const auto text = [this](const Problem& problem) {
-    return fmt::format("{}:{}:{}: error: {}", problem.file.empty() ? file_ : problem.file, problem.line,
-                       problem.column, problem.text);
+  const auto text = [](const Problem& problem) {
+    return fmt::format("{}:{}:{}: error: {}", problem.file, problem.line, std::max(problem.column, 1),
+                       problem.text);
   };
   for (auto problem = found_.begin(); problem != found_.end() - 1; ++problem)
     fmt::print(stderr, "{}\n", text(*problem));

@@ -32,8 +32,8 @@ struct Origin {
 
 struct ProgramText {
   std::string file;
-  std::optional<std::string> kept;  ///< the text, of standard input or a pipe: there is no second reading
-  std::vector<Origin> motions;      ///< the first one is the start: no way
+  std::string text;
+  std::vector<Origin> motions;  ///< the first one is the start: no way
   std::size_t lines = 0;
   std::vector<int> tools;             ///< numbers of T, each once, in the order of the program
   std::vector<std::string> warnings;  ///< FILE:LINE:COLUMN: warning: TEXT

@@ -295,11 +295,25 @@ def table():
         served.rows(2, "held")
         rows = drive(served, "YZC")
         check_rates(rows, "YZC")
-        for tool, place, _ in rows:  # from the table's centre, which is at X -150
+        for tool, place, _ in rows:  # the table's centre is at X -150
             angle = math.radians(place["C"])
-            seen = (place["Y"] * math.cos(angle), place["Y"] * math.sin(angle), place["Z"])
+            seen = (place["Y"] * math.cos(angle) - 150, place["Y"] * math.sin(angle), place["Z"])
             check(math.dist(seen, tool) < 1e-9, f"the tool is at {tool}, the axes put it at {seen}")
-        check(math.dist(rows[-1][0], (200, 30, 2)) < 1e-9, f"it ends at {rows[-1][0]}")
+        check(math.dist(rows[-1][0], (50, 30, 2)) < 1e-9, f"it ends at {rows[-1][0]}")
+
+
+def five_axes():
+    """A table that tilts and turns, driven by its tip at the level good."""
+    with Served("--machine", machine("table_table_ac"), program=b"F3000\nG43.4\nG1 X20\nY10 A-10 C15\nX0 Y20 A-15 C40\n") as served:
+        check_page(served, "XYZAC")
+        served.ask("stop")
+        served.rows(5, "finished")
+        served.ask("again")
+        served.rows(2, "held")
+        rows = drive(served, "XYZAC")
+        check_rates(rows, "XYZAC", corners=0)
+        check(math.dist(rows[-1][0], (0, 20, 0)) < 1e-9, f"it ends at {rows[-1][0]}")
+        check(abs(rows[-1][1]["A"] + 15) < 1e-9 and abs(rows[-1][1]["C"] - 40) < 1e-9, f"it ends at {rows[-1]}")
 
 
 def rows_of_axes():
@@ -317,6 +331,7 @@ def rows_of_axes():
         check(abs(rows[-1][1]["A"] + 5) < 1e-9 and abs(rows[-1][1]["C"] - 10) < 1e-9, f"it ends at {rows[-1][1]}")
 
 
-CASES = {"http": http, "refusals": refusals, "levels": levels, "browser": browser, "four axes": four_axes, "table": table, "rows": rows_of_axes}
+CASES = {"http": http, "refusals": refusals, "levels": levels, "browser": browser, "four axes": four_axes, "table": table, "rows": rows_of_axes,
+         "five axes": five_axes}
 CASES[sys.argv[3]]()
 print(f"{sys.argv[3]}: passed")

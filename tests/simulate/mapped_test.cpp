@@ -149,6 +149,82 @@ TEST_CASE("a program from standard input runs on a machine behind a map") {
   CHECK(run.json()["motions"] == 2);
 }
 
+TEST_CASE("a machine behind a map is held, slowed and goes on, within the limits of its joints") {
+  const std::string program = "F3000\nG43.4\nG1 X40\nY30 A-30 C45\nX0 Y40 A-45 C120\nG0 Z20\nG49\nM30\n";
+  for (const std::string options : {"--tolerance 0.02", "--tolerance 0.02 --smooth best", "--tolerance 0"}) {
+    INFO(options);
+    const Folder folder;
+    folder.write("m.toml", mill("table-table-ac", "A", "center = [0, 0, -60]\n"));
+    folder.write("e.csv", "0.4,hold\n1.5,resume\n1.8,feed,0.5\n3,feed,1\n");
+    const std::string all = "--machine m.toml --json --count-steps --period 0.001 " + options;
+    const auto alone = folder.run_text(program, all).json();
+    const auto run = folder.run_text(program, all + " --events e.csv --samples s.csv");
+    INFO(run.err);
+    REQUIRE(run.exit == 0);
+    const auto held = run.json();
+    CHECK(held["completed"] == true);
+    CHECK(held["net_steps"] == alone["net_steps"]);
+    CHECK(held["time_s"].get<double>() > alone["time_s"].get<double>() + 1);
+    const Table rows(folder / "s.csv");
+    const auto& t = rows["t"];
+    for (const std::string name : {"X", "Y", "Z", "A", "C"}) {
+      const auto& q = rows[name];
+      double velocity = 0, acceleration = 0, jerk = 0, in_hold = 0;
+      for (std::size_t i = 3; i + 1 < rows.rows(); ++i) {
+        const double v = (q[i] - q[i - 1]) * 1e3, a = (q[i] - 2 * q[i - 1] + q[i - 2]) * 1e6;
+        velocity = std::max(velocity, std::abs(v));
+        acceleration = std::max(acceleration, std::abs(a));
+        jerk = std::max(jerk, std::abs(q[i] - 3 * q[i - 1] + 3 * q[i - 2] - q[i - 3]) * 1e9);
+        if (t[i] > 1.2 && t[i] < 1.5) in_hold = std::max(in_hold, std::abs(v));
+      }
+      INFO(name);
+      CHECK(velocity <= 100 * (1 + 1e-6));
+      if (options == "--tolerance 0") continue;  // accelerations jump at the corners of the exact path
+      CHECK(acceleration <= 1000 * (1 + 1e-4));
+      CHECK(jerk <= 20000 * (1 + 1e-3));
+      CHECK(in_hold < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("a program begins at a line on a machine behind a map, and tells its motions") {
+  const Folder folder;
+  folder.write("m.toml", arm("upper = 200\nfore = 150\n"));
+  const std::string program = "G0 X200 Y100\nG1 X150 F3000\nG2 X150 Y50 I0 J-25\nG1 Z-5\n";
+  const std::string options = "--machine m.toml --json --motions m.csv --samples s.csv --period 0.01";
+  REQUIRE(folder.run_text(program, options).exit == 0);
+  const Table motions(folder / "m.csv");
+  CHECK(motions["line"] == std::vector<double>{1, 2, 3, 4});
+  CHECK(motions["x1"] == std::vector<double>{200, 150, 150, 150});
+  CHECK(motions["feed"][2] == 50);
+  CHECK(motions["plane"] == std::vector<double>{17, 17, 17, 17});
+  const auto run = folder.run_text(program, options + " --from-line 3");
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  CHECK(run.json()["motions"] == 2);
+  CHECK(run.json()["length_mm"].get<double>() == Approx(25 * std::numbers::pi + 5));
+  const Table samples(folder / "s.csv");
+  CHECK(samples["x"].front() == Approx(150));
+  CHECK(samples["y"].front() == Approx(100));
+  CHECK(samples["z"].back() == Approx(-5));
+}
+
+TEST_CASE("a machine behind a map is planned block by block, by either law, and without ramps") {
+  const Folder folder;
+  folder.write("m.toml", arm("upper = 200\nfore = 150\n"));
+  const std::string program = "G0 X200 Y100\nG1 X150 F3000\nX100 Y90\nX60\n";
+  const auto time = [&](const std::string& options) {
+    const auto run = folder.run_text(program, "--machine m.toml --json --tolerance 0 " + options);
+    INFO(options << ": " << run.err);
+    REQUIRE(run.exit == 0);
+    return run.json()["time_s"].get<double>();
+  };
+  const double span = time("");
+  CHECK(time("--plan block") >= span * (1 - 1e-9));
+  CHECK(time("--profile five") >= span * (1 - 1e-9));
+  CHECK(time("--interpolator constant") > 0);
+}
+
 TEST_CASE("a file may have the tool go along great circles, or the command line") {
   const auto off = [](const std::string& orientation, const std::string& option = "") {
     const Folder folder;
@@ -349,13 +425,14 @@ TEST_CASE("what machine files with kinematics refuse") {
        "m.toml:1:14: error: the axes of table-table-ac must be XYZAC"},
       {table, "G43.4\nG1 A130 F100\n", "",
        "program.ngc:2:4: error: axis A would move to 130, beyond its travel"},
-      {table, "G0 X1\n", "--motions p", "error: --motions does not go with machines behind a map"},
       {arm("upper = 200\nfore = 100\n"), "G0 X1\n", "--orientation joints",
        "error: --orientation is for the five-axis machines that kinematics names"},
       {axis("X", "linear") + axis("Y", "linear"), "G0 X1\n", "--orientation great-circle",
        "error: --orientation is for the five-axis machines that kinematics names"},
       {table, "G0 X1\n", "--orientation up", "error: --orientation: up not in {"},
-      {table, "G0 X1\n", "--profile five", "error: --profile does not go with machines behind a map"},
+      {table, "G0 X1\n", "--interpolator taylor",
+       "error: --interpolator taylor is for machines of X, Y and Z"},
+      {table, "G0 X1\n", "--from-line 2", "error: --from-line 2: program.ngc has no motion there or behind"},
   };
   for (const Case& c : cases) {
     const Folder folder;

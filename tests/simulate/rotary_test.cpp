@@ -71,7 +71,7 @@ TEST_CASE("KK22's three programs run on the rotary table, C without a jump") {
     }
   }
   CHECK(off < 1e-9);
-  CHECK(stride < 1e-9);
+  CHECK(stride < 2e-4);  // rapids go straight in the axes: the length of the tip's way is a sum of chords
   for (std::size_t k = 0; k < 3; ++k) {
     INFO("axis " << k);
     CHECK(fastest[k] <= velocity[k]);  // an unwinding C would be 36000
