@@ -197,3 +197,105 @@ TEST_CASE("a feed that is raised before an arc and taken back keeps the arc's li
     CHECK(check.faults.jerk < 1e-9);
   }
 }
+
+TEST_CASE("a long bend at a low jerk is driven, and left, at the speed that its ramps leave", "[executor]") {
+  const Machine<3> machine{.limits = {.velocity = 50, .acceleration = 500, .jerk = 50}};
+  const auto blocks = test::blocks_of({"F3000", "G2 X100 Y0 I50 J0"}, machine);
+  const auto rest_after = [&](double seconds) {
+    Executor<Machine<3>, 16> executor(machine);
+    for (const auto& block : blocks) REQUIRE(executor.push(block));
+    executor.end_of_program();
+    SetPoint<3> now;
+    const auto tick = [&] {
+      now = executor.tick(period);
+      CHECK(now.jerk.norm() <= 50 * (1 + 1e-9));
+    };
+    while (!executor.finished() && now.time < seconds) tick();
+    executor.feed_hold();
+    double lasts = 0;
+    for (; !executor.finished() && !(now.along.velocity == 0); lasts += period) tick();
+    return seconds < 100 ? lasts : now.time;
+  };
+  CHECK(rest_after(100) < 6.76);  // 7.92 where speed and acceleration may be highest at once
+  CHECK(rest_after(3) < 2.8);     // 4.92
+  CHECK(rest_after(4) < 2.8);     // 3.92
+}
+
+// The ramps of the bend's own limits would be too hard for its speed where one crosses from the line.
+TEST_CASE("a hold or a raised feed next to a bend keeps the tool's jerk on it", "[executor]") {
+  const Machine<3> machine{.limits = {.velocity = 50, .acceleration = 500, .jerk = 50}};
+  const auto blocks = test::blocks_of({"F3000", "G1 X120", "G3 X120 Y100 I0 J50", "G1 X0"}, machine);
+  double jerk = 0;
+  for (int i = 0; i < 400; ++i) {
+    const bool raises = i % 2 == 1;
+    Executor<Machine<3>, 16> executor(machine, {.tolerance = 0});
+    for (const auto& block : blocks) REQUIRE(executor.push(block));
+    executor.end_of_program();
+    if (raises) executor.feed_override(0.3);
+    SetPoint<3> now;
+    const auto tick = [&] {
+      now = executor.tick(5 * period);
+      jerk = std::max(jerk, now.jerk.norm());
+    };
+    while (now.time < i * 0.03) tick();
+    raises ? executor.feed_override(1) : executor.feed_hold();
+    for (int ticks = 0; ticks < 1200; ++ticks) tick();
+  }
+  CHECK(jerk <= 50 * (1 + 1e-9));
+  CHECK(jerk >= 49);
+}
+
+TEST_CASE("holds and feeds on lines and bends of all lengths keep the tool's limits", "[executor]") {
+  test::Random random;
+  int holds = 0;
+  for (int draw = 0; draw < 60; ++draw) {
+    const double velocity = random.log_uniform(8, 150), acceleration = velocity * random.log_uniform(3, 50);
+    const Machine<3> machine{.limits = {velocity, acceleration, acceleration * random.log_uniform(3, 50)}};
+    const double ramp = std::sqrt(velocity / machine.limits.jerk);  // s
+    std::vector<std::string> lines{"F" + std::to_string(velocity * 60 * random.uniform(0.3, 1.2))};
+    double x = 0, y = 0, way = 0;
+    for (int i = 0; i < 8; ++i) {
+      const double size = velocity * ramp * random.log_uniform(0.15, 4), turn = random.uniform(0.5, 6);
+      const int left = random.integer(0, 1) == 0 ? 1 : -1;
+      const bool straight = random.integer(0, 2) == 0;
+      const double across = way + left * 1.5707963267948966, to = way + left * turn;
+      const double i_word = size * std::cos(across), j_word = size * std::sin(across);
+      x += straight ? size * std::cos(way) : i_word + left * size * std::sin(to);
+      y += straight ? size * std::sin(way) : j_word - left * size * std::cos(to);
+      char text[120];
+      std::snprintf(text, sizeof text, "G%d X%.9f Y%.9f", straight ? 1 : left > 0 ? 3 : 2, x, y);
+      std::string line = text;
+      std::snprintf(text, sizeof text, " I%.9f J%.9f", i_word, j_word);
+      lines.push_back(straight ? line : line + text);
+      if (!straight) way = to;
+    }
+    std::string all;
+    for (const std::string& line : lines) all += line + "\n";
+    INFO("seed " << test::seed() << ", draw " << draw << ", limits " << velocity << ' ' << acceleration << ' '
+                 << machine.limits.jerk << '\n'
+                 << all);
+    Executor<Machine<3>, 16> executor(machine, {.tolerance = random.integer(0, 1) * 0.01});
+    for (const auto& block : test::blocks_of(lines, machine)) REQUIRE(executor.push(block));
+    executor.end_of_program();
+    const double tick = period * random.log_uniform(1, 20), seldom = tick / ramp;
+    double jerk = 0, hard = 0;
+    bool held = false;
+    for (int k = 0; k < 400000 && !executor.finished(); ++k) {
+      const double chance = random.uniform(0, 1) / seldom;
+      if (chance < 0.02) held = true, executor.feed_hold();
+      if (chance > 0.02 && chance < 0.05) executor.feed_override(random.uniform(0, 2));
+      const auto now = executor.tick(tick);
+      jerk = std::max(jerk, now.jerk.norm());
+      hard = std::max(hard, now.acceleration.norm());
+      if (!(now.along.velocity == 0)) continue;
+      if (held) ++holds;
+      held = false;
+      executor.feed_override(1);
+      executor.resume();
+    }
+    CHECK(executor.finished());
+    CHECK(jerk <= machine.limits.jerk * (1 + 1e-6));
+    CHECK(hard <= machine.limits.acceleration * (1 + 1e-6));
+  }
+  CHECK(holds > 20);
+}

@@ -51,6 +51,61 @@ TEST_CASE("what sharing leaves on the table") {
   CHECK(least_jerk < 0.14);
 }
 
+// By every speed, acceleration and jerk of the region that such limits are for.
+TEST_CASE("limits with ramps inside keep acceleration and jerk on every ramp within the bend, and use them") {
+  test::Random random;
+  int found = 0;
+  double most = 0.0, least_gain = 1.0;
+  for (int draws = 0; draws < 3000; ++draws) {
+    INFO("seed " << test::seed() << ", draw " << draws);
+    const Limits whole = draw(random);
+    const double k = random.log_uniform(1e-3, 10), length = random.log_uniform(10, 300) / k;
+    const bool spiral = draws % 3 == 2;
+    BasicPathBounds<double, 3> bounds;
+    bounds.tool = {1.0, spiral ? k * random.uniform(0, 0.3) : 0.0, k, k * k,
+                   spiral ? k * k * random.uniform(0, 1) : 0.0};
+    Machine<3> machine{.limits = whole};
+    if (draws % 2 == 1) {
+      machine.axes[1].acceleration = whole.acceleration * random.uniform(0.3, 1.5);
+      machine.axes[1].jerk = whole.jerk * random.uniform(0.3, 1.5);
+      bounds.first[1] = 1.0;
+      bounds.second[1] = k;
+      bounds.third[1] = k * k;
+    }
+    const auto machine_limits = detail::machine_limits(machine);
+    const Limits box = detail::limits_along(bounds, machine_limits, whole.velocity, whole.velocity, length);
+    const auto inside =
+        detail::limits_with_ramps_inside(bounds, machine_limits, whole.velocity, whole.velocity, length, box);
+    if (!inside) continue;
+    ++found;
+    const auto& [velocity, acceleration, jerk] = *inside;
+    CHECK(length > 2.5 * velocity * std::max(std::sqrt(velocity / jerk), velocity / acceleration));
+    least_gain = std::min(least_gain, detail::time_with_ramps(*inside, length, 1.0) /
+                                          detail::time_with_ramps(box, length, 1.0));
+    double worst = 0.0;
+    for (int i = 0; i <= 500; ++i) {
+      const double v = velocity * i / 500,
+                   a = std::min(acceleration, std::sqrt(2 * jerk * std::max(velocity - v, 0.0)));
+      const auto share = [&](const BasicToolBounds<double>& b, const Limits& limits) {
+        const double along = b.first * a + b.second_along * v * v, across = b.second_across * v * v;
+        const double jerk_along = b.first * jerk + 3 * b.second_along * v * a + b.third_along * v * v * v;
+        const double jerk_across = 3 * b.second_across * v * a + b.third_across * v * v * v;
+        return std::max(std::hypot(along, across) / limits.acceleration,
+                        std::hypot(jerk_along, jerk_across) / limits.jerk);
+      };
+      worst = std::max(worst, share(bounds.tool, whole));
+      if (draws % 2 == 1)
+        worst = std::max(
+            worst, share({1.0, k, 0.0, k * k, 0.0}, {0, machine.axes[1].acceleration, machine.axes[1].jerk}));
+    }
+    CHECK(worst <= 1 + 1e-9);
+    most = std::max(most, worst);
+  }
+  CHECK(found > 300);
+  CHECK(most > 0.98);
+  CHECK(least_gain < 0.89);
+}
+
 TEST_CASE("over a known length limits are shared so that it takes less time, and never more") {
   const auto rest_to_rest = [](const Limits& l, double length) {
     const auto ramp = [&](double v) {

@@ -108,7 +108,8 @@ class BasicBrake {
       const BasicLimits<S>& limits = zones_[zone].limits;
       if (zone > 0) {
         now.position = S(0);
-        if (-now.acceleration > limits.acceleration * (S(1) + rounding)) return false;
+        const S most = entry_acceleration(limits, zones_[zone].ramps_inside, now.velocity);
+        if (-now.acceleration > most * (S(1) + rounding)) return false;
       }
       if (now.acceleration >= S(0)) return true;
       const S settled = now.velocity - now.acceleration * now.acceleration / (S(2) * limits.jerk);

@@ -384,10 +384,11 @@ bool CellFeed<M, B>::near(const B& block, const Vector& place, const Vector& the
 template <MachineModel M, BlockModel B>
 typename CellFeed<M, B>::Cell CellFeed<M, B>::motion_block(const B& block,
                                                            const BasicCell<Scalar>& cell) const {
-  const auto& [from, to, limits] = cell.part;
+  const auto& [from, to, limits, inside] = cell.part;
   const bool last = maker_.done();
   Cell result = common(block);
-  result.segment_limits = {to - from, cell.entry, finite_limits(limits), last ? block.pause : Scalar(0)};
+  result.segment_limits = {to - from, cell.entry, finite_limits(limits), last ? block.pause : Scalar(0),
+                           inside};
   result.goes_on = !last || block.goes_on;
   result.from = from;
   result.feed = !block.rapid && std::isfinite(block.feed)

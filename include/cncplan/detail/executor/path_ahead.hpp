@@ -73,6 +73,11 @@ class BasicPathAhead {
     return {own.velocity, brake_share * own.acceleration, brake_share * own.jerk};
   }
 
+  /// The most acceleration, of either sign, with which a block may be entered at a speed.
+  [[nodiscard]] S entry_acceleration(std::int64_t block, S speed) const {
+    return detail::entry_acceleration(limits(block), ring[block].segment_limits.ramps_inside, speed);
+  }
+
   /// Whether more than the programmed feed is asked for.
   [[nodiscard]] bool asks_above() const { return asked.feed_share > S(1); }
 
@@ -173,9 +178,11 @@ class BasicPathAhead {
       segment.limits.acceleration = own.acceleration;
       segment.limits.jerk = own.jerk;
       segment.pause = block.segment_limits.pause;
+      segment.ramps_inside = block.segment_limits.ramps_inside;
       if (stops_behind(at.block)) return ahead;
-      const bool zero_acceleration = !shared || !shared->take(segment.limits, segment.length);
-      if (zero_acceleration) shared.emplace(segment.limits, segment.length);
+      const bool zero_acceleration =
+          !shared || !shared->take(segment.limits, segment.length, segment.ramps_inside);
+      if (zero_acceleration) shared.emplace(segment.limits, segment.length, segment.ramps_inside);
       horizon.take(segment.limits, segment.length, zero_acceleration && !first);
     }
     ahead.open = true;
@@ -204,11 +211,14 @@ class BasicPathAhead {
       BasicLimits<S> limits = braking_limits(at.block);
       const S length = std::max(ring.length(at.block) - at.along, S(0));
       horizon.take({speed, limits.acceleration, limits.jerk}, length);
-      limits.velocity = S(1);  // plays no part
+      const bool inside = ring[at.block].segment_limits.ramps_inside;
+      if (!inside) limits.velocity = std::numeric_limits<S>::infinity();  // plays no part
       if (count == 0 || (out[count - 1].limits != limits && count < out.size()))
-        out[count++] = {S(0), S(0), limits, S(0)};
+        out[count++] = {S(0), S(0), limits, S(0), inside};
       BasicSegmentLimits<S>& zone = out[count - 1];
       zone.length += length;
+      zone.ramps_inside = zone.ramps_inside || inside;
+      zone.limits.velocity = std::min(zone.limits.velocity, limits.velocity);
       zone.limits.acceleration = std::min(zone.limits.acceleration, limits.acceleration);
       zone.limits.jerk = std::min(zone.limits.jerk, limits.jerk);
       if (rests_behind(at.block)) break;  // limits behind that are no concern of the brake

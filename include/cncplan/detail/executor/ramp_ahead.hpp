@@ -37,7 +37,8 @@ template <std::floating_point S>
   BasicLimits<S> limits = path.limits(from.block);
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
-    if (std::abs(now.acceleration) > limits.acceleration * (S(1) + path_rounding<S>)) return {};
+    const S most = std::min(limits.acceleration, path.entry_acceleration(from.block, now.velocity));
+    if (std::abs(now.acceleration) > most * (S(1) + path_rounding<S>)) return {};
     const S settled = profile::settled_speed(start, limits);
     if (settled < -path_rounding<S>) return {};
     const profile::BasicProfile<S> ramp = ramp_profile(start, target, limits);
@@ -71,6 +72,10 @@ template <std::floating_point S>
       at.block += path.direction;
       const S cap = path.junction_cap(at.block) * tolerance;
       if (fastest > cap && ramp.velocity_at(until) > cap) return {};
+      if (path.ring[at.block].segment_limits.ramps_inside) {
+        const BasicState<S> entry = ramp.at(ramp.time_at(until));
+        if (std::abs(entry.acceleration) > path.entry_acceleration(at.block, entry.velocity)) return {};
+      }
       position = until;
     }
     if (touched == limits) return ramp;

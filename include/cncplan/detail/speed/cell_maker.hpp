@@ -30,6 +30,7 @@ struct BasicPartLimits {
   S from{};
   S to{};
   BasicLimits<S> limits;
+  bool ramps_inside{};  ///< as of `BasicSegmentLimits`
 };
 
 /// Cuts a piece of a block where that makes it faster: it is halved as long as the halves at their own speeds
@@ -55,6 +56,7 @@ class CutByLimits {
     Part& whole = open_[0].part;
     whole.from = from;
     whole.to = to;
+    whole.ramps_inside = false;
     if (straight_)
       whole.limits = limits_straight(line->bounds(from, to), machine_, speed, tool_speed);
     else
@@ -73,13 +75,13 @@ class CutByLimits {
     const int depth = open_[count_].depth;
     const Scalar middle = top.from + (top.to - top.from) / Scalar(2);
     const bool divides = top.from < middle && middle < top.to;  // not where it is as short as rounding
-    if (depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return &top;
+    if (depth == deepest || !divides || !(top.limits.velocity < worth_it * speed_)) return whole(driven);
     const Part part = top;
     const Part first{part.from, middle, limits(driven, part.from, middle, speed_)};
     const Part second{middle, part.to, limits(driven, middle, part.to, speed_)};
     const Scalar halves = Scalar(0.5) / first.limits.velocity + Scalar(0.5) / second.limits.velocity;
     // Of a part without any speed nothing is known: the halves of its halves may have one.
-    if (part.limits.velocity > Scalar(0) && halves >= worth_it / part.limits.velocity) return &top;
+    if (part.limits.velocity > Scalar(0) && halves >= worth_it / part.limits.velocity) return whole(driven);
     open_[count_++] = {second, depth + 1};
     open_[count_++] = {first, depth + 1};
     return nullptr;
@@ -87,16 +89,32 @@ class CutByLimits {
 
   /// The limits of a part of the block at any speed.
   [[nodiscard]] BasicLimits<Scalar> limits(const Driven& driven, Scalar from, Scalar to, Scalar speed) const {
-    const auto along = [&](const auto& path, Scalar tool_speed) {
+    return along(driven, speed, [&](const auto& path, Scalar tool_speed) {
       return limits_along(path.bounds(from, to), machine_, speed, tool_speed, path.length());
-    };
-    // The feed is the tool's, which may be faster than the speed along the programmed length: |q'| > 1.
-    if constexpr (EnclosedPath<typename B::Path>)
-      if (!driven.exact()) return along(driven, std::min(tool_speed_, speed));
-    return block_->path.visit([&](const auto& path) { return along(path, tool_speed_); });
+    });
   }
 
  private:
+  template <class F>
+  [[nodiscard]] auto along(const Driven& driven, Scalar speed, F&& of) const {
+    // The feed is the tool's, which may be faster than the speed along the programmed length: |q'| > 1.
+    if constexpr (EnclosedPath<typename B::Path>)
+      if (!driven.exact()) return of(driven, std::min(tool_speed_, speed));
+    return block_->path.visit([&](const auto& path) { return of(path, tool_speed_); });
+  }
+
+  // The part on top, as it is or with its ramps inside.
+  [[nodiscard]] const Part* whole(const Driven& driven) {
+    Part& top = open_[count_].part;
+    const auto inside = along(driven, speed_, [&](const auto& path, Scalar tool_speed) {
+      return limits_with_ramps_inside(path.bounds(top.from, top.to), machine_, speed_, tool_speed,
+                                      top.to - top.from, top.limits);
+    });
+    if (inside) top.limits = *inside;
+    top.ramps_inside = inside.has_value();
+    return &top;
+  }
+
   static constexpr int deepest = 8;
   static constexpr Scalar worth_it = Scalar(0.95);
 
@@ -173,7 +191,8 @@ class CellMaker {
     if (!has_ahead_) return false;
     if (parts_ == 0) {
       begin_cell();
-    } else if (reversal_count_ > 0 || ahead_.limits != cell_.part.limits) {
+    } else if (reversal_count_ > 0 || ahead_.limits != cell_.part.limits || ahead_.ramps_inside ||
+               cell_.part.ramps_inside) {
       parts_ = 0;
       return true;
     } else {
@@ -292,6 +311,7 @@ class CellMaker {
     cell.part.from = ahead_.from;
     cell.part.to = ahead_.to;
     cell.part.limits = ahead_.limits;
+    cell.part.ramps_inside = ahead_.ramps_inside;
     if (above_) cell.above = ahead_above_;
     cell.entry = std::exchange(entry_, infinity);
     cell.rest = Scalar(0);
@@ -315,12 +335,13 @@ class CellMaker {
       return refusal(ErrorCode::unreachable, "singular place of the machine's map, after a length of",
                      part.from);
     if (auto ok = validate(part.limits); !ok) return tl::unexpected(ok.error());
-    const bool begins = entry_ < infinity;
+    const bool begins = entry_ < infinity || part.ramps_inside || ahead_.ramps_inside;
     const Scalar length = part.to - part.from;
     if (above_) ahead_above_ = level_above_.next(limits_above(part), length, begins);
     ahead_.from = part.from;
     ahead_.to = part.to;
     ahead_.limits = level_.next(part.limits, length, begins);
+    ahead_.ramps_inside = part.ramps_inside;
     has_ahead_ = true;
     cut_until_ = part.to;
     return {};

@@ -67,9 +67,9 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
       return tl::unexpected(BlockFault{ok.error(), i});
     while (!maker.done()) {
       if (const auto ok = maker.next(); !ok) return tl::unexpected(BlockFault{ok.error(), i});
-      const auto& [from, to, limits] = maker.cell().part;
+      const auto& [from, to, limits, inside] = maker.cell().part;
       if (!cells.blocks.empty()) rest(cells.blocks.back(), maker.cell().rest);
-      cells.segment_limits.push_back({to - from, maker.cell().entry, limits, S(0)});
+      cells.segment_limits.push_back({to - from, maker.cell().entry, limits, S(0), inside});
       cells.blocks.push_back(i);
     }
     rest(i, blocks[i].pause);

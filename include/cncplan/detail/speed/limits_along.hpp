@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "cncplan/core/detail/fixed_list.hpp"
@@ -220,6 +222,80 @@ template <std::floating_point S, int N>
       shortest = takes;
       best = other;
     }
+  }
+  return best;
+}
+
+/// The jerk along a path within which the jerk of what is limited stays, at speeds v and accelerations a with
+/// v + a^2 / (2 j) <= V and |a| <= A: with x = v / V, v a is at most V sqrt(j V) x sqrt(2 (1 - x)), which is
+/// highest at 2/3. From there on to V, the highest of v a and of v^3 in each of eight parts are taken
+/// together.
+template <std::floating_point S>
+[[nodiscard]] S jerk_with_ramps_inside(const Limited<S>& row, S v, S a) {
+  const auto& [b, limits] = row;
+  if (!std::isfinite(limits.jerk) || !row.bends()) return jerk_of(row, v, a);
+  if (!(b.first > S(0))) return S(0);
+  struct Part {
+    S product, speed;
+  };
+  constexpr int count = 9;
+  std::array<Part, static_cast<std::size_t>(count)> parts;
+  for (int i = 0; i < count; ++i) {
+    const S from =
+        i == 0 ? S(2) / S(3) : S(1) - S((count - i) * (count - i)) / S(3 * (count - 1) * (count - 1));
+    const S to =
+        i == 0 ? from : S(1) - S((count - i - 1) * (count - i - 1)) / S(3 * (count - 1) * (count - 1));
+    parts[static_cast<std::size_t>(i)] = {from * std::sqrt(S(2) * (S(1) - from)), to};
+  }
+  const auto keeps = [&](S j) {
+    const S ramp = std::sqrt(j * v);
+    for (const auto& [product, speed] : parts) {
+      const S at = speed * v, cube = at * at * at;
+      const S turn = S(3) * std::min(product * v * ramp, at * a);
+      const S along = b.first * j + b.second_along * turn + b.third_along * cube;
+      const S across = b.second_across * turn + b.third_across * cube;
+      if (along * along + across * across > limits.jerk * limits.jerk) return false;
+    }
+    return true;
+  };
+  S low = S(0), high = limits.jerk / b.first;
+  constexpr int halvings = 14;
+  for (int i = 0; i < halvings; ++i) {
+    const S middle = low + (high - low) / S(2);
+    (keeps(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Limits along a bend, of such a length, that hold for ramps which begin and end within it (`ramps_inside`
+/// of `BasicSegmentLimits`); nothing where it has no room for them, or is faster with `others`.
+template <std::floating_point S, int N>
+[[nodiscard]] std::optional<BasicLimits<S>> limits_with_ramps_inside(const BasicPathBounds<S, N>& bounds,
+                                                                     const BasicMachineLimits<S, N>& machine,
+                                                                     S speed, S tool_speed, S length,
+                                                                     const BasicLimits<S>& others) {
+  if (straight(bounds) || !std::isfinite(others.jerk)) return {};
+  const auto rows = limited(machine, bounds, tool_speed);
+  constexpr S worth_it = S(0.98);
+  S shortest = worth_it * time_with_ramps(others, length, S(1));
+  std::optional<BasicLimits<S>> best;
+  for (const S share : {S(0.35), S(0.5), S(0.65), S(0.8)}) {
+    BasicLimits<S> limits{speed, std::numeric_limits<S>::infinity(), std::numeric_limits<S>::infinity()};
+    for (const auto& row : rows)
+      limits.velocity = speed_of(row, limits.velocity, share_of_acceleration<S>, share);
+    for (const auto& row : rows) {
+      const S across = row.bounds.second_across * limits.velocity * limits.velocity;
+      const S along = row.bounds.second_along * limits.velocity * limits.velocity;
+      if (row.bounds.first > S(0) && std::isfinite(row.limits.acceleration))
+        limits.acceleration = std::min(
+            limits.acceleration, (left_beside(across, row.limits.acceleration) - along) / row.bounds.first);
+    }
+    for (const auto& row : rows)
+      limits.jerk = std::min(limits.jerk, jerk_with_ramps_inside(row, limits.velocity, limits.acceleration));
+    const S takes = time_with_ramps(limits, length, S(1));
+    if (!(takes < shortest) || !(length > S(2.5) * room_for_ramp(limits))) continue;
+    shortest = takes;
+    best = limits;
   }
   return best;
 }

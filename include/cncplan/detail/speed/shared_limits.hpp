@@ -35,11 +35,13 @@ template <std::floating_point S>
 template <std::floating_point S>
 class BasicSharedLimits {
  public:
-  BasicSharedLimits(const BasicLimits<S>& limits, S length)
-      : low_(limits), high_(limits), long_(has_room_for_ramp(limits, length)) {}
+  BasicSharedLimits(const BasicLimits<S>& limits, S length, bool ramps_inside)
+      : low_(limits), high_(limits), long_(has_room_for_ramp(limits, length)), alone_(ramps_inside) {}
 
-  /// Takes in the limits of the next block; whether they still differ by no more than the ratio.
-  bool take(const BasicLimits<S>& limits, S length) {
+  /// Takes in the limits of the next block; whether they still differ by no more than the ratio, and ramps
+  /// may cross from one block to the other.
+  bool take(const BasicLimits<S>& limits, S length, bool ramps_inside) {
+    if (alone_ || ramps_inside) return false;
     low_ = {S(0), std::min(low_.acceleration, limits.acceleration), std::min(low_.jerk, limits.jerk)};
     high_ = {S(0), std::max(high_.acceleration, limits.acceleration), std::max(high_.jerk, limits.jerk)};
     long_ = long_ || has_room_for_ramp(limits, length);
@@ -49,7 +51,8 @@ class BasicSharedLimits {
 
  private:
   BasicLimits<S> low_, high_;
-  bool long_;  // one of them has room for a whole ramp
+  bool long_;   // one of them has room for a whole ramp
+  bool alone_;  // ramps do not leave it
 };
 
 }  // namespace cncplan::detail

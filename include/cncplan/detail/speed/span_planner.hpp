@@ -62,14 +62,15 @@ std::size_t make_junctions(std::span<const BasicSegmentLimits<S>> blocks, S star
   if (blocks.empty()) return 0;
   std::size_t count = 0;
   BasicSharedLimits<S> shared(
-      blocks.front().limits,
-      blocks.front().length);  // since the last one that is at zero acceleration by force
+      blocks.front().limits, blocks.front().length,
+      blocks.front().ramps_inside);  // since the last one that is at zero acceleration by force
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const BasicLimits<S>& limits = blocks[i].limits;
     const BasicLimits<S> before = i == 0 ? limits : junctions[count - 1].limits;
     const S cap = std::min({i == 0 ? start_speed : blocks[i].entry, before.velocity, limits.velocity});
-    const bool fixed = !shared.take(limits, blocks[i].length) || i == 0 || i == divide;
-    if (fixed) shared = BasicSharedLimits<S>(limits, blocks[i].length);
+    const bool inside = blocks[i].ramps_inside;
+    const bool fixed = !shared.take(limits, blocks[i].length, inside) || i == 0 || i == divide;
+    if (fixed) shared = BasicSharedLimits<S>(limits, blocks[i].length, inside);
     if (fixed || !alike(limits, before) || differ(cap, limits.velocity)) {
       junctions[count++] = {i, cap, cap, S(0), limits, true, fixed, false, S(0)};
     } else {
