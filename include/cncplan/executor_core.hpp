@@ -149,7 +149,7 @@ class ExecutorCore {
   void program_stop(bool wanted) {
     drive([&](auto& driver) { driver.program_stop(wanted); });
   }
-  /// Rests before the first block of a line until it is resumed. 0: none.
+  /// Rests before the first motion of a line until it is resumed. 0: none.
   void pause_at(int line) {
     drive([&](auto& driver) { driver.pause_at(line); });
   }
@@ -158,8 +158,9 @@ class ExecutorCore {
   // once the axes are back on its path.
 
   /// The axes come to velocities, which they keep until another request or the end of their travel. Each
-  /// keeps its limits; those of the tool do not act. Errors: those of `validate` for the machine, and of
-  /// `reach_velocity`; unfinished, with the line, while a program moves the axes.
+  /// keeps its limits. Those of the tool do not act, but where an axis of it has none: then it has its share
+  /// of them, 1 / sqrt(3). Errors: those of `validate` for the machine, and of `reach_velocity`; unfinished,
+  /// with the line, while a program moves the axes.
   [[nodiscard]] Expected<void> jog(const Vector& velocities);
   /// The axes go to positions. Errors: those of `move_to` and of `validate` for the speed, and as for `jog`.
   [[nodiscard]] Expected<void> jog_to(const Vector& positions, const JogSpeed& speed = {});
@@ -405,7 +406,7 @@ template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::restart(int line, const Vector& position) {
   if (jog_.moves()) return false;
   if (level_ != nullptr) {
-    if (!level_->stands() || level_->dwells()) return false;
+    if (!level_->stands()) return false;
     level_->restart(line);
     away_ = returns_ = true;
   } else {

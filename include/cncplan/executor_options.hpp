@@ -31,9 +31,9 @@ struct BasicExecutorOptions {
   /// s at rest for which blocks are held back for the ones that follow them; and s without a new block, while
   /// there is room for one, after which they are let go before the motion slows down for want of blocks
   S longest_wait = S(0.05);
-  S quick_stop_share = S(1);  ///< 1 to 1000: how many times its limits of acceleration and jerk the tool and
-                              ///< each axis may use in a quick stop; what drives and mechanics bear beyond
-                              ///< the limits that machining has
+  S quick_stop_share = S(1);  ///< 1 to 1000 (cut where it is not): how many times its limits of acceleration
+                              ///< and jerk the tool and each axis may use in a quick stop; what drives and
+                              ///< mechanics bear beyond the limits that machining has
   bool background = false;    ///< another thread, or the main loop, calls `plan`; else `tick` does its work
   /// In [0, 1): the share of the limits of acceleration and jerk that plans at the levels `good` and `best`
   /// leave for holds. The more, the sooner a hold comes, and the longer the program takes.
@@ -48,6 +48,9 @@ struct BasicExecutorOptions {
 template <std::floating_point S, class Level>
 [[nodiscard]] Expected<void> validate(const BasicExecutorOptions<S, Level>& options) {
   if (auto ok = detail::valid_reserve(options.reserve, options.hold_factor); !ok) return ok;
+  if (!(options.longest_wait >= S(0)))
+    return refusal(options.longest_wait < S(0) ? ErrorCode::negative : ErrorCode::not_finite, "longest wait",
+                   options.longest_wait);
   return detail::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
                                   options.tolerance > S(0));
 }

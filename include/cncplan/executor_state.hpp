@@ -17,7 +17,7 @@ enum class ExecutorState : std::uint8_t {
   dwelling,  ///< at rest for a time of the program (G4)
   stopped,   ///< at rest at M0, M1 or M60, until it is resumed
   jogging,   ///< by a jog, or back to the path
-  away,      ///< at rest beside the path, behind a jog
+  away,      ///< at rest beside the path, behind a jog, or before the way to it after `restart`
   waiting,   ///< at rest for want of blocks
   fault,     ///< at rest before a block that cannot be planned: `error` says why
   finished,  ///< the program is over, or was stopped

@@ -30,7 +30,8 @@ enum class HomingStage : std::uint8_t { search, back_off, latch, stop, done, not
 /// the axis' limits.
 ///
 /// A switch that is closed at the start is left first. The cycle ends with `done`, or with `not_found`: no
-/// switch, or none that opens, within `travel`. The axis is then at rest.
+/// switch, or none that opens, within `travel` or before the axis stands for a quarter of a second, as at the
+/// end of its own travel. The axis is then at rest.
 template <std::floating_point S>
 class BasicHomingCycle {
  public:
@@ -60,7 +61,10 @@ class BasicHomingCycle {
       default:
         break;
     }
-    if (moves() && !(std::abs(position - stage_began_) <= homing_.travel)) stage_ = HomingStage::not_found;
+    constexpr S longest_stand = S(0.25);  // s; a turn round takes a tick
+    stands_ = velocity == S(0) && position == last_ ? stands_ + period : S(0);
+    const bool too_far = !(std::abs(position - stage_began_) <= homing_.travel);
+    if (moves() && (too_far || stands_ > longest_stand)) stage_ = HomingStage::not_found;
     last_ = position;
     return wanted();
   }
@@ -99,6 +103,7 @@ class BasicHomingCycle {
   S stage_began_{};  // set point
   S last_{};         // set point of the tick before
   S open_time_{};    // s that the switch has been open
+  S stands_{};       // s that the axis has not moved
   S latched_{};      // set point where the switch closed
 };
 

@@ -86,7 +86,7 @@ template <MachineModel M, BlockModel B>
 /// of length changes. In a run that has rapids and feed moves the tool's velocity may be that of rapids.
 /// Corners that are left exact are passed as fast as ones rounded within the junction deviation would be,
 /// where the velocity jumps. Under a map the curve is one in the program's coordinates, the level `fast` is
-/// `good`, and what has no curve, as rapids straight in the junctions, rests at its corners.
+/// `good`, and what has no curve, as rapids straight in the joints, rests at its corners.
 ///
 /// Where a level cannot be had, a lower one takes its place, and `fallbacks` of the trajectory says where and
 /// why: `FallbackReason` lists it. Errors: those of `validate` for the machine and the options; a block that

@@ -327,10 +327,7 @@ std::vector<BasicBlockMotion<typename M::Scalar>> Trajectory<M, B>::blocks() con
     BasicBlockMotion<Scalar>& motion = result.back();
     motion.duration = phase.time + phase.duration - motion.start;
     motion.exit = i + 1 < phases_.size() ? phases_[i + 1].phase.velocity : Scalar(0);
-    motion.peak = std::max({motion.peak, phase.velocity, motion.exit});
-    if (const Scalar top = -phase.acceleration / phase.jerk;
-        phase.jerk != Scalar(0) && top > Scalar(0) && top < phase.duration)
-      motion.peak = std::max(motion.peak, phase.at(top).velocity);
+    motion.peak = std::max({motion.peak, phase.highest_velocity(), motion.exit});
   }
   return result;
 }

@@ -124,6 +124,22 @@ TEST_CASE("a switch that is not there, and one that never opens, are told", "[ho
   CHECK(point.position[1] == Approx(21.7).margin(0.2));
 }
 
+TEST_CASE("a switch beyond the end of the axis' travel is not found", "[homing]") {
+  Machine<2> machine = slides();
+  machine.axes[0].low = -20;
+  Executor<Machine<2>, 4> executor(machine);
+  HomingCycle cycle({.direction = -1, .search_speed = 10, .latch_speed = 1, .travel = 200});
+  auto point = executor.tick(period);
+  double wanted = 0;
+  for (int tick = 0; tick < 5000 && !cycle.finished(); ++tick) {
+    const double next = cycle.update(false, point.position[0], point.velocity[0], period);
+    if (next != wanted) REQUIRE(executor.jog({wanted = next, 0}));
+    point = executor.tick(period);
+  }
+  CHECK(cycle.stage() == HomingStage::not_found);
+  CHECK(point.position[0] == Approx(-20));
+}
+
 TEST_CASE("at a limit switch a program stops within the limits, and the position is kept", "[homing]") {
   Plant plant({0, 0}, {step::Switch{.position = 12.3, .bounce_time = 0.003}, {.position = 1e9}});
   const Machine<2> machine = slides();

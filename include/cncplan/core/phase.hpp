@@ -63,6 +63,15 @@ struct BasicPhase {
     return {{velocity, acceleration, jerk, duration}, position, S(0), S(1)};
   }
 
+  /// mm/s, the highest within it.
+  [[nodiscard]] constexpr S highest_velocity() const {
+    const S ends = velocity > at(duration).velocity ? velocity : at(duration).velocity;
+    if (jerk == S(0)) return ends;
+    const S top = -acceleration / jerk;
+    const bool inside = top > S(0) && top < duration;
+    return inside && at(top).velocity > ends ? at(top).velocity : ends;
+  }
+
   friend bool operator==(const BasicPhase&, const BasicPhase&) = default;
 };
 

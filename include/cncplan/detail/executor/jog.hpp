@@ -34,7 +34,7 @@ class Jog {
   /// Begins to come to velocities, from where the axes are and as they move; from rest at `place` where they
   /// are at rest. Errors: those of `reach_velocity`.
   Expected<void> to_velocities(const Vector& place, const Vector& velocities, const M& machine) {
-    return follow(reach_velocity(now(place), row(velocities), machine));
+    return follow(reach_velocity(now(place), row(velocities), axes_of(machine)));
   }
   /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`; not_supported
   /// for a speed of the tool under a map, where joints move.
@@ -60,7 +60,7 @@ class Jog {
     if (auto ok = validate(speed); !ok) return ok;
     if (!moves_) return tool_.to(machine, place, point, speed);
     const Expected<Moved> rest =
-        brakes_ > Scalar(0) ? move_ : reach_velocity(move_.state(), typename States::Row{}, machine);
+        brakes_ > Scalar(0) ? move_ : reach_velocity(move_.state(), typename States::Row{}, axes_of(machine));
     if (!rest) return tl::unexpected(rest.error());
     const auto line = tool_.line(machine, vector(rest->at(rest->duration()).position), point, speed);
     if (!line) return tl::unexpected(line.error());
@@ -80,7 +80,7 @@ class Jog {
   void to_rest(const M& machine, Scalar share) {
     tool_.to_rest(share);
     if (!moves_ || share <= brakes_) return;
-    Axes stronger{machine.axes};
+    Axes stronger = axes_of(machine);
     for (auto& axis : stronger.axes) {
       axis.acceleration *= share;
       axis.acceleration_down *= share;
@@ -127,9 +127,27 @@ class Jog {
     decltype(M::axes) axes;
   };
 
+  // Its axes. One of the tool that lacks a limit has its share of the tool's: all three together keep it.
+  // Under a map the tool's limits say nothing of a joint's.
+  [[nodiscard]] static Axes axes_of(const M& machine) {
+    Axes result{machine.axes};
+    if (MappedModel<M>) return result;
+    constexpr Scalar share = Scalar(0.57735026918962576);  // 1 / sqrt(3)
+    const auto take = [](Scalar& own, Scalar of_tool) {
+      if (!std::isfinite(own)) own = share * of_tool;
+    };
+    for (const int i : tool_axes(machine)) {
+      if (i < 0) continue;
+      auto& axis = result.axes[static_cast<std::size_t>(i)];
+      take(axis.velocity, machine.limits.velocity);
+      take(axis.acceleration, machine.limits.acceleration);
+      take(axis.jerk, machine.limits.jerk);
+    }
+    return result;
+  }
   // Its axes on a way that is no faster.
   [[nodiscard]] static Axes slowed(const M& machine, const Speed& speed, const Vector& way) {
-    Axes result{machine.axes};
+    Axes result = axes_of(machine);
     const std::array<int, 3> tool = tool_axes(machine);
     const Scalar length = in_space(way, tool).norm();
     for (int i = 0; i < M::axis_count; ++i) {

@@ -95,11 +95,12 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] bool stands() const override { return clock_.rests(); }
   [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0); }
   [[nodiscard]] bool rests() const override {
-    return clock_.rests() && !dwells() && (held_ || stopped_ || nothing_ahead());
+    return clock_.rests() && !dwells() &&
+           (held_ || stopped_ || no_speed() || nothing_behind() || nothing_ahead());
   }
   [[nodiscard]] bool finished() const override { return clock_.rests() && !dwells() && nothing_ahead(); }
   [[nodiscard]] bool asked_to_rest() const override {
-    return held_ || stopped_ || !(feed_share_ > S(0)) || backwards_ != clock_.heads_back();
+    return held_ || stopped_ || no_speed() || backwards_ != clock_.heads_back();
   }
   [[nodiscard]] bool at_program_stop() const override { return clock_.rests() && program_holds_ && held_; }
   [[nodiscard]] S until_change() const override {
@@ -122,7 +123,8 @@ class LiveDriver final : public LevelDriver<M, B> {
     return (planner_.ended() || planner_.failed()) && planner_.all_planned() && nothing_ahead();
   }
   [[nodiscard]] bool begins() const override {
-    return planner_.ended() && !planner_.failed() && !held_ && !stopped_ && !complete();
+    const bool waits = held_ || stopped_ || no_speed() || nothing_behind();
+    return planner_.ended() && !planner_.failed() && !waits && !complete();
   }
   [[nodiscard]] bool failed() const override { return planner_.failed(); }
   [[nodiscard]] gcode::Diagnostic fault() const override { return planner_.fault(); }
@@ -150,7 +152,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     S left = period;
     while (left > S(0) && step(left, period)) {
     }
-    rested_ = rests() ? (parts_.empty() ? rested_ : S(0)) + left : S(0);
+    rested_ = !rests() ? S(0) : parts_.empty() ? rested_ + period : period - last_part_ends();
     tell_words(period - left);
     if (!clock_.chain().empty()) {
       const S time = point.time;
@@ -185,6 +187,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     told_ = 0;
     tail_ahead_ = tells_tail_ = stopped_ = program_holds_ = backwards_ = false;
     rested_ = quiet_ = S(0);
+    peak_of_ = -1;
     pushed_before_ = 0;
     passed_ = -infinity;
   }
@@ -224,6 +227,22 @@ class LiveDriver final : public LevelDriver<M, B> {
     return known_[static_cast<std::size_t>(number % Planner::most_parts)];
   }
 
+  // s, in the tick.
+  [[nodiscard]] S last_part_ends() const {
+    const Driven& last = parts_[parts_.size() - 1];
+    return last.start + last.duration;
+  }
+
+  // Whether a feed or a rapid of no speed is asked for where it is.
+  [[nodiscard]] bool no_speed() const {
+    if (clock_.chain().empty()) return !(feed_share_ > S(0));
+    const bool rapid = clock_.chain().block_at(clock_.state().position).rapid;
+    return !((rapid ? rapid_share_ : feed_share_) > S(0));
+  }
+  // Whether it is to run back, and stands where the way that is kept begins.
+  [[nodiscard]] bool nothing_behind() const {
+    return backwards_ && !clock_.chain().empty() && !(clock_.state().position > clock_.chain().start_time(0));
+  }
   // Whether the way that there is ends where it stands, and all words of it are told.
   [[nodiscard]] bool nothing_ahead() const {
     if (seen_ == 0) return !planner_.begun();
@@ -293,9 +312,22 @@ class LiveDriver final : public LevelDriver<M, B> {
     S share = feed_share_;
     if (!clock_.chain().empty()) {
       const S now = clock_.state().position;
-      share = clock_.chain().block_at(now).rapid ? rapid_share_ : share / planned_share(now);
+      share = clock_.chain().block_at(now).rapid ? rapid_share_ : rate_of_feed(now);
     }
     return backwards_ ? -std::min(share, S(1)) : pauses() ? std::min(share, S(1)) : share;
+  }
+  // The rate on a feed move. One that is planned for a higher feed than is asked for is slowed as far as it
+  // would be faster than that: limits may have kept it slower.
+  [[nodiscard]] S rate_of_feed(S now) {
+    const S planned = planned_share(now), asked = std::max(feed_share_, S(1));
+    if (!(asked < planned)) return feed_share_ / planned;
+    const std::int64_t number = clock_.chain().number_at(now);
+    if (number != peak_of_) {
+      peak_of_ = number;
+      peak_ = clock_.chain().peak_at(now);
+    }
+    const S most = asked / planned * static_cast<S>(clock_.chain().block_at(now).feed);
+    return std::min(feed_share_, S(1)) * std::clamp(most / peak_, asked / planned, S(1));
   }
   // Of its feed, by which the block is planned that is driven at a time.
   [[nodiscard]] S planned_share(S time) {
@@ -462,7 +494,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool tells_tail_{};
   BasicReachedWords<S> words_;
   FixedList<Driven, Base::most_parts> parts_;
-  S rested_{}, quiet_{};  // s
+  S rested_{}, quiet_{};       // s
+  std::int64_t peak_of_ = -1;  // the block whose highest planned speed is known
+  S peak_{};                   // mm/s
   std::int64_t pushed_before_ = 0;
 };
 

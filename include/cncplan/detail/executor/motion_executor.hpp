@@ -184,7 +184,8 @@ class BasicMotionExecutor {
   /// Whether it rests and will not go on by itself.
   [[nodiscard]] bool rests() const {
     const bool nothing_ahead = path_.direction > 0 && at_.block >= path_.ring.pushed();
-    return idle_ && !(waits() > S(0)) && (path_.asked.held || path_.asked.stopped || nothing_ahead);
+    return idle_ && !(waits() > S(0)) &&
+           (path_.asked.held || path_.asked.stopped || nothing_ahead || nothing_behind() || no_speed());
   }
   /// Whether it begins to slow down within so many seconds, or has begun, as there are no more blocks to run.
   [[nodiscard]] bool starves(S seconds) const {
@@ -205,7 +206,8 @@ class BasicMotionExecutor {
   /// Whether it is asked to be at rest, or to turn round.
   [[nodiscard]] bool asked_to_rest() const {
     const BasicRequests<S>& asked = path_.asked;
-    return asked.held || asked.stopped || !(asked.feed_share > S(0)) || asked.direction != path_.direction;
+    return asked.held || asked.stopped || no_speed() || asked.direction != path_.direction ||
+           nothing_behind();
   }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return path_.asked.stopped && idle_; }
@@ -240,6 +242,16 @@ class BasicMotionExecutor {
   void wait_for(S seconds) {
     dwell_ = {};
     dwell_.add(-seconds);
+  }
+
+  // Whether a feed or a rapid of no speed is asked for where it is.
+  [[nodiscard]] bool no_speed() const {
+    return path_.ring.holds(at_.block) ? !(path_.requested_speed(at_.block) > S(0))
+                                       : !(path_.asked.feed_share > S(0));
+  }
+  // Whether it stands, running back, where the blocks that are kept begin.
+  [[nodiscard]] bool nothing_behind() const {
+    return idle_ && path_.direction < 0 && path_.asked.direction < 0 && !path_.ring.holds(at_.block);
   }
 
   // Whether blocks that the plan does not know could spare the way down that this profile ends with.

@@ -146,6 +146,19 @@ class TrajectoryChain {
     return static_cast<std::int64_t>(part.trajectory->first_block() +
                                      part.trajectory->block_of(part.trajectory->phases()[phase].piece));
   }
+  /// The highest speed along the block that is driven at a time, mm/s.
+  [[nodiscard]] S peak_at(S time) const {
+    const Part& part = part_at(time);
+    const auto phases = part.trajectory->phases();
+    const std::size_t now = part.trajectory->phase_at(time - part.start);
+    const auto of = [&](std::size_t phase) { return part.trajectory->block_of(phases[phase].piece); };
+    std::size_t first = now, last = now;
+    while (first > 0 && of(first - 1) == of(now)) --first;
+    while (last + 1 < phases.size() && of(last + 1) == of(now)) ++last;
+    S peak = S(0);
+    for (std::size_t i = first; i <= last; ++i) peak = std::max(peak, phases[i].phase.highest_velocity());
+    return peak;
+  }
   /// The block that is driven at a time.
   [[nodiscard]] const B& block_at(S time) const {
     const Part& part = part_at(time);
