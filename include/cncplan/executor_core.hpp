@@ -296,6 +296,13 @@ class ExecutorCore {
                : motion_executor_[motion_executor_.oldest()].block;
   }
 
+  // Whether blocks that are being cut are worth a rest: a plan that does not know them would brake for them.
+  [[nodiscard]] bool waits_to_begin(Scalar period) {
+    const bool waits = begins() && motion_executor_.stands() && !motion_executor_.dwells() &&
+                       !motion_executor_.full() && standing_ < longest_wait_;
+    standing_ = waits ? standing_ + period : Scalar(0);
+    return waits;
+  }
   Scalar accepted(Scalar period);
   void let_go_where_none_come(Scalar period);
   SetPoint advance(Scalar period, const Tell* tell);
@@ -325,6 +332,7 @@ class ExecutorCore {
   bool returns_ = false;                // and are to go back to it
   bool goes_back_ = false;              // the jog leads there
   Scalar waited_{};                     // s for which there has been no path to go to
+  Scalar standing_{};                   // s for which it has waited for blocks to be cut
   Scalar quiet_{};                      // s for which no block has come, though there was room
   std::int64_t seen_ = 0;               // blocks pushed before the last tick
   SetPoint last_{};
@@ -479,6 +487,7 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
     return tick_of_jog(period, tell);
   }
   if (level_ != nullptr) return tick_of_level(period, tell);
+  if (waits_to_begin(period)) return last_;
   const detail::BasicMotionSetPoint<Scalar> now = tick_of_program(period, tell);
   std::int64_t reached = -1;
   if (now.block >= 0) {

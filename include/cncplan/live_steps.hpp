@@ -38,7 +38,8 @@ class LiveStepsCore {
       }
   }
 
-  /// Moves on by `period` seconds. Edges of the tick before that were not asked for come late, at its start.
+  /// Moves on by `period` seconds. Edges of the tick before that were not asked for come late, at the start
+  /// of the next motion.
   SetPoint tick(Scalar period);
 
   /// The next edge of the tick, in order of time; its time counts as that of set points.
