@@ -32,7 +32,8 @@ void tell_pauses(const Options& options, ProgramText& program) {
   if (!options.events) return;
   for (const auto& [line, row, column] : pause_places(*options.events)) {
     const auto is_there = [number = line](const Origin& motion) { return motion.line == number; };
-    if (line == 0 || std::any_of(program.motions.begin() + 1, program.motions.end(), is_there)) continue;
+    const auto first = program.motions.begin() + (options.from_line ? 0 : 1);  // else where it starts
+    if (line == 0 || std::any_of(first, program.motions.end(), is_there)) continue;
     program.warnings.push_back(fmt::format("{}:{}:{}: warning: pause: {} has no motion on line {}",
                                            *options.events, row, column, program.file, line));
     fmt::print(stderr, "{}\n", program.warnings.back());

@@ -2,6 +2,8 @@
 // it into step edges, and says what it measured. Its options and outputs are the contract of
 // docs/simulate.md.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <variant>
 
@@ -75,6 +77,8 @@ int run(Options options) {
   using cncplan::tools::with_axes;
   switch (file.kinematics) {
     case Kinematics::cartesian:
+      if (const auto ok = cncplan::tools::fits(file, 6); !ok)
+        throw Failure(Exit::bad_input, fmt::format("{}: error: {}", *options.machine, to_text(ok.error())));
       if (file.axes.size() > 3) return execute(options, file, with_axes(Mill<6>{}, file, options.limits));
       return execute(options, file, with_axes(Mill<3>{}, file, options.limits));
     case Kinematics::tire_mold: {

@@ -29,8 +29,10 @@ class PathDistance {
   cncplan::Vector3 gap(const PlaceBeside& place);
 
  private:
-  // From the path of one motion; the search begins `within` mm from its start.
-  cncplan::Vector3 gap_of(const Origin& motion, const cncplan::Vector3& position, double within);
+  // From the path of one motion; the search begins `within` mm from its start, or at the nearest of some
+  // places up to `reach` mm from there, where the motion is no longer than a few times that.
+  cncplan::Vector3 gap_of(const Origin& motion, const cncplan::Vector3& position, double within,
+                          double reach);
 
   const ProgramText& program_;
   const Origin* motion_ = nullptr;

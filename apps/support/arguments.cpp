@@ -26,6 +26,8 @@ CLI::Validator number_from_zero(bool with_zero) {
   return {[with_zero](std::string& text) {
             double value = 0.0;
             const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+            constexpr double most = 1e100;  // the third power of what is beyond is no number
+            if (number && value > most) return fmt::format("must be {:.0e} at most: {}", most, text);
             if (number && (value > 0.0 || (with_zero && value == 0.0))) return std::string();
             return fmt::format("must be a number {} zero: {}", with_zero ? "not below" : "greater than",
                                text);

@@ -298,8 +298,9 @@ class ExecutorCore {
 
   // Whether blocks that are being cut are worth a rest: a plan that does not know them would brake for them.
   [[nodiscard]] bool waits_to_begin(Scalar period) {
+    constexpr std::int64_t enough = 16;  // of them the motion does not come to the end of so soon
     const bool waits = begins() && motion_executor_.stands() && !motion_executor_.dwells() &&
-                       !motion_executor_.full() && standing_ < longest_wait_;
+                       motion_executor_.lacks(enough) && standing_ < longest_wait_;
     standing_ = waits ? standing_ + period : Scalar(0);
     return waits;
   }

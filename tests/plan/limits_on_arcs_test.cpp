@@ -78,7 +78,7 @@ TEST_CASE("limits with ramps inside keep acceleration and jerk on every ramp wit
         detail::limits_with_ramps_inside(bounds, machine_limits, whole.velocity, whole.velocity, length, box);
     if (!inside) continue;
     ++found;
-    const auto& [velocity, acceleration, jerk] = *inside;
+    const double velocity = inside->velocity, acceleration = inside->acceleration, jerk = inside->jerk;
     CHECK(length > 2.5 * velocity * std::max(std::sqrt(velocity / jerk), velocity / acceleration));
     least_gain = std::min(least_gain, detail::time_with_ramps(*inside, length, 1.0) /
                                           detail::time_with_ramps(box, length, 1.0));

@@ -268,7 +268,7 @@ TEST_CASE("an executor rests at corners of merged lines where their plan does", 
     REQUIRE(planned);
     CHECK(planned->program()[1].straight_on);
     const auto faults = test::run<256>(mill, blocks, random, {.tolerance = tolerance});
-    CHECK(faults.duration == Approx(planned->duration()).epsilon(1e-3));
+    CHECK(faults.duration == Approx(planned->duration()).margin(0.05));  // it begins once blocks are cut
   }
 }
 
@@ -309,6 +309,6 @@ TEST_CASE("an executor with room drives merged lines as fast as one line", "[mer
   };
   const auto one = plan_text("F1800 G1 X50\n", mill, within);
   REQUIRE(one);
-  CHECK(time_of("G64 P0.01 Q0.004") < one->duration() * 1.002);
+  CHECK(time_of("G64 P0.01 Q0.004") < one->duration() * 1.002 + 0.05);  // begins once blocks are cut
   CHECK(time_of("G64 P0.01") > one->duration() * 1.1);
 }

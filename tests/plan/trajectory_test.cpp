@@ -390,7 +390,7 @@ TEST_CASE("blocks of several cells move without jumps", "[trajectory]") {
   REQUIRE(planned);
   std::array<std::size_t, 3> phases{};
   for (const auto& phase : planned->phases()) ++phases[phase.piece];
-  CHECK(phases[2] >= 7);
+  CHECK(phases[2] >= 5);
   CHECK(planned->length() == Approx(20 + curve->length() + blocks[2].path.length()).epsilon(1e-13));
   check_motion(*planned, 1e-5);
 }

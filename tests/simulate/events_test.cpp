@@ -388,3 +388,15 @@ TEST_CASE("a program is begun at a line, from rest at the start of its first mot
   CHECK(beyond.err == "error: --from-line 6: program.ngc has no motion there or behind\n");
   CHECK(folder.run_text(program, "--from-line 0").exit == 2);
 }
+
+TEST_CASE("a pause on the line at which a program begins is no surprise") {
+  const test::Folder folder;
+  folder.write("e.csv", "0,pause,3\n");
+  const auto run = folder.run_text("G1 X10 F600\nX20\nX30\n", "--events e.csv --from-line 3 --json --quiet");
+  CHECK(run.err.empty());
+  CHECK(run.json()["warnings"] == 0);
+  CHECK_FALSE(folder.run_text("G1 X10 F600\nX20\nX30\n", "--events e.csv --from-line 2 --quiet").exit);
+  folder.write("f.csv", "0,pause,1\n");
+  CHECK(folder.run_text("G1 X10 F600\nX20\nX30\n", "--events f.csv --from-line 2 --quiet")
+            .err.find("warning: pause") != std::string::npos);
+}

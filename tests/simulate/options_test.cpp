@@ -160,3 +160,33 @@ TEST_CASE("option --help and --version say what they promise and succeed") {
   CHECK(version.exit == 0);
   CHECK(version.out.starts_with("cncplan "));
 }
+
+TEST_CASE("a number whose powers are none is refused") {
+  const test::Folder folder;
+  for (const char* option : {"--jmax 1e200", "--vmax 1e101", "--tolerance 1e300"}) {
+    INFO(option);
+    const auto run = folder.run_text("G1 X10 F600\nY10\n", option);
+    CHECK(run.exit == 2);
+    CHECK(run.err.find("must be 1e+100 at most") != std::string::npos);
+  }
+}
+
+TEST_CASE("a check begins at any line, and tells what is wrong before it too") {
+  const test::Folder folder;
+  const auto run = folder.run_text("G21 G90 F600\nG1 X10\nG1 Y10\n", "--check --from-line 3");
+  INFO(run.err);
+  CHECK(run.exit == 0);
+  CHECK(run.out == "no problems\n");
+  CHECK(folder.run_text("G21 G90 F600\nG1 Q10\nG1 Y10\n", "--check --from-line 3").exit == 2);
+}
+
+TEST_CASE("a machine file of more axes than a program can have is refused") {
+  const test::Folder folder;
+  std::string file;
+  for (const char letter : {'X', 'Y', 'Z', 'A', 'B', 'C', 'U'})
+    file += std::string("[[axis]]\nletter = \"") + letter + "\"\n";
+  folder.write("m.toml", file);
+  const auto run = folder.run_text("G1 X1 F600\n", "--machine m.toml");
+  CHECK(run.exit == 2);
+  CHECK(run.err == "m.toml: error: axes of the machine's file: 7 is above the limit 6\n");
+}

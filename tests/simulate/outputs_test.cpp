@@ -295,3 +295,15 @@ TEST_CASE("corner steps and limited junctions are counted") {
   CHECK(folder.run_text(corner, "--json --junction stop").json()["junctions_limited"] == 2);
   CHECK(folder.run_text(corner, "--json --junction stop").json()["corner_velocity_step"] == 0.0);
 }
+
+TEST_CASE("the deviation is that from the nearest place of the path, also where arcs are as small as it") {
+  const test::Folder folder;
+  const std::string program = "G1 X0.4322 Y0.4505 Z-0.2538\nG2 X0.3217 Y0.2357 Z-0.2264 I0.0568 J-0.1574\n";
+  for (const std::string tolerance : {"0.1", "0.2", "0.3"})
+    for (const std::string level : {"fast", "good", "best"}) {
+      CAPTURE(tolerance, level);
+      const auto json =
+          folder.run_text(program, "--json --quiet --tolerance " + tolerance + " --smooth " + level).json();
+      CHECK(json["deviation_mm"].get<double>() <= std::stod(tolerance) * (1 + 1e-6));
+    }
+}

@@ -30,7 +30,8 @@ namespace cncplan::detail {
 template <std::floating_point S>
 class BasicBrake {
  public:
-  /// Of the segments only length and limits count; the first is what is left of the zone that the machine is
+  /// Of the segments only length and limits count, and of one with ramps inside the entry, its velocity; the
+  /// first is what is left of the zone that the machine is
   /// in, and the last goes on for ever.
   explicit BasicBrake(std::span<const BasicSegmentLimits<S>> zones) : zones_(zones) {}
 
@@ -108,7 +109,9 @@ class BasicBrake {
       const BasicLimits<S>& limits = zones_[zone].limits;
       if (zone > 0) {
         now.position = S(0);
-        const S most = entry_acceleration(limits, zones_[zone].ramps_inside, now.velocity);
+        const BasicSegmentLimits<S>& own = zones_[zone];
+        const S most = entry_acceleration<S>({own.entry, limits.acceleration, limits.jerk}, own.ramps_inside,
+                                             now.velocity);
         if (-now.acceleration > most * (S(1) + rounding)) return false;
       }
       if (now.acceleration >= S(0)) return true;

@@ -127,21 +127,19 @@ class Jog {
     decltype(M::axes) axes;
   };
 
-  // Its axes. One of the tool that lacks a limit has its share of the tool's: all three together keep it.
-  // Under a map the tool's limits say nothing of a joint's.
+  // Its axes. One of the tool that lacks limits without which it cannot be moved has its share of the tool's:
+  // all three together keep them. Under a map the tool's limits say nothing of a joint's.
   [[nodiscard]] static Axes axes_of(const M& machine) {
     Axes result{machine.axes};
     if (MappedModel<M>) return result;
     constexpr Scalar share = Scalar(0.57735026918962576);  // 1 / sqrt(3)
-    const auto take = [](Scalar& own, Scalar of_tool) {
-      if (!std::isfinite(own)) own = share * of_tool;
-    };
     for (const int i : tool_axes(machine)) {
       if (i < 0) continue;
       auto& axis = result.axes[static_cast<std::size_t>(i)];
-      take(axis.velocity, machine.limits.velocity);
-      take(axis.acceleration, machine.limits.acceleration);
-      take(axis.jerk, machine.limits.jerk);
+      if (!std::isfinite(axis.velocity)) axis.velocity = share * machine.limits.velocity;
+      if (std::isfinite(axis.acceleration) || std::isfinite(axis.jerk)) continue;
+      axis.acceleration = share * machine.limits.acceleration;
+      axis.jerk = share * machine.limits.jerk;
     }
     return result;
   }

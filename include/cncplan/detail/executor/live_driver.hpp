@@ -187,7 +187,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     told_ = 0;
     tail_ahead_ = tells_tail_ = stopped_ = program_holds_ = backwards_ = false;
     rested_ = quiet_ = S(0);
-    peak_of_ = -1;
+    feed_rate_ = S(1);
     pushed_before_ = 0;
     passed_ = -infinity;
   }
@@ -321,13 +321,12 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S rate_of_feed(S now) {
     const S planned = planned_share(now), asked = std::max(feed_share_, S(1));
     if (!(asked < planned)) return feed_share_ / planned;
-    const std::int64_t number = clock_.chain().number_at(now);
-    if (number != peak_of_) {
-      peak_of_ = number;
-      peak_ = clock_.chain().peak_at(now);
-    }
-    const S most = asked / planned * static_cast<S>(clock_.chain().block_at(now).feed);
-    return std::min(feed_share_, S(1)) * std::clamp(most / peak_, asked / planned, S(1));
+    constexpr S window = S(1);       // s, in which the rate changes by so much at the latest
+    constexpr S worth_it = S(1.02);  // times the rate: a change of it takes work
+    const S low = asked / planned, feed = static_cast<S>(clock_.chain().block_at(now).feed);
+    const S rate = std::clamp(low * feed / clock_.chain().peak_between(now, now + window), low, S(1));
+    feed_rate_ = rate > worth_it * feed_rate_ ? rate : std::min(rate, std::max(feed_rate_, low));
+    return std::min(feed_share_, S(1)) * feed_rate_;
   }
   // Of its feed, by which the block is planned that is driven at a time.
   [[nodiscard]] S planned_share(S time) {
@@ -494,9 +493,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool tells_tail_{};
   BasicReachedWords<S> words_;
   FixedList<Driven, Base::most_parts> parts_;
-  S rested_{}, quiet_{};       // s
-  std::int64_t peak_of_ = -1;  // the block whose highest planned speed is known
-  S peak_{};                   // mm/s
+  S rested_{}, quiet_{};  // s
+  S feed_rate_ = S(1);    // where the plan is for a higher feed
   std::int64_t pushed_before_ = 0;
 };
 

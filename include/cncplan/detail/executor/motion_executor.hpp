@@ -51,9 +51,9 @@ class BasicMotionExecutor {
   /// The oldest block that is kept; the one behind the last that a tick has seen.
   [[nodiscard]] std::int64_t oldest() const { return path_.ring.oldest(); }
   [[nodiscard]] std::int64_t end() const { return path_.ring.end(); }
-  /// Whether there is no room for another.
-  [[nodiscard]] bool full() const {
-    return path_.ring.pushed() - path_.ring.oldest() >= path_.ring.capacity();
+  /// Whether it has less than so many blocks, and room for another.
+  [[nodiscard]] bool lacks(std::int64_t blocks) const {
+    return path_.ring.pushed() - path_.ring.oldest() < std::min(blocks, path_.ring.capacity());
   }
   /// Lets the oldest block go, the last one too, if the machine is behind it and runs forwards; whether it
   /// did.

@@ -203,7 +203,7 @@ class BasicPathAhead {
 
   /// The zones of equal limits from a place on, as far as it takes to come to rest from `speed`, and no
   /// farther than to a rest; how many. When `out` (room for one at least) is full, the last goes on under the
-  /// lowest limits of all that follow.
+  /// lowest limits of all that follow. `entry` is the velocity of those with ramps inside.
   std::size_t zones(const Place& from, S speed, std::span<BasicSegmentLimits<S>> out) const {
     std::size_t count = 0;
     Horizon<S> horizon;
@@ -212,13 +212,17 @@ class BasicPathAhead {
       const S length = std::max(ring.length(at.block) - at.along, S(0));
       horizon.take({speed, limits.acceleration, limits.jerk}, length);
       const bool inside = ring[at.block].segment_limits.ramps_inside;
-      if (!inside) limits.velocity = std::numeric_limits<S>::infinity();  // plays no part
-      if (count == 0 || (out[count - 1].limits != limits && count < out.size()))
-        out[count++] = {S(0), S(0), limits, S(0), inside};
+      const S velocity = inside ? limits.velocity : S(0);
+      limits.velocity = S(1);  // plays no part
+      const auto differs = [&](const BasicSegmentLimits<S>& last) {
+        return last.limits != limits || last.entry != velocity;
+      };
+      if (count == 0 || (differs(out[count - 1]) && count < out.size()))
+        out[count++] = {S(0), velocity, limits, S(0), inside};
       BasicSegmentLimits<S>& zone = out[count - 1];
       zone.length += length;
+      if (inside && (!zone.ramps_inside || velocity < zone.entry)) zone.entry = velocity;
       zone.ramps_inside = zone.ramps_inside || inside;
-      zone.limits.velocity = std::min(zone.limits.velocity, limits.velocity);
       zone.limits.acceleration = std::min(zone.limits.acceleration, limits.acceleration);
       zone.limits.jerk = std::min(zone.limits.jerk, limits.jerk);
       if (rests_behind(at.block)) break;  // limits behind that are no concern of the brake

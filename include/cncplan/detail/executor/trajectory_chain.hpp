@@ -146,17 +146,16 @@ class TrajectoryChain {
     return static_cast<std::int64_t>(part.trajectory->first_block() +
                                      part.trajectory->block_of(part.trajectory->phases()[phase].piece));
   }
-  /// The highest speed along the block that is driven at a time, mm/s.
-  [[nodiscard]] S peak_at(S time) const {
-    const Part& part = part_at(time);
-    const auto phases = part.trajectory->phases();
-    const std::size_t now = part.trajectory->phase_at(time - part.start);
-    const auto of = [&](std::size_t phase) { return part.trajectory->block_of(phases[phase].piece); };
-    std::size_t first = now, last = now;
-    while (first > 0 && of(first - 1) == of(now)) --first;
-    while (last + 1 < phases.size() && of(last + 1) == of(now)) ++last;
+  /// The highest speed from one time to another, mm/s; of some hundred phases at most.
+  [[nodiscard]] S peak_between(S from, S to) const {
+    constexpr std::size_t most = 256;
+    const std::size_t first = phase_at(from);
     S peak = S(0);
-    for (std::size_t i = first; i <= last; ++i) peak = std::max(peak, phases[i].phase.highest_velocity());
+    for (std::size_t i = first; i <= std::min(last_phase(), first + most); ++i) {
+      const auto next = phase(i);
+      if (next.time > to) break;
+      peak = std::max(peak, next.highest_velocity());
+    }
     return peak;
   }
   /// The block that is driven at a time.

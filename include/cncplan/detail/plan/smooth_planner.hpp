@@ -14,18 +14,13 @@
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/detail/curve/smooth_pieces.hpp"
 #include "cncplan/detail/executor/run_brakes.hpp"
+#include "cncplan/detail/plan/corners_beside_ends.hpp"
 #include "cncplan/detail/plan/interruption.hpp"
 #include "cncplan/detail/plan/look_ahead_plan.hpp"
+#include "cncplan/detail/plan/make_room.hpp"
 #include "cncplan/detail/plan/run_finder.hpp"
 
 namespace cncplan::detail {
-
-/// Makes room for more items. It grows as a vector does that is pushed to.
-template <class T>
-void make_room(std::pmr::vector<T>& items, std::size_t more) {
-  const std::size_t needed = items.size() + more;
-  if (items.capacity() < needed) items.reserve(std::max(needed, 2 * items.capacity()));
-}
 
 /// Makes the blocks and phases of a program, one run after the other. Blocks that follow each other within
 /// travel are pushed; what needs no later ones is planned and let go.
@@ -191,6 +186,7 @@ class SmoothPlanner {
       if (goes_on && blocks_.size() - i < most_ / 2) break;
       if (goes_on && add_part(end)) return {};
       if (const auto ok = add_run(end); !ok) return ok;
+      if (planned_ == i && !cut_) continue;  // with rests next to ends of travel
       i = end;
       if (!(time_ < ahead_)) return {};
     }
@@ -229,6 +225,7 @@ class SmoothPlanner {
 
   // A planned block has another level than was asked for. There is room.
   void tell(std::size_t block, SmoothLevel level, FallbackReason reason) {
+    if (!fallbacks_.empty() && fallbacks_.back().last == block) return;
     if (!fallbacks_.empty() && fallbacks_.back().last + 1 == block && fallbacks_.back().level == level &&
         fallbacks_.back().reason == reason)
       fallbacks_.back().last = block;
@@ -282,6 +279,8 @@ class SmoothPlanner {
       while (own_level != planned->fallbacks().end() && own_level->last < i - before) ++own_level;
       if (own_level != planned->fallbacks().end() && own_level->first <= i - before)
         tell(i, own_level->level, own_level->reason);
+      else if (beside_an_end(i))
+        tell(i, SmoothLevel::exact, FallbackReason::travel);
       else if (reason)
         tell(i, MappedModel<M> ? SmoothLevel::exact : SmoothLevel::fast, *reason);
     }
@@ -292,6 +291,9 @@ class SmoothPlanner {
   [[nodiscard]] Expected<void, ProgramError> add_run(std::size_t end) {
     const std::optional<FallbackReason> reason = add_curve(end);
     if (!reason) return {};
+    if (!cut_ && reason == FallbackReason::travel &&
+        beside_ends_.rest(std::span(blocks_), end - planned_, first_source_))
+      return {};
     if (cut_) {
       if (add_curve(known_)) add_slow(known_);
       return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
@@ -307,15 +309,22 @@ class SmoothPlanner {
     Run run = given.blocks.run(work_, cut_, memory_);
     RunPlan planned = run.plan(progress_to(end));
     if (!found(planned)) return FallbackReason::no_motion;
-    if (!has_room(planned, given.blocks)) return FallbackReason::travel;
+    if (!has_room(planned, given.blocks)) {
+      beside_ends_.find(planned.pieces, given.blocks, given.sources, std::span(blocks_), machine_);
+      return FallbackReason::travel;
+    }
     if (!cut_ && fast_is_faster(planned.duration, end)) return FallbackReason::fast_is_faster;
     if (run_brakes_.wanted()) {
       make_holdable(run, planned, given, [](const RunPlan&) { return std::optional(Behind{}); });
       make_room(brakes_, run_brakes_.brakes().size());
     }
+    make_room(fallbacks_, beside_ends_.size());
     const S start = time_;
+    std::size_t i = out_.size();
     add_pieces(planned, given, end);
     if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes(), start);
+    for (; i < out_.size(); ++i)
+      if (beside_an_end(i)) tell(i, SmoothLevel::exact, FallbackReason::travel);
     return std::nullopt;
   } catch (const std::bad_alloc&) {
     return FallbackReason::memory;
@@ -435,8 +444,7 @@ class SmoothPlanner {
       pieces.push_back({block, from, given.blocks.piece(path, block, from)});
     return Part(full_machine_, std::move(blocks), {run.phases, memory_}, {}, std::move(pieces));
   }
-  // Of what begins at a time. There is room.
-  void add_brakes(const typename RunBrakes<M, B>::Brakes& brakes, S start) {
+  void add_brakes(const typename RunBrakes<M, B>::Brakes& brakes, S start) {  // there is room
     for (auto brake : brakes) {
       brake.time += start;
       brake.end += start;
@@ -479,19 +487,11 @@ class SmoothPlanner {
     return planned && planned->duration() < duration;
   }
 
-  // A path along an end of travel may be smoothed beyond it, and one under a map to where that jumps.
   [[nodiscard]] bool has_room(const RunPlan& run, const RunBlocks<M, B>& blocks) const {
-    const bool ends = has_ends(machine_);
-    if (!ends && !MappedModel<M>) return true;
-    std::optional<VectorN<S, n>> end;
-    return std::all_of(run.pieces.begin(), run.pieces.end(), [&](const auto& piece) {
-      const auto path = blocks.piece(piece.path, piece.block, piece.from);
-      if constexpr (MappedModel<M>)
-        if (!goes_on(end, path, machine_)) return false;
-      return !ends || within_travel(path, machine_).has_value();
-    });
+    return stays_in_travel(run.pieces, blocks, machine_);
   }
-
+  // Whether a planned block has a corner at which it rests for the sake of the travel.
+  [[nodiscard]] bool beside_an_end(std::size_t out) const { return beside_ends_.has(out_first_ + out); }
   // Pieces of a run that end within a block, or behind the last one before it.
   void add_pieces(const RunPlan& run, const Given& given, std::size_t end) {
     make_room_for(end + 1 - planned_, run.pieces.size() + end - planned_, run.phases.size() + 1);
@@ -538,7 +538,7 @@ class SmoothPlanner {
     smoothing_.blocks.emplace_back();
     out_.push_back(blocks_[i]);
   }
-  // A block of a curve, which may go on in it: then its word is told, or it is there already.
+  // A block of a curve, which may go on in it: its word is told then, or it is there.
   void add_begun(std::size_t i) {
     const bool goes_on = std::exchange(begun_, false) && i == planned_;
     if (goes_on && !out_.empty() && out_first_ + out_.size() - 1 == first_source_ + i) {
@@ -590,6 +590,7 @@ class SmoothPlanner {
   std::pmr::vector<typename Part::Piece> pieces_{memory_};
   std::pmr::vector<BasicPiecePhase<S>> phases_{memory_};
   std::pmr::vector<Fallback> fallbacks_{memory_};
+  CornersBesideEnds beside_ends_{memory_};
   BasicSmoothing<S, n> smoothing_{memory_};
   RunBrakes<M, B> run_brakes_;
   typename RunBrakes<M, B>::Brakes brakes_{memory_};

@@ -232,7 +232,8 @@ template <std::floating_point S, int N>
 /// together.
 template <std::floating_point S>
 [[nodiscard]] S jerk_with_ramps_inside(const Limited<S>& row, S v, S a) {
-  const auto& [b, limits] = row;
+  const BasicToolBounds<S>& b = row.bounds;
+  const BasicLimits<S>& limits = row.limits;
   if (!std::isfinite(limits.jerk) || !row.bends()) return jerk_of(row, v, a);
   if (!(b.first > S(0))) return S(0);
   struct Part {
