@@ -161,18 +161,18 @@ TEST_CASE("levels: a smoothed path that would leave the travel is exact there, a
 }
 
 TEST_CASE("levels: a corner at an end of travel costs a rest, not the level of the whole run", "[levels]") {
-  std::string text = "F1800\nG1 X10\nY5\n";
+  std::string wave = "F1800\nG1 X10\nY5\n";
   for (int i = 0; i < 120; ++i) {
     char line[80];
     std::snprintf(line, sizeof line, "X%.4f Y%.4f\n", 30 + 8 * std::cos(0.15 * i) + 0.1 * i,
                   40 + 8 * std::sin(0.15 * i));
-    text += line;
+    wave += line;
   }
   Machine<3> machine = mill;
   machine.axes[0].low = machine.axes[1].low = 0;
   for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best}) {
-    const auto free = plan_text(text, mill, {.tolerance = 0.01, .level = level});
-    const auto planned = plan_text(text, machine, {.tolerance = 0.01, .level = level});
+    const auto free = plan_text(wave, mill, {.tolerance = 0.01, .level = level});
+    const auto planned = plan_text(wave, machine, {.tolerance = 0.01, .level = level});
     REQUIRE(free);
     REQUIRE(planned);
     CHECK(planned->duration() < free->duration() + 0.1);
