@@ -136,8 +136,8 @@ TEST_CASE("an override that is taken back leaves the programmed feed, whatever l
   for (const SmoothLevel level : levels) {
     CAPTURE(to_text(level));
     Runner executor(machine, LevelExecutorOptions{.level = level});
+    executor.feed_override(2);  // all is planned for it
     load(executor, {"F1200", "G1 X50", "X-50", "X50", "X-50", "X50", "F600", "X-50"}, machine);
-    executor.feed_override(2);
     CHECK(run(executor, 6).along.velocity == Approx(25));
     executor.feed_override(1);
     CHECK(run(executor, 1).along.velocity == Approx(20));

@@ -241,6 +241,15 @@ def drive(served, axes):
     return result
 
 
+def drive_again(served, axes):
+    """The same of a run that has begun, once more from its start."""
+    served.ask("stop")
+    served.rows(5, "finished")
+    served.ask("again")
+    served.rows(2, "held")
+    return drive(served, axes)
+
+
 def check_rates(rows, axes, corners=2):
     """An axis goes as fast as its places say: half the sum of two velocities, but where a corner lies between."""
     for axis in axes:
@@ -289,11 +298,7 @@ def table():
     """A slide and a rotary table, driven by X, Y and Z."""
     with Served("--machine", machine("kk22"), program=b"G1 X40 F1800\nG3 X50 Y10 R10\nG1 Y30 Z2\n") as served:
         check_page(served, "YZC")
-        served.ask("stop")
-        served.rows(5, "finished")
-        served.ask("again")
-        served.rows(2, "held")
-        rows = drive(served, "YZC")
+        rows = drive_again(served, "YZC")
         check_rates(rows, "YZC")
         for tool, place, _ in rows:  # the table's centre is at X -150
             angle = math.radians(place["C"])
@@ -306,11 +311,7 @@ def five_axes():
     """A table that tilts and turns, driven by its tip at the level good."""
     with Served("--machine", machine("table_table_ac"), program=b"F3000\nG43.4\nG1 X20\nY10 A-10 C15\nX0 Y20 A-15 C40\n") as served:
         check_page(served, "XYZAC")
-        served.ask("stop")
-        served.rows(5, "finished")
-        served.ask("again")
-        served.rows(2, "held")
-        rows = drive(served, "XYZAC")
+        rows = drive_again(served, "XYZAC")
         check_rates(rows, "XYZAC", corners=0)
         check(math.dist(rows[-1][0], (0, 20, 0)) < 1e-9, f"it ends at {rows[-1][0]}")
         check(abs(rows[-1][1]["A"] + 15) < 1e-9 and abs(rows[-1][1]["C"] - 40) < 1e-9, f"it ends at {rows[-1]}")

@@ -30,9 +30,8 @@ namespace cncplan::detail {
 template <std::floating_point S>
 class BasicBrake {
  public:
-  /// Of the segments only length and limits count, and of one with ramps inside the entry, its velocity; the
-  /// first is what is left of the zone that the machine is
-  /// in, and the last goes on for ever.
+  /// Of the segments only length and limits count, and of one with ramps inside the entry, which is its
+  /// velocity. The first is what is left of the zone that the machine is in, and the last goes on for ever.
   explicit BasicBrake(std::span<const BasicSegmentLimits<S>> zones) : zones_(zones) {}
 
   /// Whether there is a way out of a state, to within rounding.

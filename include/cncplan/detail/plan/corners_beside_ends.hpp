@@ -62,6 +62,7 @@ class CornersBesideEnds {
   bool rest(std::span<B> blocks, std::size_t count, std::size_t first) {
     constexpr std::size_t few = 8, share = 16;
     if (leaving_.empty() || leaving_.size() > few + count / share) return false;
+    std::erase_if(blocks_, [first](std::size_t block) { return block < first; });  // a stream has no end
     for (const auto& [before, behind] : leaving_) {
       if (before == behind || blocks[before].exact_stop)
         blocks[behind].exact_path = true;
