@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     const TrajectoryExecutor executor(*planned, bench::mill, options);
     if (const auto error = executor.error()) return std::fprintf(stderr, "%s\n", to_text(*error).c_str()), 1;
     std::printf("the program takes %.3f s, without a bound of holds %.3f s; the longest hold is %.3f s\n",
-                planned->duration(), without->duration(), executor.worst_hold());
+                planned->duration(), without->duration(), *executor.worst_hold());
   }
 
   bench::Latencies undisturbed(count), changing(count);

@@ -99,6 +99,10 @@ class ExecutorCore {
   /// is well.
   [[nodiscard]] std::optional<RunError> error() const;
 
+  /// Whether the axes stand.
+  [[nodiscard]] bool rests() const {
+    return !jog_.moves() && drive([](const auto& driver) { return driver.stands(); });
+  }
   /// What it is doing, as of the last tick.
   [[nodiscard]] ExecutorState state() const;
 
@@ -415,8 +419,7 @@ template <MachineModel M, BlockModel B>
 bool ExecutorCore<M, B>::restart(int line, const Vector& position) {
   if (jog_.moves()) return false;
   if (level_ != nullptr) {
-    if (!level_->stands()) return false;
-    level_->restart(line);
+    if (!level_->stands() || !level_->restart(line)) return false;
     away_ = returns_ = true;
   } else {
     if (!motion_executor_.skip_to(0)) return false;

@@ -1,9 +1,10 @@
-// Executors at the levels `good` and `best` (set-up).
+// Executors that are driven by a clock (set-up).
 #pragma once
 
 #include <cstddef>
 #include <memory_resource>
 
+#include "cncplan/detail/executor/given_plan.hpp"
 #include "cncplan/detail/executor/live_driver.hpp"
 #include "cncplan/executor.hpp"
 
@@ -34,6 +35,11 @@ struct ExecutorLevels {
   /// Nothing where the level is `fast` at most.
   [[nodiscard]] static LevelDriver<M, B>* make(const M& machine, const Options& options,
                                                std::size_t most_blocks, std::pmr::memory_resource* memory);
+
+  using GivenDriver = LiveDriver<M, B, GivenPlan<M, B>>;
+  /// Of a trajectory that is there.
+  [[nodiscard]] static GivenDriver* drive(const Trajectory<M, B>& trajectory, const M& machine,
+                                          const BasicHoldBound<S>& bound, std::pmr::memory_resource* memory);
 };
 
 template <MachineModel M, BlockModel B>
@@ -49,8 +55,15 @@ LevelDriver<M, B>* ExecutorLevels<M, B>::make(const M& machine, const Options& o
   plan.reserve = static_cast<double>(options.reserve);
   // Under a map a proof takes too long for brakes to be planned as blocks come.
   plan.hold_factor = MappedModel<M> ? 0.0 : static_cast<double>(options.hold_factor);
-  return LiveDriver<M, B>::make(machine, {plan, options.longest_wait, options.background}, most_blocks,
-                                memory);
+  return LiveDriver<M, B>::make(machine, {options.longest_wait, options.background}, memory, plan,
+                                most_blocks);
+}
+
+template <MachineModel M, BlockModel B>
+auto ExecutorLevels<M, B>::drive(const Trajectory<M, B>& trajectory, const M& machine,
+                                 const BasicHoldBound<S>& bound, std::pmr::memory_resource* memory)
+    -> GivenDriver* {
+  return GivenDriver::make(machine, {}, memory, trajectory, bound);
 }
 
 }  // namespace cncplan::detail

@@ -78,7 +78,7 @@ TEST_CASE("brakes: a hold at any instant of a plan is at rest within its bound",
           double held = 0;
           for (; !executor.rests() && held < 1; held += period) executor.tick(period);
           CAPTURE(at, held);
-          CHECK(held <= executor.worst_hold() + 2 * period);
+          CHECK(held <= *executor.worst_hold() + 2 * period);
           CHECK(held <= factor * least_from(trajectory, now, 0.4) + 2 * period);
         }
       }
@@ -106,7 +106,7 @@ TEST_CASE("brakes: under an override the bound is so many times longer", "[brake
         if (tick >= 3) jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
       }
       CAPTURE(held);
-      CHECK(held <= executor.worst_hold() / share + 2 * period);
+      CHECK(held <= *executor.worst_hold() / share + 2 * period);
       CHECK(jerk <= 10000 * period * period * period * (1 + 1e-3));
     }
   }
@@ -127,7 +127,7 @@ TEST_CASE("brakes: one that is planned begins within a tick, however long that i
     int ticks = 1;
     for (; !executor.rests() && ticks < 100; ++ticks) executor.tick(tick);
     CAPTURE(at, ticks);
-    CHECK((ticks - 1) * tick < executor.worst_hold());
+    CHECK((ticks - 1) * tick < *executor.worst_hold());
   }
 }
 

@@ -34,7 +34,7 @@ struct Clocked {
   using B = ProgramBlock<Machine<3>>;
 
   Clocked(const Trajectory<Machine<3>, B>& trajectory, const Machine<3>& machine) : proof(machine) {
-    chain.push_back(trajectory, {});
+    chain.push_back(trajectory, {}, {});
   }
   bool holds(const state::Motion& clock, bool backwards, double until, int& work) const {
     return proof.holds(chain, clock, backwards, until, work);

@@ -14,6 +14,7 @@
 #include "cncplan/kinematics/table_table.hpp"
 #include "cncplan/plan_program.hpp"
 #include "cncplan/smooth_stream.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "kinematics/tool_jog_run.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"
@@ -227,6 +228,30 @@ void live(SmoothLevel level, bool disturbed) {
   watch.check(blocks);
 }
 
+// The same of a plan that is there as a whole.
+template <class Case>
+void given() {
+  const auto machine = Case::machine();
+  const auto program = read_text(Case::text(), machine, Case::options(SmoothLevel::good));
+  REQUIRE_FALSE(program.failed());
+  const auto trajectory = plan_program(program, machine, Case::options(SmoothLevel::good));
+  REQUIRE(trajectory);
+  TrajectoryExecutor executor(*trajectory, machine);
+  CHECK_FALSE(executor.worst_hold());
+  constexpr double period = 1e-3;
+  Watch<Case> watch(period);
+  int rests = 0;
+  for (int tick = 0; executor.state() != ExecutorState::finished; ++tick) {
+    REQUIRE(tick < 200000);
+    if (tick % 3000 == 1500) executor.feed_hold();
+    if (tick % 3000 == 2500) rests += executor.state() == ExecutorState::held ? 1 : 0, executor.resume();
+    executor.feed_override(tick % 7000 < 2000 ? 0.6 : 1);
+    watch.add(executor.tick(period).position);
+  }
+  CHECK(rests > 2);
+  watch.check(program.blocks());
+}
+
 // Jogs amid a line, without a corner that an exact path jumps at; to points in all coordinates.
 struct PolarJogs : Polar {
   static constexpr double hold_after = 0.5;
@@ -279,6 +304,11 @@ TEST_CASE("under a map: an executor at the level good does not rest between bloc
 TEST_CASE("under a map: an executor at the level good under random requests", "[mapped-live]") {
   live<Polar>(SmoothLevel::good, true);
   live<FiveAxes>(SmoothLevel::good, true);
+}
+
+TEST_CASE("under a map: a plan that is there as a whole is run and held", "[mapped-live]") {
+  given<Polar>();
+  given<FiveAxes>();
 }
 
 TEST_CASE("under a map: the tool and joints are jogged amid a program at every level", "[mapped-live]") {

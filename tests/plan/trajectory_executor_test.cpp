@@ -377,8 +377,8 @@ TEST_CASE(
   REQUIRE(refused.error());
   CHECK(refused.error()->error().code == ErrorCode::above_limit);
   CHECK(refused.error()->error().bound == 1);
-  CHECK(refused.error()->error().value == refused.worst_hold());
-  CHECK(refused.worst_hold() > 1);
+  CHECK(refused.error()->error().value == *refused.worst_hold());
+  CHECK(*refused.worst_hold() > 1);
   CHECK(refused.finished());
   run(refused, 0.1);
   CHECK(refused.tick(period).position == to_the_limit.at(0.0).position);
@@ -391,7 +391,7 @@ TEST_CASE(
       run(executor, at);
       executor.feed_hold();
       const double time = ticks_to_rest(executor, period);
-      CHECK(time <= executor.worst_hold() + 2 * period);
+      CHECK(time <= *executor.worst_hold() + 2 * period);
       worst = std::max(worst, time);
     }
     return worst;
@@ -400,12 +400,12 @@ TEST_CASE(
   CHECK_FALSE(allowed.error());
   const double longest = hold(to_the_limit, 60);
   CHECK(longest > 1);
-  CHECK(allowed.worst_hold() > longest - 2 * period);
+  CHECK(*allowed.worst_hold() > longest - 2 * period);
 
   const auto reserved = planned(circles, with_reserve(mill, 0.05), SmoothLevel::best);
   TrajectoryExecutor executor(reserved, mill);
   CHECK_FALSE(executor.error());
-  CHECK(executor.worst_hold() < 0.6);
+  CHECK(*executor.worst_hold() < 0.6);
   CHECK(hold(reserved, 1) < 0.5);
 }
 

@@ -37,7 +37,8 @@ struct Errors {
   double ticks = -1;  // of a case that does not end
 };
 
-// What to do at a tick. A request is a character: hold, resume, feed, reverse, forwards.
+// What to do at a tick. A request is a character: hold, resume, feed (o), back, forwards, single steps (s),
+// pause at a line, jog.
 struct Request {
   long tick{};
   char what{};
@@ -71,7 +72,7 @@ Case draw(std::uint64_t seed, double seconds) {
   const double pace = random.log_uniform(2e-3, 0.5);  // s between requests
   for (double t = random.log_uniform(1e-3, 1); t < seconds; t += random.log_uniform(pace / 10, pace * 3)) {
     const auto tick = static_cast<long>(t / period);
-    switch (random.integer(0, 9)) {
+    switch (random.integer(0, 12)) {
       case 0:
       case 1:
       case 2:
@@ -87,6 +88,15 @@ Case draw(std::uint64_t seed, double seconds) {
         break;
       case 7:
         c.requests.push_back({tick, 'f', 0});
+        break;
+      case 8:
+        c.requests.push_back({tick, 's', random.coin() ? 1.0 : 0.0});
+        break;
+      case 9:
+        c.requests.push_back({tick, 'p', static_cast<double>(random.integer(0, lines))});
+        break;
+      case 10:
+        c.requests.push_back({tick, 'j', random.uniform(-3, 3)});
         break;
       default:
         c.requests.push_back({tick, 'o', random.coin() ? random.uniform(0, 2) : 1.0});
@@ -105,8 +115,9 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
   if (made->error()) made.emplace(trajectory, machine, TrajectoryExecutorOptions{.longest_hold = 1000});
   auto& executor = *made;
   executor.program_stop(false);
+  int since_jog = 4;  // ticks; a jog has the limits of axes alone, where they have some
   const auto share = [&](const Vector3& value, double rounding, double of_tool, auto of_axis) {
-    double result = (value.norm() - rounding) / of_tool;
+    double result = since_jog < 4 ? 0 : (value.norm() - rounding) / of_tool;
     for (int i = 0; i < 3; ++i)
       result = std::max(result,
                         (std::abs(value[i]) - rounding) / of_axis(machine.axes[static_cast<std::size_t>(i)]));
@@ -134,18 +145,23 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
       if (what == 'r') executor.resume(), held_since = -1;
       if (what == 'b' || what == 'f') executor.reverse(what == 'b');
       if (what == 'o') executor.feed_override(value);
+      if (what == 's') executor.single_step(value > 0);
+      if (what == 'p') executor.pause_at(static_cast<int>(value));
+      if (what == 'j') (void)executor.jog_by(Vector3(value, -value, value / 2));  // refused while it moves
     }
     if (next == c.requests.size()) {  // to the end
       executor.resume();
       executor.reverse(false);
       executor.feed_override(1);
+      executor.single_step(false);
+      executor.pause_at(0);
       held_since = -1;
     }
     const auto point = executor.tick(period);
     if (executor.rests() && held_since >= 0) {
       const double held = static_cast<double>(tick - held_since) * period;
       errors.hold = std::max(errors.hold, held);
-      if (steady) errors.late = std::max(errors.late, held - executor.worst_hold() - period);
+      if (steady) errors.late = std::max(errors.late, held - *executor.worst_hold() - period);
       held_since = std::numeric_limits<long>::max();
     }
     for (const auto& word : point.words)
@@ -157,8 +173,11 @@ void examine(const T& trajectory, std::span<const ProgramBlock<Mill>> blocks, co
                                 blocks.size() - 1);
     const auto& path = blocks[block].path;
     const double within = std::clamp(path.length() - (ends[block] - s), 0.0, path.length());
-    errors.place =
-        std::max(errors.place, (path.position_at(within) - point.position).norm() / c.program.tolerance - 1);
+    const ExecutorState state = executor.state();
+    since_jog = state == ExecutorState::jogging ? 0 : since_jog + 1;
+    if (state != ExecutorState::jogging && state != ExecutorState::away)
+      errors.place = std::max(errors.place,
+                              (path.position_at(within) - point.position).norm() / c.program.tolerance - 1);
     p = {Vector3(point.position), p[0], p[1], p[2]};
     if (++known < 4) continue;
     const Vector3 v = (p[0] - p[1]) / period, a = (p[0] - 2 * p[1] + p[2]) / (period * period),

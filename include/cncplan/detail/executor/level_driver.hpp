@@ -1,4 +1,4 @@
-// What drives an executor at the levels `good` and `best`, as its core sees it.
+// What drives an executor by a clock, as its core sees it.
 #pragma once
 
 #include <cstddef>
@@ -88,8 +88,9 @@ class LevelDriver {
   [[nodiscard]] virtual BasicTickPart<S> part(std::size_t number) const = 0;
   [[nodiscard]] virtual AxisMotion<Vector> axes_at(S seconds) const = 0;
 
-  /// At rest: forgets all blocks; those that are pushed next are passed over up to the first one of a line.
-  virtual void restart(int line) = 0;
+  /// At rest: forgets all blocks; those that are pushed next are passed over up to the first one of a line. A
+  /// plan that is given as a whole begins there. False, and nothing done, where it does not rest there.
+  [[nodiscard]] virtual bool restart(int line) = 0;
 
  protected:
   ~LevelDriver() = default;

@@ -20,12 +20,12 @@ namespace cncplan::detail {
 /// What it is made with.
 template <std::floating_point S>
 struct BasicLiveOptions {
-  PlanOptions plan{};
   S longest_wait{};  ///< s
   bool background = false;
 };
 
-template <MachineModel M, BlockModel B>
+/// `Planner`: a `PartPlanner`, or what has its functions.
+template <MachineModel M, BlockModel B, class Planner = PartPlanner<M, B>>
 class LiveDriver final : public LevelDriver<M, B> {
  public:
   using Base = LevelDriver<M, B>;
@@ -46,12 +46,13 @@ class LiveDriver final : public LevelDriver<M, B> {
     }
   };
 
-  /// In memory that it gives back when it is destroyed.
-  static LiveDriver* make(const M& machine, const Options& options, std::size_t most_blocks,
-                          std::pmr::memory_resource* memory) {
+  /// In memory that it gives back when it is destroyed. `planner`: what its planner is made with.
+  template <class... Args>
+  static LiveDriver* make(const M& machine, const Options& options, std::pmr::memory_resource* memory,
+                          const Args&... planner) {
     void* const room = memory->allocate(sizeof(LiveDriver), alignof(LiveDriver));
     try {
-      return new (room) LiveDriver(machine, options, most_blocks, memory);
+      return new (room) LiveDriver(machine, options, memory, planner...);
     } catch (...) {
       memory->deallocate(room, sizeof(LiveDriver), alignof(LiveDriver));
       throw;
@@ -179,9 +180,12 @@ class LiveDriver final : public LevelDriver<M, B> {
   /// What the last tick was made of, rests left out, and what its clock ran along.
   [[nodiscard]] const FixedList<Driven, Base::most_parts>& driven() const { return parts_; }
   [[nodiscard]] const typename Clock::Chain& chain() const { return clock_.chain(); }
+  [[nodiscard]] BasicState<S> clock() const { return clock_.state(); }
 
-  void restart(int line) override {
-    planner_.restart(line);
+  bool restart(int line) override {
+    const std::optional<S> begins_at = planner_.restart(line);
+    if (!begins_at) return false;
+    begins_at_ = *begins_at;
     clock_ = Clock(machine_);
     oldest_ = seen_ = told_part_ = 0;
     told_ = 0;
@@ -190,10 +194,10 @@ class LiveDriver final : public LevelDriver<M, B> {
     feed_rate_ = S(1);
     pushed_before_ = 0;
     passed_ = -infinity;
+    return true;
   }
 
  private:
-  using Planner = PartPlanner<M, B>;
   using Clocked = typename Planner::Clocked;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
@@ -208,11 +212,12 @@ class LiveDriver final : public LevelDriver<M, B> {
     bool has_tail{};          // that is driven
   };
 
-  LiveDriver(const M& machine, const Options& options, std::size_t most_blocks,
-             std::pmr::memory_resource* memory)
+  template <class... Args>
+  LiveDriver(const M& machine, const Options& options, std::pmr::memory_resource* memory,
+             const Args&... planner)
       : machine_(machine),
         memory_(memory),
-        planner_(machine, options.plan, most_blocks, memory),
+        planner_(machine, planner..., memory),
         clock_(machine),
         longest_wait_(options.longest_wait),
         background_(options.background) {}
@@ -274,14 +279,22 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (part.tail) add(now, *part.tail);
     tail_ahead_ = part.tail.has_value();
     cut_ = now.tail_start;
+    if (seen_ == 1) begin();
     clock_.look_ahead();
+  }
+  // The first part is there.
+  void begin() {
+    clock_.stand_at(begins_at_);
+    const auto passed = [&](const auto& word) { return word.time < begins_at_ - same_time; };
+    const auto& words = planner_.part(0).motion->words;
+    told_ = static_cast<std::size_t>(std::ranges::partition_point(words, passed) - words.begin());
   }
   // s, where what is planned ends, a tail that is not driven left out.
   [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : end_of_chain(); }
   [[nodiscard]] S end_of_chain() const { return clock_.chain().empty() ? S(0) : clock_.chain().end_time(); }
   void add(Seen& now, const Clocked& motion) {
     if (motion.trajectory.phases().empty()) return;
-    clock_.chain().push_back(motion.trajectory, motion.rests);
+    clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes);
     ++now.motions;
   }
 
@@ -484,6 +497,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   S passed_ = -infinity;  // when the block begins before which it last paused
   // Parts: the oldest that is kept, and behind the last one that was taken into the chain.
   std::int64_t oldest_ = 0, seen_ = 0;
+  S begins_at_{};  // s of the first one, at which it stands first
   std::array<Seen, static_cast<std::size_t>(Planner::most_parts)> known_{};
   bool tail_ahead_{};  // the chain ends with a tail that is not driven yet
   S cut_{};            // where it begins

@@ -9,60 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "cncplan/detail/executor/clocked_trajectory.hpp"
 #include "cncplan/detail/executor/feed_shares.hpp"
-#include "cncplan/detail/executor/trajectory_chain.hpp"
+#include "cncplan/detail/executor/part_link.hpp"
 #include "cncplan/smooth_stream.hpp"
 
 namespace cncplan::detail {
-
-/// A trajectory with what a clock tells and asks of it, by the time of the trajectory.
-template <MachineModel M, BlockModel B>
-struct ClockedTrajectory {
-  using S = typename M::Scalar;
-
-  /// The start of a block that moves.
-  struct Begin {
-    S time{};  ///< s
-    int line{};
-  };
-  struct Word {
-    S time{};  ///< s
-    gcode::Word word{};
-  };
-
-  /// `begun`: the last block that has begun in the one before.
-  ClockedTrajectory(Trajectory<M, B>&& motion, std::optional<std::size_t> begun,
-                    std::pmr::memory_resource* memory)
-      : trajectory(std::move(motion)), rests(rests_of(trajectory, memory)), words(memory), begins(memory) {
-    const auto blocks = trajectory.program();
-    begins.reserve(blocks.size());
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const S time = trajectory.start_time(i);
-      if (blocks[i].word.letter != '\0') words.push_back({time, blocks[i].word});
-      if (blocks[i].path.length() > S(0) && trajectory.first_block() + i != begun)
-        begins.push_back({time, blocks[i].line});
-    }
-  }
-
-  /// The program's number of its last block.
-  [[nodiscard]] std::size_t last_block() const {
-    return trajectory.first_block() + trajectory.program().size() - 1;
-  }
-
-  Trajectory<M, B> trajectory;
-  std::pmr::vector<BasicRest<S>> rests;
-  std::pmr::vector<Word> words;
-  std::pmr::vector<Begin> begins;
-};
-
-/// What comes behind a part.
-enum class PartLink : std::uint8_t {
-  rest,      ///< it ends at rest, and there is nothing yet
-  open,      ///< it ends at a speed: the tail, if nothing comes
-  next,      ///< the next part
-  tail,      ///< the tail, which is driven, and nothing yet
-  tail_next  ///< the tail, and then the next part
-};
 
 /// Two threads: one pushes and plans, and offers parts; the other one drives them, and says when it drives a
 /// tail. An atomic of each part decides which of both was first. Neither waits.
@@ -157,11 +109,13 @@ class PartPlanner {
   /// Parts before this one are not asked for again.
   void release(std::int64_t number) { released_.store(number, std::memory_order_release); }
 
-  /// Forgets all. Not while another thread does anything.
-  void restart(int line) {
+  /// Forgets all; blocks that are pushed next are passed over up to the first one of a line. Parts begin at 0
+  /// s. Not while another thread does anything.
+  std::optional<S> restart(int line) {
     for (Part& part : parts_) clear(part);
     begin();
     skips_to_ = line;
+    return S(0);
   }
 
  private:

@@ -80,9 +80,6 @@ class TrajectoryChain {
     }
     parts_[count_++] = next;
   }
-  void push_back(const T& trajectory, std::span<const Rest> rests) {
-    push_back(trajectory, rests, trajectory.brakes());
-  }
   /// Lets the last one go, or the first one. The running time goes on.
   void pop_back() { --count_; }
   void pop_front() {

@@ -77,12 +77,12 @@ class TrajectoryClock {
   [[nodiscard]] const Ramp& ramp() const { return ramp_; }
   [[nodiscard]] S elapsed() const { return elapsed_; }
 
-  /// The axes stand at a time of the chain's where it begins or ends at rest.
+  /// The axes stand at a time of the chain's where it rests.
   void stand_at(S time) {
     rest_ = {time, time};
     if (!chain_.empty())
-      if (const auto rest = chain_.rest_after(time - S(1)); rest && rest->from <= time) rest_ = *rest;
-    stand(rest_, false);
+      if (const auto rest = chain_.rest_before(time + same_time); rest && !(rest->to < time)) rest_ = *rest;
+    stand(rest_, !(time < rest_.to));
   }
 
   /// Asks for a brake with so many times the limits, until the axes stand.
