@@ -64,9 +64,9 @@ std::string LiveRun::rows(long long after) {
                       {"run", run_},
                       {"state", state_},
                       {"error", error_},
-                      {"feed", feed_},
-                      {"rapid", rapid_},
-                      {"step", single_}};
+                      {"feed", feed_.load()},
+                      {"rapid", rapid_.load()},
+                      {"step", single_.load()}};
   lock.unlock();  // the machine does not wait for text
   json["rows"] = chosen;
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -85,6 +85,7 @@ void LiveRun::begin_again() {
   machine_->single_step(single_);
   held_ = true;
   at_rest_ = 0;
+  const std::lock_guard lock(mutex_);
   rows_.clear();
   ++run_;
 }
@@ -97,16 +98,22 @@ void LiveRun::run() {
     next += step;
     if (Clock::now() > next + std::chrono::milliseconds(200)) next = Clock::now();  // too late to catch up
     std::this_thread::sleep_until(next);
-    const std::lock_guard lock(mutex_);
-    if (ended_) return;
-    for (const auto& request : std::exchange(requests_, {})) request();
+    std::vector<std::function<void()>> requests;
+    {
+      const std::lock_guard lock(mutex_);
+      if (ended_) return;
+      requests.swap(requests_);
+    }
+    for (const auto& request : requests) request();
     tick();
   }
 }
 
+// Nobody waits for it: at some levels of smoothing a tick plans for seconds.
 void LiveRun::tick() {
   auto [row, rests] = machine_->tick(period_);
   const auto fault = machine_->error();
+  const std::lock_guard lock(mutex_);
   error_ = fault.value_or(std::string());
   state_ = fault ? "error" : machine_->finished() ? "finished" : !rests ? "moves" : held_ ? "held" : "rests";
   at_rest_ = rests ? at_rest_ + 1 : 0;

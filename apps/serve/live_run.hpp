@@ -1,6 +1,7 @@
 // A program run in real time, held, overridden and stopped from another thread.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -45,16 +46,21 @@ class LiveRun {
   const Fresh fresh_;
   const double period_;
 
+  // Of the thread that ticks.
+  std::unique_ptr<LiveMachine> machine_;
+  bool held_ = true;
+  int at_rest_ = 0;  // ticks
+
+  std::atomic<double> feed_{1.0}, rapid_{1.0};
+  std::atomic<bool> single_{false};
+
   std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
-  std::unique_ptr<LiveMachine> machine_;
   std::vector<std::function<void()>> requests_;
   std::deque<Row> rows_;
   long long count_ = 0;  // rows that there were
   int run_ = 1;
-  int at_rest_ = 0;  // ticks
-  bool held_ = true, single_ = false, ended_ = false;
-  double feed_ = 1.0, rapid_ = 1.0;
+  bool ended_ = false;
   std::string_view state_ = "held";
   std::string error_;
   std::thread thread_;  // last: it uses all the others

@@ -232,7 +232,10 @@ def machine(name):
 
 def drive(served, axes):
     """Runs to the end; the rows, each as the tool's place and dictionaries of position and velocity by axis."""
+    begin = time.monotonic()
     check(served.ask("resume") == 204, "resume is refused")
+    took = time.monotonic() - begin
+    check(took < 1, f"a request waits for {took} s")  # for no plan
     result = []
     for row in served.rows(30, "finished")[0]:
         check(len(row) == 9 + 4 * len(axes), f"a row of {len(axes)} axes has {len(row)} values")
