@@ -14,8 +14,9 @@ namespace cncplan {
 /// What a `TrajectoryExecutor` asks of a trajectory.
 template <std::floating_point S>
 struct BasicTrajectoryExecutorOptions {
-  S longest_hold = S(1);  ///< s, > 0: the longest that a hold may take from a request to rest
-  /// How many times the least that a brake takes it may take, > 1
+  /// s, > 0: the longest that a hold may take from a request to rest. Behind a map nothing bounds it.
+  S longest_hold = S(1);
+  /// How many times the least that a brake takes it may take, > 1; behind a map infinity alone
   S hold_factor = std::numeric_limits<S>::infinity();
   S quick_stop_share = S(1);  ///< as in `BasicExecutorOptions`
 };
@@ -27,9 +28,9 @@ using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
 /// all the way back. So curve and place on it are those of the plan, whatever level of smoothing it has.
 ///
 /// Limits of acceleration and jerk, of the tool and of each axis, hold at every instant: a change of the rate
-/// is begun only once it is proven over all of its way. Each tick looks for such a
-/// change, fast ones first, and for a faster one while one goes on. Where none is proven, the clock goes on
-/// as it does, which keeps the limits because the trajectory does.
+/// is begun only once it is proven over all of its way. Each tick looks for such a change, fast ones first,
+/// and for a faster one while one goes on. Where none is proven, the clock goes on as it does, which keeps
+/// the limits because the trajectory does.
 ///
 /// A trajectory that uses up the jerk limit on long bends could be held only behind them. So brakes are
 /// planned when the executor is made, so close that a hold at the planned speed that waits for the next one
@@ -40,8 +41,8 @@ using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
 ///
 /// It does what an `Executor` at the levels `good` and `best` does, but that the program is there as a whole:
 /// a block that is pushed is an error, `reverse` goes back to the start, and `restart` begins at a line
-/// before which the trajectory rests (0: at its start), and at no other. The trajectory must outlive it.
-/// Nothing is allocated once it is made.
+/// before which the trajectory rests (0: at its start), and at no other; words that are reached at that
+/// instant are told. The trajectory must outlive it. Nothing is allocated once it is made.
 template <MachineModel M, BlockModel B>
 class TrajectoryExecutor : private detail::ExecutorRoom<M, B, 2>, public ExecutorCore<M, B> {
  public:
@@ -57,7 +58,8 @@ class TrajectoryExecutor : private detail::ExecutorRoom<M, B, 2>, public Executo
                                                     {options.hold_factor, options.longest_hold}, memory)) {
     this->drive_by(*driver_);
   }
-  TrajectoryExecutor(Trajectory<M, B>&&, const M&, const Options& = {}) = delete;
+  TrajectoryExecutor(Trajectory<M, B>&&, const M&, const Options& = {},
+                     std::pmr::memory_resource* = nullptr) = delete;
 
   /// What the clock shows, s of the trajectory, and how it runs: its rate, 1/s and 1/s^2.
   [[nodiscard]] BasicState<Scalar> clock() const { return driver_->clock(); }

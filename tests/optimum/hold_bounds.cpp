@@ -72,8 +72,9 @@ int main(int argc, char** argv) {
   const auto at = [](const std::vector<double>& values, double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   };
-  std::printf("%zu holds: median %.3f s, longest %.3f s; a search found the least of %zu of them\n",
-              holds.size(), at(holds, 0.5), at(holds, 1), ratios.size());
+  std::printf(
+      "seed %llu, %zu holds: median %.3f s, longest %.3f s; a search found the least of %zu of them\n",
+      static_cast<unsigned long long>(seed), holds.size(), at(holds, 0.5), at(holds, 1), ratios.size());
   std::printf("times the least: median %.3f, 90 %% %.3f, 99 %% %.3f, worst %.3f at %.3f s of the plan\n",
               at(ratios, 0.5), at(ratios, 0.9), at(ratios, 0.99), at(ratios, 1), worst_at);
 }

@@ -238,6 +238,9 @@ void given() {
   REQUIRE(trajectory);
   TrajectoryExecutor executor(*trajectory, machine);
   CHECK_FALSE(executor.worst_hold());
+  const TrajectoryExecutor bounded(*trajectory, machine, {.hold_factor = 2});
+  REQUIRE(bounded.error());
+  CHECK(bounded.error()->error().code == ErrorCode::not_supported);
   constexpr double period = 1e-3;
   Watch<Case> watch(period);
   int rests = 0;

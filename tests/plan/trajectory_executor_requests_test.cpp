@@ -71,8 +71,7 @@ TEST_CASE("trajectory executor: what it is doing, at every change", "[trajectory
                               jogging, away, jogging, moving, finished});
 }
 
-TEST_CASE("trajectory executor: single steps and pauses rest before the next block",
-          "[trajectory-executor]") {
+TEST_CASE("trajectory executor: single steps and pauses rest at the next block", "[trajectory-executor]") {
   const auto trajectory = planned(corners);
   Runner executor(trajectory, mill);
   executor.single_step(true);
@@ -139,10 +138,29 @@ TEST_CASE("trajectory executor: it begins again at lines before which it rests",
   CHECK(words == std::vector{8});
   CHECK(least > 10 - 1e-6);
   CHECK((end - Vector3(30, 10, 0)).norm() < 1e-9);
-  REQUIRE(executor.restart(0, end));
+  REQUIRE(executor.restart(5, end));
+  executor.single_step(true);
+  CHECK((tick_until(executor, ExecutorState::held).position - Vector3(20, 0, 0)).norm() < 1e-3);
+  executor.single_step(false);
+  REQUIRE(executor.restart(0, Vector3(20, 0, 0)));
   double time = 0;
   while (executor.state() != ExecutorState::finished && time < 100) executor.tick(period), time += period;
   CHECK(time > trajectory.duration());
+}
+
+TEST_CASE("trajectory executor: programs without motion are over at once, and tell their words",
+          "[trajectory-executor]") {
+  for (const bool words : {false, true}) {
+    const auto trajectory = planned(words ? "M3 S1\nM8\n" : "");
+    Runner executor(trajectory, mill);
+    const auto point = executor.tick(period);
+    CHECK(point.words.size() == (words ? 3 : 0));
+    CHECK(executor.finished());
+    CHECK_FALSE(executor.error());
+    CHECK_FALSE(executor.worst_hold());
+    REQUIRE(executor.restart(0, Vector3(1, 2, 3)));
+    executor.tick(period);
+  }
 }
 
 TEST_CASE("trajectory executor: a quick stop uses its share of the limits", "[trajectory-executor]") {

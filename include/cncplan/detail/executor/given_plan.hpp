@@ -58,8 +58,8 @@ class GivenPlan {
   void let_go() {}
   [[nodiscard]] bool all_planned() const { return true; }
   [[nodiscard]] bool ended() const { return true; }
-  [[nodiscard]] bool failed() const { return fault_.has_value(); }
-  [[nodiscard]] gcode::Diagnostic fault() const { return {*fault_, 0, 0, {}}; }
+  [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_acquire); }
+  [[nodiscard]] gcode::Diagnostic fault() const { return {fault_, 0, 0, {}}; }
   [[nodiscard]] BasicFeedShares<S>& shares() { return shares_; }
   [[nodiscard]] S longest_hold() const { return longest_hold_; }
   [[nodiscard]] Vector start() const { return trajectory_.at(S(0)).position; }
@@ -73,13 +73,15 @@ class GivenPlan {
   [[nodiscard]] std::optional<S> restart(int line) {
     if (!begun_) return std::nullopt;
     const auto begins_at = line == 0 ? std::optional(S(0)) : rest_before(line);
-    if (begins_at) fault_.reset();
+    if (begins_at) failed_ = false;
     return begins_at;
   }
 
  private:
   void fail(const Error& error) {
-    if (!fault_) fault_ = error;
+    if (failed_.load(std::memory_order_relaxed)) return;
+    fault_ = error;
+    failed_.store(true, std::memory_order_release);
   }
 
   // s, when a rest ends at which the first block of a line begins; nothing if there is none.
@@ -101,6 +103,8 @@ class GivenPlan {
                      "longest hold", bound.longest);
     if (!(bound.times_least > S(1)))
       return refusal(ErrorCode::below_limit, "hold factor", bound.times_least, S(1));
+    if (MappedModel<M> && std::isfinite(bound.times_least))
+      return refusal(ErrorCode::not_supported, "hold factor", bound.times_least);
     if (trajectory_.phases().empty()) return {};
     const auto& first = trajectory_.phases().front().phase;
     const auto& last = trajectory_.phases().back().phase;
@@ -128,7 +132,8 @@ class GivenPlan {
   Part part_;
   std::pmr::vector<BasicPlannedBrake<S>> brakes_;
   BasicFeedShares<S> shares_;
-  std::optional<Error> fault_;
+  Error fault_{};
+  std::atomic<bool> failed_{false};
   S longest_hold_{};  // s
   bool begun_ = false;
 };

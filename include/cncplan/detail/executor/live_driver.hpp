@@ -411,7 +411,7 @@ class LiveDriver final : public LevelDriver<M, B> {
       auto begin = std::lower_bound(motion.begins.begin(), motion.begins.end(), from - start,
                                     [](const auto& one, S time) { return one.time < time; });
       for (; begin != motion.begins.end(); ++begin)
-        if (single_step_ ? start + begin->time > same_time : begin->line == pause_line_)
+        if (single_step_ ? start + begin->time > begins_at_ + same_time : begin->line == pause_line_)
           return start + begin->time;
       return std::nullopt;
     };
