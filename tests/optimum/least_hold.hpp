@@ -31,8 +31,9 @@ template <class P>
 class LeastHold {
  public:
   struct Found {
-    double time{};    // s
-    double beyond{};  // the limits, as a share of them, and of the first speed at the end
+    double time{};               // s
+    double beyond{};             // the limits, as a share of them, and of the first speed at the end
+    std::vector<double> jerk{};  // mm/s^3 along the path, in steps of equal time
   };
 
   LeastHold(const P& path, double room, double velocity, double acceleration, const Limits& limits, int steps)
@@ -92,7 +93,8 @@ class LeastHold {
         trust /= 2.5;
       }
     }
-    return {best.time * static_cast<double>(steps_), beyond(best)};
+    const double most = beyond(best);
+    return {best.time * static_cast<double>(steps_), most, std::move(best.jerk)};
   }
 
   [[nodiscard]] PathPoint<Vector3> at(double s) const { return path_.point_at(std::clamp(s, 0.0, room_)); }

@@ -42,13 +42,29 @@ TEST_CASE("least hold: on a line it is the closed form") {
         Approx(0.008 + (100 - 0.5 * 1000 * 0.01 - 0.008 * 600) / 1000 + 0.01).epsilon(2e-3));
 }
 
-TEST_CASE("least hold: on a circle of constant curvature the search agrees with itself on finer grids") {
+TEST_CASE(
+    "least hold: on a circle its motion keeps the limits by differences, and finer grids find the same") {
   const auto circle =
       path::arc_from_center(Vector3(0, 0, 0), {100, 0, 0}, {50, 0, 0}, Turn::clockwise, Plane::xy);
   REQUIRE(circle);
   const Limits slow{.velocity = 50, .acceleration = 500, .jerk = 50};
   const double coarse = found(*circle, 24, 0, slow, 2.5, 40), fine = found(*circle, 24, 0, slow, 2.5, 120);
   CHECK(fine == Approx(coarse).epsilon(2e-3));
+  const LeastHold search(*circle, circle->length(), 24, 0, slow, 40);
+  const auto hold = search.search(2.5);
+  constexpr int parts = 25;  // of a step
+  const double t = hold.time / static_cast<double>(hold.jerk.size()) / parts;
+  std::vector<Vector3> p;
+  double s = 0, v = 24, a = 0, most = 0;
+  for (const double j : hold.jerk)
+    for (int i = 0; i < parts; ++i) {
+      p.emplace_back(50 - 50 * std::cos(s / 50), 50 * std::sin(s / 50), 0);
+      s += t * (v + t * (a / 2 + t * j / 6)), v += t * (a + t * j / 2), a += t * j;
+    }
+  for (std::size_t i = 3; i < p.size(); ++i)
+    most = std::max(most, (p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3]).norm() / (t * t * t));
+  CHECK(most == Approx(50).epsilon(0.01));
+  CHECK(std::abs(v) < 1e-3);
   const path::BasicLine<double, 3> line({0, 0, 0}, {100, 0, 0});
   CHECK(fine > found(line, 24, 0, slow, 2.5));  // where the bend takes no jerk
 }
