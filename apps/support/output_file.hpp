@@ -90,23 +90,27 @@ class UnfinishedFile {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  // A handler may do little: to remove files and to end as without it is allowed.
+  // A handler may do little: to remove files and to end as without it is allowed. Another signal waits until
+  // it has done so, as `timeout` sends each one twice.
   static void clean_up(int signal) {
     for (const std::atomic<const char*>& name : names)
       if (const char* const file = name) ::unlink(file);
+    std::signal(signal, SIG_DFL);
     ::raise(signal);
   }
   static bool arm() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-      struct sigaction action {};
-      if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;  // nohup
-      action.sa_handler = &clean_up;
-      action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+    struct sigaction action {};
+    action.sa_handler = &clean_up;
+    for (const int signal : ends) ::sigaddset(&action.sa_mask, signal);
+    for (const int signal : ends) {
+      struct sigaction before {};
+      if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) continue;  // nohup
       ::sigaction(signal, &action, nullptr);
     }
     return true;
   }
 
+  static constexpr std::array<int, 3> ends{SIGINT, SIGTERM, SIGHUP};
   static inline std::array<std::atomic<const char*>, 32> names{};
 
   std::string path_;
