@@ -4,6 +4,7 @@
 namespace cncplan::detail {
 
 CNCPLAN_SMOOTH_RUNS(, 3)
+CNCPLAN_SMOOTH_RUNS(, 4)
 CNCPLAN_SMOOTH_RUNS(, 6)
 
 }  // namespace cncplan::detail

@@ -61,20 +61,7 @@ class SmoothStream {
   /// Takes the next block. Errors as for `plan_blocks`. After one the block is not taken, and nothing is
   /// lost: those before it can be finished, and where memory gave out it can be pushed again when there is
   /// more.
-  [[nodiscard]] Expected<void, ProgramError> push(const B& block) try {
-    if (const auto ok = check(block); !ok) return ok;
-    if (const auto ok = planner_.prepare(merging_.size() + 1); !ok) return ok;
-    merging_.push_back(block);
-    end_ = block.path.position_at(block.path.length());
-    ++pushed_;
-    merger_.push([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
-    drop_merged();
-    return {};
-  } catch (const std::bad_alloc&) {
-    return tl::unexpected(detail::no_memory());
-  } catch (const detail::Interrupted& at) {
-    return tl::unexpected(detail::interrupted(at, "planning"));
-  }
+  [[nodiscard]] Expected<void, ProgramError> push(const B& block);
   /// Plans all that is left, to rest. Blocks that are pushed later go on from there.
   [[nodiscard]] Expected<void, ProgramError> finish() {
     auto ok = finish_part();
@@ -82,17 +69,7 @@ class SmoothStream {
     return ok;
   }
   /// The same, but one part only where `plan_ahead` says so.
-  [[nodiscard]] Expected<void, ProgramError> finish_part() try {
-    if (const auto ok = check_machine(); !ok) return ok;
-    if (const auto ok = planner_.prepare(merging_.size()); !ok) return ok;
-    merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
-    drop_merged();
-    return planner_.finish();
-  } catch (const std::bad_alloc&) {
-    return tl::unexpected(detail::no_memory());
-  } catch (const detail::Interrupted& at) {
-    return tl::unexpected(detail::interrupted(at, "planning"));
-  }
+  [[nodiscard]] Expected<void, ProgramError> finish_part();
 
   /// Whether the next block makes it plan first.
   [[nodiscard]] bool full() const { return planner_.full(); }
@@ -190,5 +167,34 @@ class SmoothStream {
   std::size_t pushed_ = 0;
   std::optional<VectorN<Scalar, M::axis_count>> end_;
 };
+
+template <MachineModel M, BlockModel B>
+Expected<void, ProgramError> SmoothStream<M, B>::push(const B& block) try {
+  if (const auto ok = check(block); !ok) return ok;
+  if (const auto ok = planner_.prepare(merging_.size() + 1); !ok) return ok;
+  merging_.push_back(block);
+  end_ = block.path.position_at(block.path.length());
+  ++pushed_;
+  merger_.push([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
+  drop_merged();
+  return {};
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(detail::no_memory());
+} catch (const detail::Interrupted& at) {
+  return tl::unexpected(detail::interrupted(at, "planning"));
+}
+
+template <MachineModel M, BlockModel B>
+Expected<void, ProgramError> SmoothStream<M, B>::finish_part() try {
+  if (const auto ok = check_machine(); !ok) return ok;
+  if (const auto ok = planner_.prepare(merging_.size()); !ok) return ok;
+  merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
+  drop_merged();
+  return planner_.finish();
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(detail::no_memory());
+} catch (const detail::Interrupted& at) {
+  return tl::unexpected(detail::interrupted(at, "planning"));
+}
 
 }  // namespace cncplan

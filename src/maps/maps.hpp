@@ -2,16 +2,20 @@
 // declared here, and defined once for each shape. Without `CNCPLAN_COMPILED` the headers alone serve.
 #pragma once
 
+#include "cncplan/compiled/executor.hpp"
+#include "cncplan/compiled/executor_levels.hpp"
 #include "cncplan/compiled/plan_blocks.hpp"
 #include "cncplan/compiled/plan_program.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
 
-/// Reading, planning and asking the programs of a machine.
+/// Reading, planning, asking and driving the programs of a machine.
 #define CNCPLAN_MAPPED(PREFIX, MACHINE)                           \
   CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
   CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
   CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
-  CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)
+  CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                           \
+  CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)      \
+  CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, ProgramBlock<MACHINE>)
 
 #ifdef CNCPLAN_COMPILED
 namespace cncplan {

@@ -3,6 +3,8 @@
 
 #include <cncplan/compiled.hpp>
 
+#include "support/curves.hpp"
+
 // Reading and planning. What runs blocks is left out where no test asks for it.
 #define CNCPLAN_PLANNED_MACHINE(PREFIX, MACHINE)                  \
   CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
@@ -18,5 +20,6 @@ CNCPLAN_PLANNED_MACHINE(extern, Machine<2>)
 CNCPLAN_RUN_BLOCKS(extern, Machine<2>, ProgramBlock<Machine<2>>)
 CNCPLAN_PLANNED_MACHINE(extern, Machine<4>)
 CNCPLAN_PLANNED_MACHINE(extern, Machine<5>)
+CNCPLAN_PLANNED_MACHINE(extern, MappedMachine<test::Scara>)
 
 }  // namespace cncplan

@@ -16,6 +16,7 @@
 #include "cncplan/smooth_stream.hpp"
 #include "cncplan/trajectory_executor.hpp"
 #include "kinematics/tool_jog_run.hpp"
+#include "maps/maps.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -38,9 +39,10 @@ void set_limits(M& machine) {
 
 // Round a table, twice; C turns beyond a turn.
 struct Polar {
-  using Machine = MappedMachine<kinematics::PolarMap>;
+  using Machine = MappedMachine<kinematics::ThreeJoints>;
   static Machine machine() {
     Machine m{
+        .map = kinematics::PolarMap{},
         .axes = {Axis{.letter = 'R'}, Axis{.letter = 'Z'}, Axis{.letter = 'C', .kind = AxisKind::rotary}}};
     set_limits(m);
     return m;
@@ -62,9 +64,9 @@ struct Polar {
 
 // A spiral round a cylinder, the tool along the normal or so.
 struct FiveAxes {
-  using Machine = MappedMachine<kinematics::TableTableAC>;
+  using Machine = MappedMachine<kinematics::FiveAxes>;
   static Machine machine() {
-    Machine m{.map = {.center = {0, 0, -60}},
+    Machine m{.map = kinematics::TableTableAC{.center = {0, 0, -60}},
               .axes = {Axis{.letter = 'X'}, Axis{.letter = 'Y'}, Axis{.letter = 'Z'},
                        Axis{.letter = 'A', .kind = AxisKind::rotary},
                        Axis{.letter = 'C', .kind = AxisKind::rotary}}};

@@ -15,6 +15,7 @@
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/plan_blocks.hpp"
 #include "cncplan/plan_program.hpp"
+#include "maps/maps.hpp"
 #include "plan/at_level.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"
@@ -25,11 +26,12 @@ using namespace cncplan::test;
 
 namespace {
 
-using Table = MappedMachine<kinematics::PolarMap>;
+using Table = MappedMachine<kinematics::ThreeJoints>;
 
 // KK22's table: R, Z and C.
 Table table() {
   Table machine;
+  machine.map = kinematics::PolarMap{};
   machine.axes = {
       {{.letter = 'R', .velocity = 100, .acceleration = 500, .jerk = 5000},
        {.letter = 'Z', .velocity = 100, .acceleration = 500, .jerk = 5000},

@@ -5,7 +5,8 @@
 #include "cncplan/executor_levels.hpp"
 
 /// Running blocks of a type at these levels, whatever the capacity of the executor.
-#define CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, BLOCK) \
+#define CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, BLOCK)          \
+  PREFIX template class detail::LiveDriver<MACHINE, BLOCK>; \
   PREFIX template struct detail::ExecutorLevels<MACHINE, BLOCK>;
 
 #ifdef CNCPLAN_COMPILED

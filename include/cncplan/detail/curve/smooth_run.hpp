@@ -116,14 +116,8 @@ class SmoothRun {
   /// The fastest motion on the curve of the last plan, which keeps to a share of the limits from the start of
   /// a piece of that to the end of another; none where the duration is infinite. What was asked for before
   /// holds as well.
-  void slow_down(const Plan& last, std::size_t first_piece, std::size_t last_piece, S share) {
-    const auto start = [&](const BasicSmoothPiece<S, N>& piece) {
-      return band_.block_start(piece.block) + piece.from;
-    };
-    const auto& end = last.pieces[last_piece];
-    speed_.slow_down(start(last.pieces[first_piece]), start(end) + end.path.length(), share);
-  }
-  [[nodiscard]] Plan plan_speed() { return make_plan(true); }
+  void slow_down(const Plan& last, std::size_t first_piece, std::size_t last_piece, S share);
+  [[nodiscard]] Plan plan_speed();
 
   /// The slow motion that the search begins with, for little work. Where it has a plan, so has the search:
   /// the duration is infinite where there is none.
@@ -416,6 +410,21 @@ auto SmoothRun<S, N, Seen>::slow_plan() -> Plan {
   band_.reset();
   deviation_ = band_.settle(work_.so_far());
   return make_plan(false);
+}
+
+template <std::floating_point S, int N, class Seen>
+void SmoothRun<S, N, Seen>::slow_down(const Plan& last, std::size_t first_piece, std::size_t last_piece,
+                                      S share) {
+  const auto start = [&](const BasicSmoothPiece<S, N>& piece) {
+    return band_.block_start(piece.block) + piece.from;
+  };
+  const auto& end = last.pieces[last_piece];
+  speed_.slow_down(start(last.pieces[first_piece]), start(end) + end.path.length(), share);
+}
+
+template <std::floating_point S, int N, class Seen>
+auto SmoothRun<S, N, Seen>::plan_speed() -> Plan {
+  return make_plan(true);
 }
 
 /// Smooths a run of blocks, each of a length > 0, within their tolerances, and finds the fastest motion along

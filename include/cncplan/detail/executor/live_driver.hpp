@@ -138,32 +138,9 @@ class LiveDriver final : public LevelDriver<M, B> {
     return clock_.chain().empty() ? nullptr : &clock_.chain().block_at(clock_.state().position);
   }
 
-  void look(S period) override {
-    take_parts();
-    planner_.left(seen_, (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
-    let_go_where_none_come(period);
-    if (background_) return;
-    planner_.plan();
-    take_parts();
-  }
+  void look(S period) override;
 
-  void advance(S period, Point& point) override {
-    parts_.clear();
-    words_.clear();
-    S left = period;
-    while (left > S(0) && step(left, period)) {
-    }
-    rested_ = !rests() ? S(0) : parts_.empty() ? rested_ + period : period - last_part_ends();
-    tell_words(period - left);
-    if (!clock_.chain().empty()) {
-      const S time = point.time;
-      point = clock_.chain().at(clock_.state());
-      point.time = time;
-      point.feed /= planner_.shares().share_of(static_cast<std::int64_t>(point.block), oldest_block());
-    }
-    point.words = words_;
-    release();
-  }
+  void advance(S period, Point& point) override;
   [[nodiscard]] std::size_t part_count() const override { return parts_.size(); }
   [[nodiscard]] BasicTickPart<S> part(std::size_t number) const override {
     return {parts_[number].start, parts_[number].duration};
@@ -511,5 +488,34 @@ class LiveDriver final : public LevelDriver<M, B> {
   S feed_rate_ = S(1);    // where the plan is for a higher feed
   std::int64_t pushed_before_ = 0;
 };
+
+template <MachineModel M, BlockModel B, class Planner>
+void LiveDriver<M, B, Planner>::look(S period) {
+  take_parts();
+  planner_.left(seen_, (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
+  let_go_where_none_come(period);
+  if (background_) return;
+  planner_.plan();
+  take_parts();
+}
+
+template <MachineModel M, BlockModel B, class Planner>
+void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
+  parts_.clear();
+  words_.clear();
+  S left = period;
+  while (left > S(0) && step(left, period)) {
+  }
+  rested_ = !rests() ? S(0) : parts_.empty() ? rested_ + period : period - last_part_ends();
+  tell_words(period - left);
+  if (!clock_.chain().empty()) {
+    const S time = point.time;
+    point = clock_.chain().at(clock_.state());
+    point.time = time;
+    point.feed /= planner_.shares().share_of(static_cast<std::int64_t>(point.block), oldest_block());
+  }
+  point.words = words_;
+  release();
+}
 
 }  // namespace cncplan::detail

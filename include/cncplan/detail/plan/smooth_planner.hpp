@@ -90,26 +90,7 @@ class SmoothPlanner {
   [[nodiscard]] bool open() const { return cut_.has_value(); }
   /// From there to rest along blocks that are known, which is proven; nothing that is planned changes. Only
   /// where it is open and all that was planned has been taken.
-  [[nodiscard]] Part tail() {
-    const auto cut = cut_;
-    const std::size_t planned = planned_;
-    const bool begun = begun_;
-    const auto go_back = [&] {
-      cut_ = cut;
-      planned_ = planned;
-      begun_ = begun;
-    };
-    try {
-      add_slow(known_);
-      Part part = take();
-      go_back();
-      return part;
-    } catch (...) {
-      take_nothing();
-      go_back();
-      throw;
-    }
-  }
+  [[nodiscard]] Part tail();
   /// Keeps what it takes to go back to where it is open, from now on.
   void keep_cuts() { keeps_cuts_ = true; }
   /// The tail is driven: plans go on from rest at its end. If it is that of the part before the last, what
@@ -160,17 +141,7 @@ class SmoothPlanner {
   };
 
   // Plans what later blocks cannot change; if there is no room for more blocks, at least a part of them.
-  [[nodiscard]] Expected<void, ProgramError> plan(bool all) {
-    listening_.begin();
-    if (keeps_cuts_ && cut_) {
-      last_cut_.blocks = blocks_;
-      last_cut_.first_source = first_source_;
-      last_cut_.known = known_;
-    }
-    const auto ok = plan_runs(all);
-    if (!cut_) let_go(planned_);
-    return ok;
-  }
+  [[nodiscard]] Expected<void, ProgramError> plan(bool all);
   [[nodiscard]] Expected<void, ProgramError> plan_runs(bool all) {
     for (std::size_t i = planned_; i < blocks_.size();) {
       const std::size_t end = runs_.run_end(i);
@@ -201,10 +172,6 @@ class SmoothPlanner {
     return listening_.progress().part(static_cast<double>(planned_) / all, static_cast<double>(end) / all);
   }
 
-  // Blocks that have no plan, up to `end`.
-  [[nodiscard]] std::span<const B> given(std::size_t end) const {
-    return std::span<const B>(blocks_).subspan(planned_, end - planned_);
-  }
   void let_go(std::size_t count) {
     blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(count));
     first_source_ += count;
@@ -309,7 +276,7 @@ class SmoothPlanner {
     Run run = given.blocks.run(work_, cut_, memory_);
     RunPlan planned = run.plan(progress_to(end));
     if (!found(planned)) return FallbackReason::no_motion;
-    if (!has_room(planned, given.blocks)) {
+    if (!works(planned, given.blocks)) {
       beside_ends_.find(planned.pieces, given.blocks, given.sources, std::span(blocks_), machine_);
       return FallbackReason::travel;
     }
@@ -469,12 +436,12 @@ class SmoothPlanner {
     return plan.deviation <= S(1) && std::isfinite(plan.duration) && !plan.pieces.empty();
   }
   [[nodiscard]] bool works(const RunPlan& plan, const RunBlocks<M, B>& blocks) const {
-    return found(plan) && has_room(plan, blocks);
+    return found(plan) && stays_in_travel(plan.pieces, blocks, machine_);
   }
 
   // Blocks that have no plan, at the level `fast`.
   [[nodiscard]] Expected<Part, ProgramError> fast(std::size_t end, const Progress& progress = {}) const {
-    const auto blocks = given(end);
+    const auto blocks = std::span(blocks_).subspan(planned_, end - planned_);
     PlanOptions options = options_;
     options.level = SmoothLevel::fast;
     return plan_by_look_ahead(std::pmr::vector<B>(blocks.begin(), blocks.end(), memory_), machine_, options,
@@ -487,9 +454,6 @@ class SmoothPlanner {
     return planned && planned->duration() < duration;
   }
 
-  [[nodiscard]] bool has_room(const RunPlan& run, const RunBlocks<M, B>& blocks) const {
-    return stays_in_travel(run.pieces, blocks, machine_);
-  }
   // Whether a planned block has a corner at which it rests for the sake of the travel.
   [[nodiscard]] bool beside_an_end(std::size_t out) const { return beside_ends_.has(out_first_ + out); }
   // Pieces of a run that end within a block, or behind the last one before it.
@@ -596,5 +560,40 @@ class SmoothPlanner {
   typename RunBrakes<M, B>::Brakes brakes_{memory_};
   S time_{}, longest_hold_{};  // s
 };
+
+template <MachineModel M, BlockModel B>
+auto SmoothPlanner<M, B>::tail() -> Part {
+  const auto cut = cut_;
+  const std::size_t planned = planned_;
+  const bool begun = begun_;
+  const auto go_back = [&] {
+    cut_ = cut;
+    planned_ = planned;
+    begun_ = begun;
+  };
+  try {
+    add_slow(known_);
+    Part part = take();
+    go_back();
+    return part;
+  } catch (...) {
+    take_nothing();
+    go_back();
+    throw;
+  }
+}
+
+template <MachineModel M, BlockModel B>
+Expected<void, ProgramError> SmoothPlanner<M, B>::plan(bool all) {
+  listening_.begin();
+  if (keeps_cuts_ && cut_) {
+    last_cut_.blocks = blocks_;
+    last_cut_.first_source = first_source_;
+    last_cut_.known = known_;
+  }
+  const auto ok = plan_runs(all);
+  if (!cut_) let_go(planned_);
+  return ok;
+}
 
 }  // namespace cncplan::detail

@@ -1,4 +1,4 @@
-// Smoothing of curves, whatever path they come from.
+// Smoothing of curves of 3 and 6 coordinates, whatever path they come from.
 #include "cncplan/compiled/smooth.hpp"
 
 namespace cncplan::detail {
