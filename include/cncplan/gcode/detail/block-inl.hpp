@@ -54,7 +54,8 @@ CNCPLAN_INLINE Letters Block::taken_by_codes(const Alphabet& alphabet) const {
   const bool homes = non_modal == gcode::code(28) || non_modal == gcode::code(30);
   const bool shifts = non_modal == gcode::code(92) || code(Group::tool_length) == gcode::code(43.1);
   if (sets || homes || shifts) taken |= alphabet.axes | alphabet.left_out | polar_words;
-  if (non_modal == gcode::code(4)) taken |= bits("SX");
+  if (non_modal == gcode::code(4) && alphabet.lenient && !has('P'))  // seconds: dwells_by_s, dwells_by_x
+    taken |= has('S') && !has(Group::spindle_mode) ? bit('S') : bit('X');
   if (has(Group::spindle)) taken |= bits("S$");
   if (code(Group::tool_change) == gcode::code(6)) taken |= bit('T');
   if (has(Group::feed_mode)) taken |= bit('F');
