@@ -111,10 +111,9 @@ bool parse(CLI::App& app, int argc, char** argv) {
                                                 CNCPLAN_VERSION_MINOR, CNCPLAN_VERSION_PATCH));
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ExtrasError&) {
-    throw Failure(Exit::bad_input, unexpected(app));
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) throw Failure(Exit::bad_input, error.what());
+    if (error.get_exit_code() != 0)  // what is missing may be there, misspelt
+      throw Failure(Exit::bad_input, app.remaining().empty() ? error.what() : unexpected(app));
     app.exit(error);
     return false;
   }

@@ -93,6 +93,8 @@ TEST_CASE("missing arguments and files", "[tire_mold]") {
   folder.write("art.nc", good_art);
   CHECK(folder.run("").exit == 2);
   CHECK(folder.run("wall.dxf art.nc --tool-length 20").exit == 2);
+  CHECK(folder.run("wall.dxf art.nc --tool-lenght 20 --start-radius 150").err ==
+        "error: --tool-lenght is not known: --tool-length?\n");
   CHECK(folder.run("none.dxf art.nc --tool-length 20 --start-radius 150").err ==
         "error: none.dxf: cannot be read\n");
   CHECK(folder.run("wall.dxf none.nc --tool-length 20 --start-radius 150").err ==
