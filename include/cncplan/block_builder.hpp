@@ -360,23 +360,27 @@ class BlockBuilder {
     result.path = *path;
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
     if (motion.synchronised)
-      if (const Scalar fastest = fastest_along(*programmed); result.feed > fastest)
+      if (const Scalar fastest = fastest_along(*programmed, *path); result.feed > fastest)
         return tl::unexpected(Error{ErrorCode::above_limit, "speed of a thread",
                                     static_cast<double>(result.feed), static_cast<double>(fastest)});
     return result;
   }
 
-  // The speed along a line that the tool's limits and those of the axes allow.
-  [[nodiscard]] Scalar fastest_along(const Programmed& line) const {
+  // The speed along a line that the tool's limits and those of the axes allow; `path`: of the axes.
+  [[nodiscard]] Scalar fastest_along(const Programmed& line, const typename Block::Path& path) const {
     Scalar fastest = machine_.limits.velocity;
     if (machine_.feed_limit > Scalar(0)) fastest = std::min(fastest, machine_.feed_limit);
-    if constexpr (!MappedModel<M>) {
-      const Coordinates way = line.end() - line.start();
-      for (std::size_t i = 0; i < coordinates; ++i) {
-        const Scalar step = way[static_cast<Eigen::Index>(i)];
-        const auto& axis = machine_.axes[i];
-        const Scalar limit =
-            step < Scalar(0) && axis.velocity_down > Scalar(0) ? axis.velocity_down : axis.velocity;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const auto& axis = machine_.axes[i];
+      const auto k = static_cast<Eigen::Index>(i);
+      const bool one_limit = !(axis.velocity_down > Scalar(0));
+      if constexpr (MappedModel<M>) {  // either way
+        const Scalar limit = one_limit ? axis.velocity : std::min(axis.velocity, axis.velocity_down);
+        const Scalar share = path.bounds(Scalar(0), path.length()).first[k];
+        if (share > Scalar(0)) fastest = std::min(fastest, limit / share);
+      } else {
+        const Scalar step = line.end()[k] - line.start()[k];
+        const Scalar limit = one_limit || !(step < Scalar(0)) ? axis.velocity : axis.velocity_down;
         if (step != Scalar(0)) fastest = std::min(fastest, limit * line.length() / std::abs(step));
       }
     }

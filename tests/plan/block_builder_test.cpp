@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cncplan/plan_program.hpp"
+#include "maps/maps.hpp"
 #include "support/catch.hpp"
 #include "support/no_heap.hpp"
 
@@ -126,4 +127,21 @@ TEST_CASE("a thread that the axes cannot follow is refused") {
   CHECK(error("S2000 M3\nG18 G0 X20 Z20\nG76 P2 Z0 I-1 J.1 K1 R1 Q0 H0 E0 L0\n") ==
         "3:8: error: speed of a thread is above the limit 20");
   CHECK(error("S2000 M3\nG0 Z20\nG95 G1 Z30 F2\n").empty());  // a feed may be less
+}
+
+TEST_CASE("a thread that joints cannot follow is refused") {
+  MappedMachine<kinematics::ThreeJoints> table{
+      .map = kinematics::PolarMap{},
+      .axes = {Axis{.letter = 'R', .velocity = 40}, Axis{.letter = 'Z', .velocity = 30, .velocity_down = 20},
+               Axis{.letter = 'C', .kind = AxisKind::rotary, .velocity = 1}},
+      .limits = {.velocity = 100, .acceleration = 1000, .jerk = 10000}};
+  const auto error = [&](std::string_view text) {
+    const auto program = read_text(text, table, {.start = {50, 0, 0}});
+    return program.failed() ? to_text(*program.first_error()) : std::string();
+  };
+  CHECK(error("S2000 M3\nG33 Z10 K2\n") == "2:5: error: speed of a thread is above the limit 20");
+  CHECK(error("S590 M3\nG33 Z10 K2\n").empty());
+  CHECK(error("S2000 M3\nG33 X40 K2\n") == "2:5: error: speed of a thread is above the limit 40");
+  CHECK(error("S1100 M3\nG33 X40 K2\n").empty());
+  CHECK(error("S1600 M3\nG33 Y10 K2\n").starts_with("2:5: error: speed of a thread is above the limit 5"));
 }
