@@ -78,7 +78,10 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
       if (auto kept = keep(std::move(**block)); !kept) return kept;
     }
   };
-  read(text, file, reader, options, make, !MappedModel<M>);
+  if constexpr (MappedModel<M>)
+    read(text, file, reader, options, make, path::letters_of(machine.map));
+  else
+    read(text, file, reader, options, make);
   if (!blocks_.empty()) return;
   if (const auto kept = keep(builder.rest()); !kept && !failed()) add(kept.error(), file);  // where it starts
 }

@@ -135,7 +135,7 @@ CNCPLAN_INLINE void ProgramRecord::take(const gcode::Item& item, std::string_vie
 }
 
 CNCPLAN_INLINE void ProgramRecord::read(std::string_view text, const std::string& file, gcode::Reader& reader,
-                                        const PlanOptions& options, Make make, bool axes_are_words) {
+                                        const PlanOptions& options, Make make, std::string_view axis_words) {
   start_ = options.start;
   if (files_.empty()) files_.push_back(file);
   detail::KeptLine<gcode::TextLines> lines(text);
@@ -153,8 +153,8 @@ CNCPLAN_INLINE void ProgramRecord::read(std::string_view text, const std::string
         [&](const gcode::Item& item) {
           tell();
           take(item, here(), make, [&](int line, char letter) {
-            const bool there = axes_are_words && line == reader.line();  // it was not held back
-            return there ? source.column_of(letter) : 0;
+            const bool held_back = line != reader.line();
+            return held_back || axis_words.find(letter) == axis_words.npos ? 0 : source.column_of(letter);
           });
         },
         [&](const gcode::Diagnostic& problem) {

@@ -80,9 +80,9 @@ class ProgramRecord {
 
  protected:
   void add(ProgramError error, std::string_view file, bool warning = false);
-  /// `axes_are_words`: the machine's axes have words of their letters, where their errors are told.
+  /// `axis_words`: letters whose words move the axis of that letter; an error of it is told there.
   void read(std::string_view text, const std::string& file, gcode::Reader& reader, const PlanOptions& options,
-            Make make, bool axes_are_words = true);
+            Make make, std::string_view axis_words = "ABCDEFGHIJKLMNOPQRSTUVWXYZ");
 
  private:
   template <class T>
