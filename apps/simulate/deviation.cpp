@@ -31,10 +31,10 @@ double largest_deviation(const ProgramText& program, const Plan& plan, const Mot
     const double end = std::clamp(phase.at(phase.duration).position, 0.0, length);
     const std::size_t block = motion.block_of(piece);
     const Origin& origin = program.motions[plan.motion_of[block]];
-    if (!(end > start) || motion.as_programmed(piece) || !origin.followed) continue;
+    if (!(end > start) || motion.as_programmed(piece) || origin.driven_path() == nullptr) continue;
     const auto at = [&, piece = piece](double s) {
       const double along = motion.piece_start(piece) + s;
-      const double gap = distance({&origin, motion.tool(piece, s), places.within(block, along)});
+      const double gap = distance({&origin, motion.driven_point(piece, s), places.within(block, along)});
       largest = std::max(largest, gap);
       return gap;
     };

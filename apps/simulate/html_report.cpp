@@ -38,8 +38,8 @@ report::Deviation deviation_of(const Options& options, const ProgramText& progra
     const double within = along.position - motion.piece_start(piece);
     const Origin& origin = program.motions[plan.motion_of[block]];
     cncplan::Vector3 gap = cncplan::Vector3::Zero();
-    if (origin.followed)
-      gap = distance.gap({&origin, motion.tool(piece, within), places.within(block, along.position)});
+    if (origin.driven_path() != nullptr)
+      gap = distance.gap({&origin, motion.driven_point(piece, within), places.within(block, along.position)});
     for (const double part : gap) result.vectors.push_back(static_cast<float>(part));
   }
   return result;

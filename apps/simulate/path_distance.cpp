@@ -33,11 +33,12 @@ cncplan::Vector3 PathDistance::gap(const PlaceBeside& place) {
   const double within = std::clamp(place.within, 0.0, own.length);
   // What is nearer than the place where the point belongs is at most twice that far from it, along a path
   // that turns little; where it turns sharply, motions on both sides of the corner are that near to it.
-  const double reach = 2.0 * (place.position - own.path.position_at(within)).norm();
+  const double reach = 2.0 * (place.position - own.driven_path()->position_at(within)).norm();
   cncplan::Vector3 nearest = gap_of(own, place.position, within, reach);
   const auto look = [&](const Origin& motion, double start) {
     if (!(motion.length > 0.0) || motion.turns) return 0.0;
-    if (!motion.followed) return motion.length;
+    if (motion.driven_path() == nullptr || motion.axes_path.has_value() != own.axes_path.has_value())
+      return motion.length;
     const cncplan::Vector3 gap = gap_of(motion, place.position, start, reach);
     if (gap.squaredNorm() < nearest.squaredNorm()) nearest = gap;
     return motion.length;
@@ -57,22 +58,23 @@ cncplan::Vector3 PathDistance::gap(const PlaceBeside& place) {
 cncplan::Vector3 PathDistance::gap_of(const Origin& motion, const cncplan::Vector3& position, double within,
                                       double reach) {
   using cncplan::BasicVector3;
-  if (&motion != motion_) exact_ = extended(motion.path);
+  const ToolPath& path = *motion.driven_path();
+  if (&motion != motion_) exact_ = extended(path);
   motion_ = &motion;
   const BasicVector3<Extended> point = position.cast<Extended>();
-  if (constexpr double few = 8.0; motion.length < few * reach && motion.path.line() == nullptr) {
+  if (constexpr double few = 8.0; motion.length < few * reach && path.line() == nullptr) {
     constexpr int places = 16;
     const double from = std::max(within - reach, 0.0), to = std::min(within + reach, motion.length);
-    double least = (motion.path.position_at(within) - position).squaredNorm();
+    double least = (path.position_at(within) - position).squaredNorm();
     for (int i = 0; i <= places; ++i) {
       const double s = from + (to - from) * i / places;
-      const double gap = (motion.path.position_at(s) - position).squaredNorm();
+      const double gap = (path.position_at(s) - position).squaredNorm();
       if (!(gap < least)) continue;
       least = gap;
       within = s;
     }
   }
-  Extended u = motion.path.parameter_at(within);
+  Extended u = path.parameter_at(within);
   for (int step = 0; step < 3; ++step) {
     const auto at = exact_.at(u);
     const BasicVector3<Extended> gap = at.position - point;

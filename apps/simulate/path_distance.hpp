@@ -8,9 +8,9 @@
 
 namespace simulate {
 
-/// A point of the tool, and about where it is along its motion's path.
+/// A point of what drives along a motion's path, and about where it is along that.
 struct PlaceBeside {
-  const Origin* motion{};
+  const Origin* motion{};                                ///< whose `driven_path` is known
   cncplan::Vector3 position = cncplan::Vector3::Zero();  ///< machine coordinates
   double within{};                                       ///< mm from the motion's start
 };

@@ -57,8 +57,9 @@ class Planned : public report::Driven {
   [[nodiscard]] virtual std::size_t block_of(std::size_t piece) const = 0;
   /// Whether a piece is driven as it was programmed, not smoothed and no part of a merged line.
   [[nodiscard]] virtual bool as_programmed(std::size_t piece) const = 0;
-  /// Where the tool is when so much of a piece has been travelled.
-  [[nodiscard]] virtual cncplan::Vector3 tool(std::size_t piece, double s) const = 0;
+  /// When so much of a piece has been travelled, where the tool is, or X Y Z of the axes where the program
+  /// drives these.
+  [[nodiscard]] virtual cncplan::Vector3 driven_point(std::size_t piece, double s) const = 0;
   /// Hands all set points at k period, and one at the end, to `take`.
   virtual void sample(double period, const std::function<void(const SetPoint&)>& take) const = 0;
   /// Hands every step edge to `take`, and holds them against the rules of the drives; see

@@ -93,8 +93,10 @@ class PlannedOn final : public report::DrivenTrajectory<cncplan::Trajectory<M, B
     return trajectory_.path(piece).exact() &&
            !(trajectory_.program()[trajectory_.block_of(piece)].merged > 0.0);
   }
-  [[nodiscard]] cncplan::Vector3 tool(std::size_t piece, double s) const override {
+  [[nodiscard]] cncplan::Vector3 driven_point(std::size_t piece, double s) const override {
     const auto path = trajectory_.path(piece);
+    if constexpr (cncplan::MappedModel<M>)
+      if (this->is_direct(piece)) return path.point_at(s).position.template head<3>();
     return tool_point(path, path.point_at(s), s).position;
   }
 

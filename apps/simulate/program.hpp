@@ -28,6 +28,13 @@ struct Origin {
   double length{};       ///< mm along the path
   bool turns{};          ///< no axis but rotary ones moves: length and feed are in rad
   bool followed = true;  ///< the tool is to go along the path, not just from its start to its end
+  /// X Y Z of the axes, where the program drives these and not the tool
+  std::optional<ToolPath> axes_path{};
+
+  /// What it is to be driven along, if that is known: by the tool, or by X Y Z of the axes.
+  [[nodiscard]] const ToolPath* driven_path() const {
+    return axes_path ? &*axes_path : followed ? &path : nullptr;
+  }
 };
 
 struct ProgramText {

@@ -81,8 +81,10 @@ void take_path(Origin& motion, const M& machine, const BlockOf<M>& block) {
   } else if constexpr (cncplan::MappedModel<M>) {
     using Path = cncplan::detail::MappedPath<cncplan::MapOf<M>>;
     const auto* mapped = block.path.template as<Path>();
-    if (mapped == nullptr || cncplan::is_direct(*mapped)) return go_straight();
-    follow(mapped->programmed());
+    if (mapped == nullptr) return go_straight();
+    if (!cncplan::is_direct(*mapped)) return follow(mapped->programmed());
+    go_straight();
+    motion.axes_path = tool_path(mapped->programmed());
   } else {
     follow(block.path);
   }

@@ -56,10 +56,12 @@ void Run::sample(const std::function<void(const Sample&)>& take) {
              point.tool,     point.position,
              point.velocity, point.acceleration,
              point.along,    places_.within(point.block, point.along.position)};
-      if (motion.followed) {
+      if (motion.driven_path() != nullptr) {
         const bool exact = plan_.motion->as_programmed(point.piece);
         double& largest = exact ? measures_.contour_error : measures_.deviation;
-        largest = std::max(largest, distance({&motion, row.position, row.within}));
+        const cncplan::Vector3 driven =
+            motion.axes_path ? cncplan::Vector3(point.position.head<3>()) : point.tool;
+        largest = std::max(largest, distance({&motion, driven, row.within}));
       }
       ++measures_.samples;
       take(row);

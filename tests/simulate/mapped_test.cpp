@@ -108,6 +108,31 @@ TEST_CASE("edges on a machine behind a map are where the joints of its tip are")
   CHECK(json["deviation_mm"].get<double>() <= 0.02 * (1 + 1e-6));
 }
 
+TEST_CASE("where a program drives the axes, they are as far off the path as the summary says") {
+  const Folder folder;
+  folder.write("m.toml", mill("table-table-ac", "A", "center = [0, 0, -60]\n"));
+  const auto run = folder.run_text("F1800\nG1 A-30 C20\nG64 P0.1\nG1 X20\nY20\nX40 Y22\nY0\n",
+                                   "--machine m.toml --period 0.0005 --samples s --json");
+  INFO(run.err);
+  REQUIRE(run.exit == 0);
+  const Table rows(folder / "s");
+  const auto &x = rows["X"], &y = rows["Y"];
+  constexpr std::array<std::array<double, 2>, 5> corners{{{0, 0}, {20, 0}, {20, 20}, {40, 22}, {40, 0}}};
+  double off = 0;
+  for (std::size_t i = 0; i < rows.rows(); ++i) {
+    double least = 1e9;
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+      const double u = corners[k][0] - corners[k - 1][0], v = corners[k][1] - corners[k - 1][1];
+      const double p = x[i] - corners[k - 1][0], q = y[i] - corners[k - 1][1];
+      const double t = std::clamp((p * u + q * v) / (u * u + v * v), 0.0, 1.0);
+      least = std::min(least, std::hypot(p - t * u, q - t * v));
+    }
+    off = std::max(off, least);
+  }
+  CHECK(off > 0.05);
+  CHECK(run.json()["deviation_mm"].get<double>() == Approx(off).epsilon(1e-3));
+}
+
 TEST_CASE("the step rate of a drive caps the speed of a joint behind a map") {
   // 100 steps a unit: 1000 steps/s are 10 mm/s or degrees/s, at the level best and on the exact path,
   // directly and with the map
@@ -425,6 +450,8 @@ TEST_CASE("what machine files with kinematics refuse") {
        "m.toml:1:14: error: the axes of table-table-ac must be XYZAC"},
       {table, "G43.4\nG1 A130 F100\n", "",
        "program.ngc:2:4: error: axis A would move to 130, beyond its travel"},
+      {table, "G1 X1 Y2 A-130 F100\n", "",
+       "program.ngc:1:10: error: axis A would move to -130, beyond its travel"},
       {arm("upper = 200\nfore = 100\n"), "G0 X1\n", "--orientation joints",
        "error: --orientation is for the five-axis machines that kinematics names"},
       {axis("X", "linear") + axis("Y", "linear"), "G0 X1\n", "--orientation great-circle",
