@@ -3,7 +3,7 @@
 
 #include <cncplan/compiled.hpp>
 
-#include "support/curves.hpp"
+#include "support/scara.hpp"
 
 // Reading and planning. What runs blocks is left out where no test asks for it.
 #define CNCPLAN_PLANNED_MACHINE(PREFIX, MACHINE)                  \

@@ -7,6 +7,7 @@
 
 #include "cncplan/core/jet.hpp"
 #include "cncplan/core/vector.hpp"
+#include "support/scara.hpp"
 
 namespace cncplan::test {
 
@@ -72,27 +73,6 @@ struct Standing {
   template <class T>
   [[nodiscard]] std::array<T, 2> point(const T&) const {
     return {T(1), T(2)};
-  }
-};
-
-/// Shoulder, elbow (rad) and slide (mm) of an arm; `tool` is its way back from joints to X Y Z.
-struct Scara {
-  using Scalar = double;
-  static constexpr int axis_count = 3;
-  double upper = 200, fore = 150;  // mm
-
-  template <class T>
-  [[nodiscard]] std::array<T, 3> joints(const std::array<T, 3>& point) const {
-    using std::atan2, std::sqrt;
-    const auto& [x, y, z] = point;
-    const T cosine = (x * x + y * y - T(upper * upper + fore * fore)) / T(2 * upper * fore);
-    const T sine = sqrt(T(1) - cosine * cosine);
-    return {atan2(y, x) - atan2(T(fore) * sine, T(upper) + T(fore) * cosine), atan2(sine, cosine), z};
-  }
-  [[nodiscard]] Vector3 tool(const Vector3& joints) const {
-    const double shoulder = joints[0], both = joints[0] + joints[1];
-    return {upper * std::cos(shoulder) + fore * std::cos(both),
-            upper * std::sin(shoulder) + fore * std::sin(both), joints[2]};
   }
 };
 
