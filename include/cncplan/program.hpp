@@ -1,6 +1,7 @@
 // A program's text as blocks of a machine, with all that it says beside them (set-up).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -78,10 +79,13 @@ Program<M>::Program(std::string_view text, const M& machine, const PlanOptions& 
       if (auto kept = keep(std::move(**block)); !kept) return kept;
     }
   };
-  if constexpr (MappedModel<M>)
-    read(text, file, reader, options, make, path::letters_of(machine.map));
-  else
+  if constexpr (MappedModel<M>) {  // a joint X is not the program's X
+    const std::string_view letters = path::letters_of(machine.map);
+    read(text, file, reader, options, make,
+         letters.substr(std::min(letters.find_first_not_of("XYZ"), letters.size())));
+  } else {
     read(text, file, reader, options, make);
+  }
   if (!blocks_.empty()) return;
   if (const auto kept = keep(builder.rest()); !kept && !failed()) add(kept.error(), file);  // where it starts
 }

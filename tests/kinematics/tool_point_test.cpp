@@ -251,7 +251,7 @@ TEST_CASE("what does not go with tool-point control is refused at its place", "[
   CHECK(refused("F100 G43.5\nG1 X1 I1 C3\n").find("2:10: error: C") != std::string::npos);
   CHECK(refused("F100 G43.4\nG1 X1 I1\n").find("2:7: error: I") != std::string::npos);
   CHECK(!plan_text("G43.4\n", Machine<5>{.limits = {10, 10, 10}}));
-  CHECK(refused("F100 G43.4\nG1 X10 A130\n").find("2:4: error: axis A: ") != std::string::npos);
+  CHECK(refused("F100 G43.4\nG1 X10 A130\n").find("2:8: error: axis A: ") != std::string::npos);
 }
 
 TEST_CASE("tool-point control line by line makes the blocks of the whole program", "[tool point]") {
