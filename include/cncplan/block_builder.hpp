@@ -370,18 +370,21 @@ class BlockBuilder {
   [[nodiscard]] Scalar fastest_along(const Programmed& line, const typename Block::Path& path) const {
     Scalar fastest = machine_.limits.velocity;
     if (machine_.feed_limit > Scalar(0)) fastest = std::min(fastest, machine_.feed_limit);
-    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-      const auto& axis = machine_.axes[i];
-      const auto k = static_cast<Eigen::Index>(i);
-      const bool one_limit = !(axis.velocity_down > Scalar(0));
-      if constexpr (MappedModel<M>) {  // either way
-        const Scalar limit = one_limit ? axis.velocity : std::min(axis.velocity, axis.velocity_down);
-        const Scalar share = path.bounds(Scalar(0), path.length()).first[k];
-        if (share > Scalar(0)) fastest = std::min(fastest, limit / share);
-      } else {
-        const Scalar step = line.end()[k] - line.start()[k];
-        const Scalar limit = one_limit || !(step < Scalar(0)) ? axis.velocity : axis.velocity_down;
-        if (step != Scalar(0)) fastest = std::min(fastest, limit * line.length() / std::abs(step));
+    const auto keep = [&](Scalar limit, Scalar way_of_axis) {
+      if (way_of_axis > Scalar(0)) fastest = std::min(fastest, limit / way_of_axis);
+    };
+    if constexpr (MappedModel<M>) {
+      const auto most = path.bounds(Scalar(0), path.length()).first;
+      for (std::size_t i = 0; i < machine_.axes.size(); ++i) {  // a joint may turn back
+        const Scalar up = machine_.axes[i].velocity, down = machine_.axes[i].velocity_down;
+        keep(down > Scalar(0) ? std::min(up, down) : up, most[static_cast<Eigen::Index>(i)]);
+      }
+    } else {
+      for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const Scalar step = line.end()[k] - line.start()[k], down = machine_.axes[i].velocity_down;
+        keep(step < Scalar(0) && down > Scalar(0) ? down : machine_.axes[i].velocity,
+             std::abs(step) / line.length());
       }
     }
     return fastest;

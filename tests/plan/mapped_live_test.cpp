@@ -39,10 +39,9 @@ void set_limits(M& machine) {
 
 // Round a table, twice; C turns beyond a turn.
 struct Polar {
-  using Machine = MappedMachine<kinematics::ThreeJoints>;
+  using Machine = MappedMachine<kinematics::PolarMap>;
   static Machine machine() {
     Machine m{
-        .map = kinematics::PolarMap{},
         .axes = {Axis{.letter = 'R'}, Axis{.letter = 'Z'}, Axis{.letter = 'C', .kind = AxisKind::rotary}}};
     set_limits(m);
     return m;
