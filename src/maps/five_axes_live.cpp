@@ -2,7 +2,6 @@
 
 namespace cncplan {
 
-CNCPLAN_RUN_BLOCKS(, MappedMachine<kinematics::FiveAxes>, ProgramBlock<MappedMachine<kinematics::FiveAxes>>)
-CNCPLAN_RUN_LEVELS(, MappedMachine<kinematics::FiveAxes>, ProgramBlock<MappedMachine<kinematics::FiveAxes>>)
+CNCPLAN_MAPPED_LIVE(, MappedMachine<kinematics::FiveAxes>)
 
 }  // namespace cncplan

@@ -1,4 +1,4 @@
-// Planning for the ready-made machines (kinematics/ready_made.hpp), as the library `cncplan_maps` has it:
+// The ready-made machines (kinematics/ready_made.hpp), as the library `cncplan_maps` plans and drives them:
 // declared here, and defined once for each shape. Without `CNCPLAN_COMPILED` the headers alone serve.
 #pragma once
 
@@ -8,14 +8,18 @@
 #include "cncplan/compiled/plan_program.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
 
-/// Reading, planning, asking and driving the programs of a machine.
+/// Running the programs of a machine, at every level.
+#define CNCPLAN_MAPPED_LIVE(PREFIX, MACHINE)                 \
+  CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
+  CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, ProgramBlock<MACHINE>)
+
+/// The same, and reading, planning and asking them.
 #define CNCPLAN_MAPPED(PREFIX, MACHINE)                           \
   CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
   CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
   CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
   CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                           \
-  CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)      \
-  CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, ProgramBlock<MACHINE>)
+  CNCPLAN_MAPPED_LIVE(PREFIX, MACHINE)
 
 #ifdef CNCPLAN_COMPILED
 namespace cncplan {

@@ -2,9 +2,6 @@
 
 namespace cncplan {
 
-CNCPLAN_RUN_BLOCKS(, MappedMachine<kinematics::ScaraWrist>,
-                   ProgramBlock<MappedMachine<kinematics::ScaraWrist>>)
-CNCPLAN_RUN_LEVELS(, MappedMachine<kinematics::ScaraWrist>,
-                   ProgramBlock<MappedMachine<kinematics::ScaraWrist>>)
+CNCPLAN_MAPPED_LIVE(, MappedMachine<kinematics::ScaraWrist>)
 
 }  // namespace cncplan

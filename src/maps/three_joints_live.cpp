@@ -2,9 +2,6 @@
 
 namespace cncplan {
 
-CNCPLAN_RUN_BLOCKS(, MappedMachine<kinematics::ThreeJoints>,
-                   ProgramBlock<MappedMachine<kinematics::ThreeJoints>>)
-CNCPLAN_RUN_LEVELS(, MappedMachine<kinematics::ThreeJoints>,
-                   ProgramBlock<MappedMachine<kinematics::ThreeJoints>>)
+CNCPLAN_MAPPED_LIVE(, MappedMachine<kinematics::ThreeJoints>)
 
 }  // namespace cncplan

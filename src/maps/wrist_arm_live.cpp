@@ -2,7 +2,6 @@
 
 namespace cncplan {
 
-CNCPLAN_RUN_BLOCKS(, MappedMachine<kinematics::WristArm>, ProgramBlock<MappedMachine<kinematics::WristArm>>)
-CNCPLAN_RUN_LEVELS(, MappedMachine<kinematics::WristArm>, ProgramBlock<MappedMachine<kinematics::WristArm>>)
+CNCPLAN_MAPPED_LIVE(, MappedMachine<kinematics::WristArm>)
 
 }  // namespace cncplan
