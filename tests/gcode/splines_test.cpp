@@ -176,7 +176,7 @@ TEST_CASE("G5 and G5.1 are Bezier curves") {
 
 TEST_CASE("NURBS come out as the pieces that they are made of") {
   test::Random random;
-  for (int round = 0; round < 18; ++round) {
+  for (int round = 0; round < test::cases(18); ++round) {
     const int order = 3 + round % 6;
     const bool with_knots = random.integer(0, 1) == 1;
     Definition curve{{}, {}, order};

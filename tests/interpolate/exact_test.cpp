@@ -56,7 +56,7 @@ TEMPLATE_TEST_CASE("Samples stand on k T, the last at the end time on the end po
                    double) {
   using S = TestType;
   test::Random random;
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < test::cases(20); ++i)
     for (const auto& segment : test::random_segments<S>(random)) {
       const auto profile = test::rest_to_rest<S>(segment);
       const S period = static_cast<S>(random.log_uniform(1e-4, 1e-2));

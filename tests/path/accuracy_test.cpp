@@ -80,7 +80,7 @@ void measure(Errors& errors, const BasicVector3<S>& start, const BasicVector3<S>
 template <class S>
 Errors measure_cell(test::Random& random, double chord, double radius, int count) {
   Errors errors;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < test::cases(count); ++i) {
     const double away = i % 2 == 0 ? 0 : 100;
     const double direction = i % 5 == 0 ? random.integer(0, 3) * std::acos(0.0) : random.uniform(-4, 4);
     const BasicVector3<S> start(static_cast<S>(random.uniform(-away, away)),

@@ -43,7 +43,7 @@ TEMPLATE_TEST_CASE("Arcs of every kind obey the laws of paths", "", float, doubl
     test::PathLawErrors worst;
     Worst ends;
     Worst approach;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < test::cases(100); ++i) {
       const auto arc = test::random_arc<S>(random, kind);
       worst.worst_of(test::path_law_errors(arc, std::min(1.0, static_cast<double>(arc.parameter_end()))));
       const bool exact = arc.position(S(0)) == arc.start() && arc.position(arc.parameter_end()) == arc.end();
@@ -124,7 +124,7 @@ TEMPLATE_TEST_CASE("Boxes hold every point and touch the arc on all sides", "", 
   Worst outside;
   Worst loose;
   for (const test::ArcKind kind : test::arc_kinds)
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < test::cases(60); ++i) {
       const auto arc = test::random_arc<S>(random, kind);
       const auto box = arc.box();
       BasicVector3<S> low = arc.start();
@@ -155,7 +155,7 @@ TEMPLATE_TEST_CASE("Pieces between turnings are monotone and crossings invert po
   Worst crossing;
   Worst stuck;
   for (const test::ArcKind kind : test::arc_kinds)
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < test::cases(60); ++i) {
       const auto arc = test::random_arc<S>(random, kind);
       for (int axis = 0; axis < 3; ++axis) {
         S low = S(0);

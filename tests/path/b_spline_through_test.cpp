@@ -23,7 +23,7 @@ std::vector<Vector3> through(const PointList& points, const path::BasicSplineEnd
 TEST_CASE("A B-spline through points is at each of them, and keeps its end conditions") {
   test::Random random;
   double off = 0, bent = 0, turned = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::cases(1000); ++i) {
     PointList points;
     const int count = 2 + i % 40;
     const auto vector = [&] {

@@ -37,7 +37,7 @@ TEMPLATE_TEST_CASE("the arctangent that vectorises is good to three units in the
 TEST_CASE("a batch of crossings lies on the arc, between turnings and up to them") {
   test::Random random;
   double worst = 0, worst_radius = 0, worst_sweep = 0;
-  for (int run = 0; run < 3000; ++run) {
+  for (int run = 0; run < test::cases(3000); ++run) {
     const double radius = random.log_uniform(0.01, 1e4);
     const double from = random.uniform(-3.14, 3.14);
     const double to = random.uniform(-3.14, 3.14);

@@ -72,7 +72,7 @@ TEST_CASE("The change of a helix's curvature is curvature times torsion, that of
 TEST_CASE("The bound of the change of curvature holds all along a spiral, and is at most 4 percent above") {
   test::Random random;
   double below = 0, above = 0;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < test::cases(5000); ++i) {
     double end = 0;
     const auto spiral = draw(random, end);
     const double bound = path::max_curvature_change(spiral, end);

@@ -18,7 +18,7 @@ TEMPLATE_TEST_CASE("Points of many lengths are those of single ones, the ends bi
   const S eps = std::numeric_limits<S>::epsilon();
   S worst = 0;
   bool ends = true;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::cases(1000); ++i) {
     const S radius = static_cast<S>(random.log_uniform(1e-2, 1e3));
     const S angle = static_cast<S>(random.uniform(0.01, 20));
     path::ArcGeometry<S> geometry;

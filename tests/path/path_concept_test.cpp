@@ -76,7 +76,7 @@ TEMPLATE_TEST_CASE("arcs keep the laws of paths", "[path]", float, double) {
   for (const auto kind : {test::ArcKind::circle, test::ArcKind::helix, test::ArcKind::slight_spiral,
                           test::ArcKind::spiral, test::ArcKind::conical_helix}) {
     test::PathByLengthErrors worst;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < test::cases(40); ++i) {
       const auto arc = test::random_arc<S>(random, kind);
       INFO(test::describe(arc));
       REQUIRE(arc.position_at(S(0)) == arc.start());
@@ -95,7 +95,7 @@ template <int N>
 void check_arcs_along() {
   test::Random random;
   test::PathByLengthErrors worst;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < test::cases(40); ++i) {
     const auto arc = test::random_arc<double>(
         random, test::arc_kinds[static_cast<std::size_t>(random.integer(0, N == 2 ? 0 : 4))]);
     if (N == 2 && axes(arc.plane()).third != 2) continue;

@@ -31,7 +31,7 @@ TEMPLATE_TEST_CASE("a batch of crossings of a spiral lies on it, between turning
   constexpr S epsilon = std::numeric_limits<S>::epsilon();
   double worst = 0, worst_length = 0;
   std::string worst_arc, worst_length_arc;
-  for (int run = 0; run < 4000; ++run) {
+  for (int run = 0; run < test::cases(4000); ++run) {
     const auto kind = test::arc_kinds[static_cast<std::size_t>(random.integer(2, 5))];
     const auto arc = test::random_arc<S>(random, kind);
     if (arc.is_circular()) continue;

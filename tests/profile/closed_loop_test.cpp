@@ -184,13 +184,13 @@ TEST_CASE("planning goes on from every state of a profile: usual limits, by the 
 
 TEST_CASE("planning goes on from every state of a profile: random profiles") {
   Worst worst;
-  random_loops<double>(1500, 1e4, worst);
+  random_loops<double>(test::cases(1500), 1e4, worst);
   check<double>(worst);
 }
 
 TEST_CASE("planning goes on from every state of a profile: in float") {
   Worst worst;
-  random_loops<float>(1500, 10.0, worst);
+  random_loops<float>(test::cases(1500), 10.0, worst);
   check<float>(worst);
 }
 

@@ -13,6 +13,16 @@ inline std::uint64_t seed() {
   return text != nullptr ? std::strtoull(text, nullptr, 10) : 20221;
 }
 
+/// How many random cases a test tries: a quarter where a sanitizer makes each of them slow.
+constexpr int cases(int count) {
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  return (count + 3) / 4;
+#endif
+#endif
+  return count;
+}
+
 class Random {
  public:
   explicit Random(std::uint64_t seed = test::seed()) : engine_(seed) {}
