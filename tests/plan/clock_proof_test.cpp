@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "cncplan/core/state.hpp"
@@ -321,8 +322,10 @@ TEST_CASE("clock: brakes that are made step by step keep the limits, wherever th
     ++tried;
     for (int level = 0; level < path_brake.levels; ++level) {
       int work = 4000;
-      const auto brake = path_brake.find({s, now.velocity, now.acceleration}, phase,
-                                         trajectory.phases().size() - 1, straight, level, work);
+      const auto brake = path_brake
+                             .find({s, now.velocity, now.acceleration}, phase, trajectory.phases().size() - 1,
+                                   straight, level, {}, work)
+                             .motion;
       if (!brake) continue;
       found += level == 0;
       INFO("at " << at << ", level " << level << ", for " << brake->duration() << " s");
@@ -350,6 +353,50 @@ TEST_CASE("clock: brakes that are made step by step keep the limits, wherever th
   CHECK(found > tried / 2);
 }
 
+TEST_CASE("clock: a brake that is wanted soon is the usual one, or none where that is later", "[clock]") {
+  const Machine<3> machine = slow_axes();
+  const auto trajectory = planned(corners_and_arcs, with_reserve(machine, 0.1));
+  Clocked clocked(trajectory, machine);
+  const auto tool = tool_axes(machine);
+  const detail::PathBrake<Machine<3>, Clocked::B> path_brake(clocked.proof, tool, clocked.chain, 1);
+  using Wanted = decltype(path_brake)::Wanted;
+  Random random;
+  int found = 0, lost = 0, too_long = 0, wrong = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double at = random.uniform(0.01, trajectory.duration() - 0.01);
+    const auto now = trajectory.at(at).along;
+    const std::size_t phase = trajectory.phase_at(at), last = trajectory.phases().size() - 1;
+    const auto& own = trajectory.phases()[phase].phase;
+    const double s = own.at(at - own.time).position - own.position;
+    const auto duration_of = [&](int level, const Wanted& wanted) {
+      int work = 4000;
+      const auto result =
+          path_brake.find({s, now.velocity, now.acceleration}, phase, last, straight, level, wanted, work);
+      return std::pair(result.motion ? result.motion->duration() : std::numeric_limits<double>::infinity(),
+                       result.gentler_too_long);
+    };
+    for (int level = 0; level < path_brake.levels; ++level) {
+      const double usual = duration_of(level, {}).first;
+      CAPTURE(at, level, usual);
+      if (!std::isfinite(usual)) continue;
+      CHECK(duration_of(level, {1.000001 * usual, false}).first == usual);  // as it is made again
+      const double most = usual * random.uniform(0.3, 2);
+      const auto [duration, gentler] = duration_of(level, {.most = most});
+      CHECK((!std::isfinite(duration) || duration < most));
+      (duration < most ? found : lost) += usual < most;
+      if (!gentler) continue;
+      ++too_long;
+      for (int other = level + 1; other < path_brake.levels; ++other)
+        wrong += duration_of(other, {}).first < most;
+    }
+  }
+  CAPTURE(found, lost, too_long, wrong);
+  CHECK(found > 100);
+  CHECK(lost < 0.02 * found);
+  CHECK(too_long > 100);
+  CHECK(wrong < 0.02 * too_long);
+}
+
 TEST_CASE("clock: a brake on a straight line takes little more than the least time", "[clock]") {
   const auto trajectory = planned("F1800 G1 X50\n", with_reserve(mill, 0.05));
   Clocked clocked(trajectory, mill);
@@ -361,8 +408,10 @@ TEST_CASE("clock: a brake on a straight line takes little more than the least ti
     const auto& own = trajectory.phases()[phase].phase;
     const double s = own.at(at - own.time).position - own.position;
     int work = 4000;
-    const auto brake = path_brake.find({s, now.velocity, now.acceleration}, phase,
-                                       trajectory.phases().size() - 1, straight, 0, work);
+    const auto brake = path_brake
+                           .find({s, now.velocity, now.acceleration}, phase, trajectory.phases().size() - 1,
+                                 straight, 0, {}, work)
+                           .motion;
     CAPTURE(at, now.velocity, now.acceleration);
     REQUIRE(brake);
     const double least = least_time(now.velocity, now.acceleration, 1000, 10000);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "cncplan/core/axis_limits.hpp"
@@ -28,6 +29,8 @@ class PathBrake {
   using AxisState = BasicAxisState<S>;
   using Way = PhasesByLength<M, B>;
 
+  /// How many times as fast as on a straight path a brake is, at most about.
+  static constexpr S hardly_faster = S(1.25);
   /// How gently they brake: shares of the deceleration that the limits leave.
   static constexpr std::array<S, 5> shares{S(1), S(0.7), S(0.5), S(0.35), S(0.25)};
   static constexpr int levels = static_cast<int>(shares.size());
@@ -36,33 +39,58 @@ class PathBrake {
   PathBrake(const Proof& proof, const std::array<int, 3>& tool, const Chain& chain, S most_rate)
       : proof_(proof), tool_(tool), chain_(chain), most_rate_(most_rate) {}
 
+  /// From a state to rest at a level, if the path went straight on with some limits.
+  [[nodiscard]] static Motion straight_on(const AxisState& from, const BasicAxisLimits<S>& straight,
+                                          int level) {
+    BasicAxisLimits<S> gentle = straight;
+    gentle.acceleration_up = gentle.acceleration_down =
+        shares[static_cast<std::size_t>(level)] * straight.acceleration_down;
+    return Motion(state::BasicVelocityChange<S>(from, S(0), gentle).fastest());
+  }
+
+  /// What is looked for: a brake of less than `most` seconds; `gives_up` where that would take a brake that
+  /// is much faster than on a straight path.
+  struct Wanted {
+    S most = std::numeric_limits<S>::infinity();
+    bool gives_up = true;
+  };
+  /// A brake, if one is found; else whether gentler ones take too long as well.
+  struct Found {
+    std::optional<Motion> motion;
+    bool gentler_too_long = false;
+  };
   /// From a state by the length from the start of a phase, at a level, to rest before the end of the phase
   /// `last`; nothing where none is proven with what is left of `work` (see `ClockProof`). `straight`: the
   /// limits along the path, if it went straight on.
-  [[nodiscard]] std::optional<Motion> find(const AxisState& from, std::size_t phase, std::size_t last,
-                                           const BasicAxisLimits<S>& straight, int level, int& work) const {
+  [[nodiscard]] Found find(const AxisState& from, std::size_t phase, std::size_t last,
+                           const BasicAxisLimits<S>& straight, int level, const Wanted& wanted,
+                           int& work) const {
     const S most_jerk = straight.jerk, share = shares[static_cast<std::size_t>(level)];
-    BasicAxisLimits<S> gentle = straight;
-    gentle.acceleration_up = gentle.acceleration_down = share * straight.acceleration_down;
-    const Motion direct(state::BasicVelocityChange<S>(from, S(0), gentle).fastest());
+    const Motion direct = straight_on(from, straight, level);
     const S duration = direct.duration();
-    const bool in_time = !too_late(from, most_jerk);
+    const bool in_time = duration < wanted.most && !too_late(from, most_jerk);
     if (in_time && proof_.moves(chain_, Way(chain_, phase, S(0)), last, direct, most_rate_, work))
-      return direct;
-    if (!std::isfinite(most_jerk) || !(duration > S(0))) return std::nullopt;
+      return {direct};
+    if (!std::isfinite(most_jerk) || !(duration > S(0))) return {};
     const S longest_step =
         std::clamp(straight.acceleration_down / most_jerk, duration, S(2) * duration) / steps_in_brake;
     Motion motion(from, from);
     Way way(chain_, phase, S(0));
     AxisState state = from;
+    S left = wanted.most;
+    bool late = false;
     while (motion.phases().size() + 1 < Motion::most_phases && !too_late(state, most_jerk)) {
+      const S least = wanted.gives_up ? state.velocity / (hardly_faster * straight.acceleration_down) : S(0);
+      late = !(left > least);
+      if (late) break;
       const auto step = prove(way, last, state, longest_step, share, most_jerk, work);
       if (!step) break;
       motion.append(*step);
+      left -= step->duration;
       state = step->after(state, step->duration);
       way.go_to(state.position);
     }
-    return end(motion, Way(chain_, phase, S(0)), last, most_jerk, work);
+    return end(motion, Way(chain_, phase, S(0)), last, most_jerk, wanted.most, late, work);
   }
 
  private:
@@ -164,12 +192,15 @@ class PathBrake {
   }
 
   // The steps of a motion, as many as can be, and then to rest at a constant jerk.
-  [[nodiscard]] std::optional<Motion> end(const Motion& steps, const Way& from, std::size_t last, S most_jerk,
-                                          int& work) const {
+  [[nodiscard]] Found end(const Motion& steps, const Way& from, std::size_t last, S most_jerk, S most,
+                          bool late, int& work) const {
     std::array<AxisState, Motion::most_phases + 1> states;
+    std::array<S, Motion::most_phases + 1> times{};
     states[0] = steps.start();
-    for (std::size_t i = 0; i < steps.phases().size(); ++i)
+    for (std::size_t i = 0; i < steps.phases().size(); ++i) {
+      times[i + 1] = times[i] + steps.phases()[i].duration;
       states[i + 1] = steps.phases()[i].after(states[i], steps.phases()[i].duration);
+    }
     constexpr int parts = 4;
     for (auto count = static_cast<int>(steps.phases().size()) * parts; count >= 0 && work >= 0; --count) {
       // Behind some steps and a part of the next.
@@ -185,6 +216,8 @@ class PathBrake {
       Way way = from;
       way.go_to(state.position);
       const S duration = S(-2) * state.velocity / state.acceleration;
+      if (!(times[whole] + part.duration + duration < most)) continue;
+      late = false;
       const BasicJerkPhase<S> step{duration, state.acceleration, -state.acceleration / duration};
       const AxisState rest{step.after(state, duration).position, S(0), S(0)};
       Motion last_step(state, rest);
@@ -193,9 +226,9 @@ class PathBrake {
       Motion motion(steps.start(), rest);
       for (std::size_t i = 0; i < whole; ++i) motion.append(steps.phases()[i]);
       motion.append(part, step);
-      return motion;
+      return {motion};
     }
-    return std::nullopt;
+    return {std::nullopt, late};
   }
 
   const Proof& proof_;

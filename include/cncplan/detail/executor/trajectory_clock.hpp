@@ -274,20 +274,23 @@ class TrajectoryClock {
   template <class MayChange>
   void begin_planned(const Brake& brake, MayChange&& may_change) {
     const bool stronger = std::exchange(brakes_, false);  // it was proven with the limits of the machine
-    const auto ramp = brake_of_level(brake.level);
+    const auto ramp = as_planned(brake);
     brakes_ = stronger;
     if (ramp && may_change(shown_at_end(*ramp), false)) begin(*ramp, S(0));
     search_from(S(1));
   }
   // What was proven once at the planned speed, at the rate of now.
-  [[nodiscard]] std::optional<Ramp> brake_of_level(int level) const {
+  [[nodiscard]] std::optional<Ramp> as_planned(const Brake& brake) const {
+    constexpr S rounding = S(1) + S(1e-6);
     const BasicState<S> planned{state().position, S(1), S(0), S(0)};
     std::optional<Ramp> ramp;
     int work = work_in_plan;
-    if (level >= levels_along_path)
-      ramp = Ramp(change_by_time(planned, S(0), fastest_change(planned.position), level));
-    else
-      ramp = brake_along(along_path(planned), level, work);
+    if (brake.level >= levels_along_path)
+      ramp = Ramp(change_by_time(planned, S(0), fastest_change(planned.position), brake.level));
+    else if (const AlongPath along = along_path(planned);
+             const auto motion =
+                 brake_along(along, brake.level, {rounding * brake.duration, false}, work).motion)
+      ramp = Ramp(*motion, along.phase);
     return ramp && goal_ < S(1) ? ramp->at_share(goal_) : ramp;
   }
   void begin(const Ramp& ramp, S goal) {
@@ -403,8 +406,14 @@ class TrajectoryClock {
       const bool whole = work == all_work;
       std::optional<Ramp> ramp;
       if (level_ < levels_along_path) {
-        ramp = brake_along(along, level_, work);
-        if (ramp && !(ramp->duration() < sooner)) ramp.reset();
+        const auto straight = PathBrake<M, B>::straight_on(along.now, along.limits, level_);
+        if (straight.duration() < PathBrake<M, B>::hardly_faster * sooner) {
+          const auto found = brake_along(along, level_, {.most = sooner}, work);
+          if (found.motion) ramp = Ramp(*found.motion, along.phase);
+          if (found.gentler_too_long) level_ = levels_along_path - 1;
+        } else {
+          level_ = levels_along_path - 1;
+        }
       } else {
         const RateMotion motion = change_by_time(now, to, fastest, level_);
         if (!(motion.duration() < sooner)) {
@@ -457,11 +466,10 @@ class TrajectoryClock {
     result.limits.jerk = jerk;
     return result;
   }
-  [[nodiscard]] std::optional<Ramp> brake_along(const AlongPath& along, int level, int& work) const {
+  [[nodiscard]] auto brake_along(const AlongPath& along, int level,
+                                 const typename PathBrake<M, B>::Wanted& wanted, int& work) const {
     const PathBrake<M, B> brake(proof(), tool_, chain_, along.most_rate);
-    const auto motion = brake.find(along.now, along.phase, along.last_phase, along.limits, level, work);
-    if (!motion) return std::nullopt;
-    return Ramp(*motion, along.phase);
+    return brake.find(along.now, along.phase, along.last_phase, along.limits, level, wanted, work);
   }
   [[nodiscard]] static RateMotion change_by_time(const BasicState<S>& now, S to, BasicAxisLimits<S> limits,
                                                  int level) {
