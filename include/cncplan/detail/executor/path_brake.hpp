@@ -191,7 +191,8 @@ class PathBrake {
     return std::nullopt;
   }
 
-  // The steps of a motion, as many as can be, and then to rest at a constant jerk.
+  // The steps of a motion, as many as can be, and then to rest at a constant jerk, sooner than `most`.
+  // `late`: the steps ended because too little of `most` was left. It stays so where no end is soon enough.
   [[nodiscard]] Found end(const Motion& steps, const Way& from, std::size_t last, S most_jerk, S most,
                           bool late, int& work) const {
     std::array<AxisState, Motion::most_phases + 1> states;
