@@ -110,7 +110,18 @@ TEST_CASE("a printer's codes own their lines") {
   CHECK(words[7].arguments.find('T') == std::nullopt);
   for (const Word& word : words) CHECK(word.letter == 'M');
   CHECK(error("M665 L250 R125 H300 S100 A0 B0 C0 X0 Y0 Z0 P1", marlin) ==
-        "1:44: number of words of one code is above the limit 10");
+        "1:44: number of words of one code: 11 is above the limit 10");
+  // A letter without a number is no place: a code of motion does not take it.
+  const auto bare = test::read("G1 X1 F60\nM84 X Y E\nM155 S2 C\nG1 M18 X\nM18 X G1", marlin);
+  CHECK(bare.error == "");
+  CHECK(bare.motions().size() == 1);
+  CHECK(bare.all<Word>() == std::vector<Word>{{'M', 84, 2, 1, {{'X', 0}, {'Y', 0}, {'E', 0}}},
+                                              {'M', 155, 3, 1, {{'S', 2}, {'C', 0}}},
+                                              {'M', 18, 4, 4, {{'X', 0}}},
+                                              {'M', 18, 5, 1, {{'X', 0}}}});
+  CHECK(error("M84 X X", marlin) == "1:7: X has no number");
+  CHECK(error("M84 X Y") == "1:5: X has no number: 'Y' follows");
+  CHECK(error("M56 P", dialect_of("grbl")) == "1:5: P has no number");
   // A code of motion on the line keeps what is its own.
   const auto both = test::read("G1 X5 F60 M106 S255", marlin);
   CHECK(both.motions()[0].end[0] == 5.0);

@@ -12,9 +12,6 @@
 
 namespace cncplan::gcode {
 
-/// Every word that may belong to an M code.
-inline constexpr Letters any_words = bits("ABCDEFHIJKLPQRSTUVWXYZ");
-
 namespace detail {
 
 inline constexpr std::array<std::int16_t, 1> grbl_codes{56};  // parking

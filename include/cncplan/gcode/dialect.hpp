@@ -39,6 +39,9 @@ struct Tool {
   friend bool operator==(const Tool&, const Tool&) = default;
 };
 
+/// Every word that may belong to an M code.
+inline constexpr Letters any_words = bits("ABCDEFHIJKLPQRSTUVWXYZ");
+
 /// A word that comes out as it is. Without a number, the letter with any number. A passed-through G or M
 /// takes the words of its line that nothing else uses (the P and Q of `G05 P10000 Q3`), and is handed on as
 /// one word with them. What moves the axes cannot pass: neither F and the axes' letters, nor G codes that
@@ -48,7 +51,7 @@ struct PassThrough {
   std::optional<double> number{};
   /// The letters that belong to an M code wherever no code of motion on its line takes them, F and those of
   /// axes too (XYZE of Marlin's M201); what they leave is the line's own. None: not known, and then a line on
-  /// which F, T or an axis word could be either's is in error.
+  /// which F, T or an axis word could be either's is in error. Of `any_words`, one without a number is 0.
   std::optional<Letters> words{};
   bool text = false;  ///< what follows it on the line is a text, not words
 

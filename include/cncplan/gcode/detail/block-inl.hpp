@@ -13,7 +13,7 @@ CNCPLAN_INLINE Expected<void, Diagnostic> Block::parse(std::string_view line, st
     if (!scanner.next_short(word)) {
       const auto other = scanner.next();
       if (!other) {
-        if (!names_bare_axis(other.error())) return tl::unexpected(other.error());
+        if (!takes_no_number(other.error())) return tl::unexpected(other.error());
         continue;
       }
       if (!*other) break;
@@ -51,9 +51,8 @@ CNCPLAN_INLINE Letters Block::taken_by_codes(const Alphabet& alphabet) const {
   const Code motion = code(Group::motion), non_modal = code(Group::non_modal);
   if (motion != no_code && motion != gcode::code(80)) taken |= ~bits("ST");
   const bool sets = non_modal == gcode::code(10) || non_modal == gcode::code(52);
-  const bool homes = non_modal == gcode::code(28) || non_modal == gcode::code(30);
   const bool shifts = non_modal == gcode::code(92) || code(Group::tool_length) == gcode::code(43.1);
-  if (sets || homes || shifts) taken |= alphabet.axes | alphabet.left_out | polar_words;
+  if (sets || homes() || shifts) taken |= alphabet.axes | alphabet.left_out | polar_words;
   if (non_modal == gcode::code(4) && alphabet.lenient && !has('P'))  // seconds: dwells_by_s, dwells_by_x
     taken |= has('S') && !has(Group::spindle_mode) ? bit('S') : bit('X');
   if (has(Group::spindle)) taken |= bits("S$");
@@ -87,16 +86,22 @@ CNCPLAN_INLINE Expected<void, Diagnostic> Block::pass(char letter) {
   return give(letter, *owner);
 }
 
-CNCPLAN_INLINE bool Block::names_bare_axis(const Diagnostic& problem) {
-  const Code home = code(Group::non_modal);
-  if (problem.error.code != ErrorCode::missing_number || (home != gcode::code(28) && home != gcode::code(30)))
-    return false;
-  const char axis = problem.error.field.front();
-  if (std::string_view("XYZABCUVW").find(axis) == std::string_view::npos || has(axis)) return false;
-  numbers_[index(axis)] = 0.0;
-  columns_[index(axis)] = problem.column;
-  letters_ |= bit(axis);
-  bare_ |= bit(axis);
+CNCPLAN_INLINE bool Block::homes() const {
+  const Code non_modal = code(Group::non_modal);
+  return non_modal == gcode::code(28) || non_modal == gcode::code(30);
+}
+
+CNCPLAN_INLINE bool Block::takes_no_number(const Diagnostic& problem) {
+  if (problem.error.code != ErrorCode::missing_number) return false;
+  Letters bare = homes() ? bits("XYZABCUVW") : Letters{0};
+  for (int i = 0; i < passed_count_; ++i)
+    if (const auto& words = passed_[static_cast<std::size_t>(i)].words; words == any_words) bare |= *words;
+  const char letter = problem.error.field.front();
+  if ((bare & bit(letter)) == 0 || has(letter)) return false;
+  numbers_[index(letter)] = 0.0;
+  columns_[index(letter)] = problem.column;
+  letters_ |= bit(letter);
+  bare_ |= bit(letter);
   return true;
 }
 
@@ -199,7 +204,7 @@ CNCPLAN_INLINE Expected<void, Diagnostic> Block::give(char letter, Passed& owner
 
 CNCPLAN_INLINE Expected<void, Diagnostic> Block::give_to_codes(const Alphabet& alphabet) {
   if (!passes_code_) return {};
-  const Letters free = letters_ & ~taken_by_codes(alphabet);
+  const Letters free = (letters_ & ~taken_by_codes(alphabet)) | (homes() ? Letters{0} : bare_);
   for (int i = 0; i < passed_count_; ++i) {
     Passed& owner = passed_[static_cast<std::size_t>(i)];
     while (const Letters own = owner.words.value_or(0) & free & letters_) {

@@ -50,7 +50,7 @@ class Block {
     letters_ &= ~words;
   }
 
-  /// Axes that G28 names without a number, as printers' programs have it: their words are 0.
+  /// Letters without a number, as printers' programs have them behind G28 and M84: their words are 0.
   [[nodiscard]] Letters bare() const { return bare_; }
 
   /// Letters of which `salvage` lost a word.
@@ -134,8 +134,11 @@ class Block {
     [[nodiscard]] bool is_code() const { return word.letter == 'G' || word.letter == 'M'; }
   };
 
-  /// Whether what is wrong is an axis of G28 or G30 without a number. It is noted then.
-  bool names_bare_axis(const Diagnostic& problem);
+  [[nodiscard]] bool homes() const;  ///< G28, G30
+
+  /// Whether what is wrong is an axis of G28 or G30, or a word of a code that owns every word of its line,
+  /// without a number. It is noted then.
+  bool takes_no_number(const Diagnostic& problem);
 
   void clear();
 
