@@ -86,7 +86,7 @@ TEST_CASE("a letter passes through with any number") {
   CHECK(test::read("M98 G80 X1\n", dialect).error == "1:1: M98 is beside a word that may be its own (X)");
   std::string many;
   for (int i = 0; i < 17; ++i) many += "D1";
-  CHECK(test::read(many, dialect).error == "1:33: number of words to pass through is above the limit 16");
+  CHECK(test::read(many, dialect).error == "1:33: number of words to pass through: 17 is above the limit 16");
 }
 
 TEST_CASE("R of a machine that has such an axis is that axis, and no word of M19") {
@@ -101,8 +101,9 @@ TEST_CASE("R of a machine that has such an axis is that axis, and no word of M19
 }
 
 TEST_CASE("a reader or writer of an invalid dialect takes nothing") {
-  for (const auto& [letters, error] : {std::pair{"XYZABCUVWR", "1:1: number of axes is above the limit 9"},
-                                       std::pair{"x", "1:1: axis letter: unknown character"}}) {
+  for (const auto& [letters, error] :
+       {std::pair{"XYZABCUVWR", "1:1: number of axes: 10 is above the limit 9"},
+        std::pair{"x", "1:1: axis letter: unknown character"}}) {
     Dialect dialect;
     dialect.axes.clear();
     for (const char letter : std::string_view(letters)) dialect.axes.push_back({letter, AxisKind::linear});

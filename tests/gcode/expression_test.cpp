@@ -111,12 +111,12 @@ TEST_CASE("values that are none") {
   CHECK(error("[1+]") == "4: value has no number: ']' follows");
   CHECK(error("[1+2") == "5: ]: a required word is missing");
   CHECK(error("[1 2]") == "4: ]: a required word is missing");
-  CHECK(error("#0") == "1: number of a parameter is below the limit 1");
-  CHECK(error("#5602") == "1: number of a parameter is above the limit 5601");
+  CHECK(error("#0") == "1: number of a parameter: 0 is below the limit 1");
+  CHECK(error("#5602") == "1: number of a parameter: 5602 is above the limit 5601");
   CHECK(error("#1.5") == "2: value must be a whole number");
   CHECK(error("#<width>") == "1: named parameter is not defined");
   CHECK(error("#<width") == "2: < has no end");
   CHECK(error("foo[1]") == "1: function is not supported");
   CHECK(error("atan[1]") == "8: /: a required word is missing");
-  CHECK(error(std::string(60, '[')) == "52: nesting is above the limit 50");
+  CHECK(error(std::string(60, '[')) == "52: nesting: 51 is above the limit 50");
 }

@@ -140,7 +140,7 @@ TEST_CASE("M99 ends a main program") { CHECK(run("G0 X1\nM99\nG0 X2\n") == "1:1 
 TEST_CASE("M98 that leads nowhere is refused") {
   CHECK(run("G0 X1\nM98 P3\nM30\n") == "1:1 2:1: error: M98 finds no subprogram here");
   CHECK(run("M98 P3 X1\nM30\nO3\nM99\n") == "1:1: error: M98 finds no subprogram here");
-  CHECK(run("M98 P3\nM30\nO3\nM98 P3\nM99\n") == "4:1: error: depth of calls is above the limit 16");
+  CHECK(run("M98 P3\nM30\nO3\nM98 P3\nM99\n") == "4:1: error: depth of calls: 17 is above the limit 16");
 }
 
 TEST_CASE("parameters of the machine say where the program is") {
@@ -156,16 +156,18 @@ TEST_CASE("parameters of the machine say where the program is") {
 
 TEST_CASE("a loop that never ends is told with its line") {
   CHECK(run("G0 X1\no1 while [1]\n#1=2\no1 endwhile\n", 1000) ==
-        "1:1 4:1: error: number of times that the program goes back is above the limit 1000");
+        "1:1 4:1: error: number of times that the program goes back: 1001 is above the limit 1000");
 }
 
 TEST_CASE("loops and calls that move nothing end soon") {
-  const std::string refused = "1: error: number of lines run while nothing moves is above the limit 1000000";
-  CHECK(run("o1 while [1]\n#1=2\no1 endwhile\n") == "3:" + refused);
-  CHECK(run("o1 repeat [9999999]\nM8\no1 endrepeat\n") == "3:" + refused);
-  CHECK(run("M98 P1 L9999999\nM30\nO1\nM99\n") == "4:" + refused);
+  const auto refused = [](const std::string& lines) {
+    return "1: error: number of lines run while nothing moves: " + lines + " is above the limit 1000000";
+  };
+  CHECK(run("o1 while [1]\n#1=2\no1 endwhile\n") == "3:" + refused("1000002"));
+  CHECK(run("o1 repeat [9999999]\nM8\no1 endrepeat\n") == "3:" + refused("1000001"));
+  CHECK(run("M98 P1 L9999999\nM30\nO1\nM99\n") == "4:" + refused("1000001"));
   CHECK(run("o1 do\no2 if [0]\n" + std::string(300'000, '\n') + "o2 endif\no1 while [1]\n") ==
-        "300004:" + refused);
+        "300004:" + refused("1200013"));
   // What moves is let run: here and back, a million and a half lines.
   const std::string back_and_forth = "G90 G0\no1 repeat [500000]\nX1\nX2\no1 endrepeat\n";
   CHECK(run(back_and_forth).find("error") == std::string::npos);
@@ -173,7 +175,7 @@ TEST_CASE("loops and calls that move nothing end soon") {
 
 TEST_CASE("a call that is refused leaves no subprogram open") {
   CHECK(problems("o1 sub\nG0 X1\no1 endsub\no1 call\no1 call\nX[1/0]\no1 endsub\n", 1) ==
-        "5:1: error: number of times that the program goes back is above the limit 1\n"
+        "5:1: error: number of times that the program goes back: 2 is above the limit 1\n"
         "6:4: error: / divides by zero\n"  // once: the endsub goes back to no call
         "7:1: error: O-word belongs to nothing that is open\n");
 }

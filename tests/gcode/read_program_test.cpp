@@ -200,15 +200,15 @@ TEST_CASE("cutter compensation tells of a line once, and of what is wrong with i
   const std::string head = "F100 G1 G41.1 D10 X20\n";
   // Two notches of 1 mm in a square.
   CHECK(problems(head + "X50\nY20\nX49\nY21\nX50\nY50\nX20\nY49\nX19\nY50\nX0\nY0\n") ==
-        "4: length behind an inner corner is below the limit 5\n"
-        "6: length before an inner corner is below the limit 5\n"
-        "9: length behind an inner corner is below the limit 5\n"
-        "11: length before an inner corner is below the limit 5\n");
+        "4: length behind an inner corner: 1 is below the limit 5\n"
+        "6: length before an inner corner: 1 is below the limit 5\n"
+        "9: length behind an inner corner: 1 is below the limit 5\n"
+        "11: length before an inner corner: 1 is below the limit 5\n");
   CHECK(problems(head + "X50\nG3 X51 Y1 R1\nG1 Y20\nX40\n") ==
-        "3: radius of an arc under G41, G42 is below the limit 5\n");
+        "3: radius of an arc under G41, G42: 1 is below the limit 5\n");
   CHECK(problems("F100 G41.1 D30 G1 X10\nX11\nX12 Y5\nG40 X0\nX30\n") ==
-        "1: length of the first motion under G41, G42 is below the limit 15\n"
-        "2: length before an inner corner is below the limit 12.297058540778357\n");
+        "1: length of the first motion under G41, G42: 10 is below the limit 15\n"
+        "2: length before an inner corner: 1 is below the limit 12.297058540778357\n");
 }
 
 TEST_CASE("behind a line in error the machine stands where it should") {

@@ -56,7 +56,7 @@ TEST_CASE("a block that cannot be planned ends the motion before it, and is told
   const auto point = run(executor);
   CHECK((point.position - Vector3(5, 5, 0)).norm() < 1e-12);
   REQUIRE(executor.error());
-  CHECK(to_text(*executor.error()) == "3:4: error: axis X is above the limit 100");
+  CHECK(to_text(*executor.error()) == "3:4: error: axis X: 150 is above the limit 100");
   blocks[2].path = path::Line<3>({5, 5, 0}, {5, 6, 0});
   REQUIRE(executor.restart(0, point.position));
   CHECK_FALSE(executor.error());

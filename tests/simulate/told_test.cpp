@@ -42,7 +42,7 @@ TEST_CASE("a thread that the machine cannot cut fast enough is refused") {
     const auto run = folder.run_text(text, options + " --quiet");
     return run.exit == 0 ? std::string() : run.err.substr(run.err.find("program.ngc:2:5: error"));
   };
-  const std::string why = "program.ngc:2:5: error: speed of a thread is above the limit ";
+  const std::string why = "program.ngc:2:5: error: speed of a thread: 66.66666666666667 is above the limit ";
   const std::string thread = "S2000 M3\nG33 Z-10 K2\n";
   CHECK(told(thread, "") == why + "30\n");
   CHECK(told(thread, "--vmax 66") == why + "66\n");

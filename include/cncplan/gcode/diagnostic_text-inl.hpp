@@ -18,7 +18,12 @@ CNCPLAN_INLINE std::string word_text(const Error& error) {
   if (error.field == "byte") return character_text(error.value);
   const bool code = (error.field == "G" || error.field == "M") && error.code != ErrorCode::missing_number;
   const bool tool = error.code == ErrorCode::no_such_tool || error.code == ErrorCode::no_tool_table;
-  return std::string(error.field) + (code || tool ? number_text(error.value) : "");
+  const bool limited = error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit;
+  std::string text(error.field);
+  if (limited && text.size() > 1)  // a word's number can be seen in the program
+    return text + ": " + value_text(error.value, error.unit) +
+           (error.unit == ErrorUnit::radians ? " degrees" : "");
+  return text + (code || tool ? number_text(error.value) : "");
 }
 
 }  // namespace detail
