@@ -44,6 +44,11 @@ void answer(httplib::Response& response, std::string text, const char* type) {
       });
 }
 
+void refuse(httplib::Response& response, int status, const std::string& why) {
+  response.status = status;
+  response.set_content(why + '\n', "text/plain");
+}
+
 // Another site's page, open in the same browser, must not move anything.
 bool from_own_page(const httplib::Request& request) {
   return !request.has_header("Origin") ||
@@ -78,22 +83,24 @@ void run_server(const Address& address, const std::string& page, const Handlers&
   });
   server.Get("/rows", [&](const httplib::Request& request, httplib::Response& response) {
     long long after = 0;
-    if (!read_number(request.get_param_value("after"), after)) {
-      response.status = 400;
-      return answer(response, "after: a number is needed\n", "text/plain");
-    }
+    if (!read_number(request.get_param_value("after"), after))
+      return refuse(response, 400, "after: a number is needed");
     answer(response, handlers.rows(after), "application/json");
   });
   // With a reader of content, for the library waits for a body that was not announced, and then refuses.
   server.Post("/ask/(\\w+)", [&](const httplib::Request& request, httplib::Response& response,
                                  const httplib::ContentReader& body) {
-    if (!from_own_page(request)) return void(response.status = 403);
-    if (!skip_body(request, body)) return void(response.status = 400);
+    if (!from_own_page(request)) return refuse(response, 403, "another site's page cannot ask");
+    if (!skip_body(request, body)) return refuse(response, 400, "the body of the request cannot be read");
     const std::string name = request.matches[1].str(), value = request.get_param_value("value");
     response.status = 204;
-    if (handlers.ask(name, value)) return;
-    response.status = 400;
-    answer(response, fmt::format("no request '{}' with the value '{}'\n", name, value), "text/plain");
+    if (!handlers.ask(name, value))
+      refuse(response, 400, fmt::format("no request '{}' with the value '{}'", name, value));
+  });
+  server.set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+    if (response.body.empty())
+      refuse(response, response.status,
+             fmt::format("{} {}: no such page or request", request.method, request.path));
   });
 
   const int port = address.port > 0 ? (server.bind_to_port(address.host, address.port) ? address.port : -1)
