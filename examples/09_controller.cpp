@@ -45,6 +45,8 @@ int main(int argc, char** argv) {
   for (std::string line; !reader.finished() && std::getline(lines, line);) {
     const auto blocks = reader.read_line(line);
     if (!blocks) return std::fprintf(stderr, "%s\n", to_text(blocks.error()).c_str()), 2;
+    for (const auto& warning : reader.warnings())
+      std::fprintf(stderr, "%s\n", gcode::to_text("", warning, "warning").c_str());
     run(*blocks);
   }
   const auto last = reader.end_of_program();  // what cutter compensation holds back

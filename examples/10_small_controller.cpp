@@ -35,10 +35,11 @@ void tick() {
 }
 
 // Without the heap, which texts of errors need.
-int tell(const gcode::Diagnostic& fault) {
+int tell(const gcode::Diagnostic& fault, const char* weight = "error") {
   const std::string_view field = fault.error.field, sentence = message(fault.error.code);
-  std::fprintf(stderr, "%d:%d: error: %.*s: %.*s\n", fault.line, fault.column, static_cast<int>(field.size()),
-               field.data(), static_cast<int>(sentence.size()), sentence.data());
+  std::fprintf(stderr, "%d:%d: %s: %.*s: %.*s\n", fault.line, fault.column, weight,
+               static_cast<int>(field.size()), field.data(), static_cast<int>(sentence.size()),
+               sentence.data());
   return 2;
 }
 
@@ -53,6 +54,7 @@ int main() {
   for (const std::string_view line : lines) {
     const auto blocks = reader.read_line(line);
     if (!blocks) return tell(blocks.error().about);
+    for (const auto& warning : reader.warnings()) tell(warning, "warning");
     run(*blocks);
   }
   const auto last = reader.end_of_program();  // what cutter compensation holds back
