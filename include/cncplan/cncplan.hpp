@@ -205,7 +205,6 @@
 #include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/junction_jumps.hpp"
-#include "cncplan/kinematics/cartesian.hpp"
 #include "cncplan/kinematics/core_xy.hpp"
 #include "cncplan/kinematics/delta.hpp"
 #include "cncplan/kinematics/detail/azimuth.hpp"

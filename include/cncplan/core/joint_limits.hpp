@@ -25,22 +25,6 @@ struct BasicJointLimits {
   friend bool operator==(const BasicJointLimits&, const BasicJointLimits&) = default;
 };
 
-/// The limits themselves if each rate is positive, else an error naming the first kind that is not.
-template <std::floating_point S, int N>
-[[nodiscard]] Expected<BasicJointLimits<S, N>> validate(const BasicJointLimits<S, N>& limits) {
-  const auto check = [](const VectorN<S, N>& values, std::string_view field) -> Expected<void> {
-    for (const S value : values)
-      if (!(value > S(0)))
-        return tl::unexpected(Error{ErrorCode::not_positive, field, static_cast<double>(value), 0.0});
-    return {};
-  };
-  if (auto ok = check(limits.velocity, "joint velocity limit"); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check(limits.acceleration, "joint acceleration limit"); !ok)
-    return tl::unexpected(ok.error());
-  if (auto ok = check(limits.jerk, "joint jerk limit"); !ok) return tl::unexpected(ok.error());
-  return limits;
-}
-
 /// The joints themselves if each lies within its travel, else an error with the name of the first that does
 /// not.
 template <std::floating_point S, int N>

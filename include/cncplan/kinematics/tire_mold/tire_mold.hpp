@@ -94,8 +94,6 @@ struct BasicTireMold {
         zero, zero, -sa, zero;
     return result;
   }
-
-  [[nodiscard]] BasicJointLimits<S, 4> joint_limits() const { return limits; }
 };
 
 using TireMold = BasicTireMold<double>;
