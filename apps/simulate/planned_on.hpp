@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cncplan/core/jet.hpp"
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/follow_steps.hpp"
 #include "cncplan/junction_jumps.hpp"
 #include "cncplan/path/map.hpp"
@@ -28,22 +29,8 @@ namespace simulate {
 template <class Map, class V>
 [[nodiscard]] cncplan::PathPoint<cncplan::Vector3> tip_of_axes(const Map& map,
                                                                const cncplan::PathPoint<V>& axes) {
-  cncplan::path::MapJoints<Map, cncplan::Jet> joints;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    joints[i] = {axes.position[k], axes.first[k], axes.second[k], axes.third[k]};
-  }
-  const auto point = map.point(joints);
-  cncplan::PathPoint<cncplan::Vector3> tip;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto& x = point[static_cast<std::size_t>(cncplan::path::coordinates_in_space<Map>[k])];
-    const auto i = static_cast<Eigen::Index>(k);
-    tip.position[i] = x.value;
-    tip.first[i] = x.first;
-    tip.second[i] = x.second;
-    tip.third[i] = x.third;
-  }
-  return tip;
+  return cncplan::in_space(cncplan::point_of(map.point(cncplan::jets_of(axes))),
+                           cncplan::path::coordinates_in_space<Map>);
 }
 
 /// `file` outlives it. `taylor`: samples are those of Taylor steps.

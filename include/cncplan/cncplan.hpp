@@ -44,6 +44,7 @@
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/motion_limits.hpp"
 #include "cncplan/core/path_bounds.hpp"
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/core/phase.hpp"
 #include "cncplan/core/phase_profile.hpp"

@@ -33,9 +33,7 @@ template <Path P>
   } else if constexpr (requires { path.visit([](const auto&) {}); }) {
     return path.visit([&](const auto& inside) { return tool_point(inside, s, tool); });
   } else {
-    const auto at = path.point_at(s);
-    return {in_space(at.position, tool), in_space(at.first, tool), in_space(at.second, tool),
-            in_space(at.third, tool)};
+    return in_space(path.point_at(s), tool);
   }
 }
 

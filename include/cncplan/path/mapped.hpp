@@ -9,6 +9,7 @@
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/path/detail/whole_turns.hpp"
 #include "cncplan/path/map.hpp"
 
@@ -43,30 +44,13 @@ class Mapped {
     return result;
   }
   [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const {
-    const auto point = path_.point_at(s);
-    std::array<BasicJet<Scalar>, coordinates> x;
-    for (std::size_t i = 0; i < coordinates; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      x[i] = {point.position[k], point.first[k], point.second[k], point.third[k]};
-    }
-    PathPoint<Vector> result;
-    const auto joints = map_.joints(x);
-    for (int i = 0; i < axis_count; ++i) {
-      const auto& joint = joints[static_cast<std::size_t>(i)];
-      result.position[i] = joint.value;
-      result.first[i] = joint.first;
-      result.second[i] = joint.second;
-      result.third[i] = joint.third;
-    }
+    PathPoint<Vector> result = point_of(map_.joints(jets_of(path_.point_at(s))));
     if (turns_.joints != 0) turns_.add(result.position, share(s));
     return result;
   }
   /// X Y Z of the tool, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
-    const auto point = path_.point_at(s);
-    constexpr std::array<int, 3> tool = coordinates_in_space<M>;
-    return {in_space(point.position, tool), in_space(point.first, tool), in_space(point.second, tool),
-            in_space(point.third, tool)};
+    return in_space(path_.point_at(s), coordinates_in_space<M>);
   }
   [[nodiscard]] auto enclosure(Scalar from, Scalar to) const {
     auto result = map_.joints(path_.enclosure(from, to));

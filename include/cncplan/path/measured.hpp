@@ -12,6 +12,7 @@
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/path/arc_length_table.hpp"
 
 namespace cncplan::path {
@@ -89,24 +90,22 @@ class Measured {
   [[nodiscard]] Vector derivative(Scalar u) const { return at(u).first; }
   [[nodiscard]] Vector second_derivative(Scalar u) const { return at(u).second; }
   [[nodiscard]] CurvePoint<Vector> at(Scalar u) const {
-    const auto point = point_of(BasicJet<Scalar>(u, Scalar(1), Scalar(0), Scalar(0)));
+    const auto point = point_of(curve().point(BasicJet<Scalar>(u, Scalar(1), Scalar(0), Scalar(0))));
     return {point.position, point.first, point.second};
   }
 
   [[nodiscard]] Vector position_at(Scalar s) const { return position(parameter_at(s)); }
-  [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const { return point_of(by_length(parameter_at(s))); }
+  [[nodiscard]] PathPoint<Vector> point_at(Scalar s) const {
+    return point_of(curve().point(by_length(parameter_at(s))));
+  }
   /// X Y Z of the point that counts, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
-    PathPoint<BasicVector3<Scalar>> result;
     if constexpr (axis_count > 3)
-      if (tool_rests()) {
-        result.position = position_at(s).template head<3>();
-        return result;
-      }
+      if (tool_rests()) return {.position = position_at(s).template head<3>()};
     const auto way = travelled(curve(), by_length(parameter_at(s)));
-    for (std::size_t i = 0; i < std::min<std::size_t>(way.size(), 3); ++i)
-      put(way[i], result, static_cast<int>(i));
-    return result;
+    std::array<BasicJet<Scalar>, 3> tool;
+    std::copy_n(way.begin(), std::min(way.size(), tool.size()), tool.begin());
+    return point_of(tool);
   }
   [[nodiscard]] auto enclosure(Scalar from, Scalar to) const {
     return curve().point(by_length(BasicInterval<Scalar>{parameter_at(from), parameter_at(to)}));
@@ -141,21 +140,6 @@ class Measured {
 
   static Vector values(const std::array<Scalar, static_cast<std::size_t>(axis_count)>& point) {
     return Eigen::Map<const Vector>(point.data());
-  }
-
-  [[nodiscard]] PathPoint<Vector> point_of(const BasicJet<Scalar>& u) const {
-    PathPoint<Vector> result;
-    const auto point = curve().point(u);
-    for (int i = 0; i < axis_count; ++i) put(point[static_cast<std::size_t>(i)], result, i);
-    return result;
-  }
-
-  template <class V>
-  static void put(const BasicJet<Scalar>& jet, PathPoint<V>& into, int axis) {
-    into.position[axis] = jet.value;
-    into.first[axis] = jet.first;
-    into.second[axis] = jet.second;
-    into.third[axis] = jet.third;
   }
 
   // The parameter with its derivatives by the length: a number, or an interval.

@@ -14,6 +14,7 @@
 #include "cncplan/core/detail/least_squares.hpp"
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/path/line.hpp"
 #include "cncplan/path/map.hpp"
 
@@ -84,8 +85,7 @@ class StraightInJoints {
     const bool at_end = !(s < length()) && length() > Scalar(0);
     PathPoint<Coordinates> point = at_joints(joints, s);
     if (at_end) point.position = end_;
-    return {in_space(point.position, tool_), in_space(point.first, tool_), in_space(point.second, tool_),
-            in_space(point.third, tool_)};
+    return in_space(point, tool_);
   }
 
  private:
@@ -114,30 +114,11 @@ class StraightInJoints {
     return result;
   }
 
-  template <class Point>
-  static auto jets(const Point& point) {
-    std::array<BasicJet<Scalar>,
-               static_cast<std::size_t>(std::remove_cvref_t<decltype(point.position)>::RowsAtCompileTime)>
-        x;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      const auto i = static_cast<Eigen::Index>(k);
-      x[k] = {point.position[i], point.first[i], point.second[i], point.third[i]};
-    }
-    return x;
-  }
-
   // The program's coordinates, and their derivatives, where the joints are.
   [[nodiscard]] PathPoint<Coordinates> at_joints(const PathPoint<Vector>& joints, Scalar s) const {
     PathPoint<Coordinates> point;
     if constexpr (InvertibleMap<M>) {
-      const auto x = map_.point(jets(joints));
-      for (std::size_t k = 0; k < x.size(); ++k) {
-        const auto i = static_cast<Eigen::Index>(k);
-        point.position[i] = x[k].value;
-        point.first[i] = x[k].first;
-        point.second[i] = x[k].second;
-        point.third[i] = x[k].third;
-      }
+      point = point_of(map_.point(jets_of(joints)));
     } else {
       point.position = place(joints.position, length() > Scalar(0) ? s / length() : Scalar(0));
       const auto jacobian = derivative(point.position);
@@ -165,7 +146,7 @@ class StraightInJoints {
   template <class Part>
   [[nodiscard]] Vector along(const PathPoint<Coordinates>& point, Part&& part) const {
     Vector result;
-    const auto joints = map_.joints(jets(point));
+    const auto joints = map_.joints(jets_of(point));
     for (int i = 0; i < axis_count; ++i) result[i] = part(joints[static_cast<std::size_t>(i)]);
     return result;
   }

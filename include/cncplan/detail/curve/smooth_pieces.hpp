@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/detail/block_checks.hpp"
 #include "cncplan/detail/curve/driven_path.hpp"
 #include "cncplan/detail/curve/smooth_junction.hpp"
@@ -57,11 +58,7 @@ template <MachineModel M, Path P>
     const auto* own = path.map();
     const auto* other = Programmed(before).map();
     if (own == nullptr || other == nullptr) return false;
-    constexpr int coordinates = Programmed::axis_count;
-    const auto at = path.point_at(S(0));
-    std::array<BasicJet<S>, static_cast<std::size_t>(coordinates)> x;
-    for (int i = 0; i < coordinates; ++i)
-      x[static_cast<std::size_t>(i)] = {at.position[i], at.first[i], at.second[i], at.third[i]};
+    const auto x = jets_of(path.point_at(S(0)));
     const auto a = other->joints(x), b = own->joints(x);
     const auto size = [](const BasicJet<S>& q) {
       return std::abs(q.first) + std::abs(q.second) + std::abs(q.third);

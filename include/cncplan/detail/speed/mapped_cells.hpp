@@ -8,6 +8,7 @@
 
 #include "cncplan/core/jet.hpp"
 #include "cncplan/core/motion_limits.hpp"
+#include "cncplan/core/path_jets.hpp"
 #include "cncplan/detail/speed/enclosed_cell.hpp"
 #include "cncplan/detail/speed/speed_cell.hpp"
 #include "cncplan/path/cubic.hpp"
@@ -60,15 +61,15 @@ class MappedCells {
   void add_rows(const Cubic& piece, std::size_t block, Rows& rows) const {
     const Cell cell = this->cell(piece, S(1), block);
     const S length = piece.length();
-    const Jets middle = jets(piece.point_at(length / S(2)));
+    const auto middle = jets_of(piece.point_at(length / S(2)));
     const std::size_t first = rows.size();
     rows.resize(first + static_cast<std::size_t>(joints));
     for (int k = 0; k < coordinates; ++k) {
-      Jets along = middle;
+      auto along = middle;
       for (int i = 0; i < coordinates; ++i)
         along[static_cast<std::size_t>(i)] = {middle[static_cast<std::size_t>(i)].value, S(i == k ? 1 : 0),
                                               S(0), S(0)};
-      const auto by = of(*maps_[block], along);
+      const auto by = maps_[block]->joints(along);
       for (std::size_t i = 0; i < static_cast<std::size_t>(joints); ++i) rows[first + i].row[k] = by[i].first;
     }
     for (std::size_t i = 0; i < static_cast<std::size_t>(joints); ++i) {
@@ -88,7 +89,7 @@ class MappedCells {
   /// What is limited on a piece, with the third derivative that the joints have in its middle.
   [[nodiscard]] Cell cell(const Cubic& piece, S feed, std::size_t block) const {
     Cell cell = start_of(piece, feed, block);
-    const auto middle = of(*maps_[block], jets(piece.point_at(piece.length() / S(2))));
+    const auto middle = maps_[block]->joints(jets_of(piece.point_at(piece.length() / S(2))));
     for (int i = 0; i < joints; ++i) cell.third[i] = middle[static_cast<std::size_t>(i)].third;
     return cell;
   }
@@ -96,7 +97,7 @@ class MappedCells {
   /// The same, with an enclosure of that derivative along the piece.
   [[nodiscard]] Cell proven_cell(const Cubic& piece, S feed, std::size_t block) const {
     Cell cell = start_of(piece, feed, block);
-    const auto along = of(*maps_[block], piece.enclosure(S(0), piece.length()));
+    const auto along = maps_[block]->joints(piece.enclosure(S(0), piece.length()));
     for (int i = 0; i < joints; ++i) {
       const auto& third = along[static_cast<std::size_t>(i)].third;
       cell.third[i] = third.low + (third.high - third.low) / S(2);
@@ -107,32 +108,30 @@ class MappedCells {
 
   /// Calls `add(part, cell)` for parts of a piece on which the third derivative is well enough known.
   template <class Add>
-  void proven_cells(const Cubic& piece, S feed, std::size_t block, Add&& add) const {
-    add_parts(piece, feed, block, most_halvings, add);
+  void proven_cells(const Cubic& piece, S feed, std::size_t block, Add&& add,
+                    int halvings = most_halvings) const {
+    Cell cell = proven_cell(piece, feed, block);
+    const S known = known_speed(cell, *limits_, unknown);
+    if (known >= place_speed(cell, *limits_) || halvings == 0) {
+      // What is no number lets nothing move.
+      cell.feed = known > S(0) ? std::min(feed, known) : S(0);
+      add(piece, cell);
+      return;
+    }
+    const S half = piece.length() / S(2);
+    proven_cells(piece.part(S(0), half), feed, block, add, halvings - 1);
+    proven_cells(piece.part(half, piece.length()), feed, block, add, halvings - 1);
   }
 
  private:
   static constexpr int most_halvings = 12;
   static constexpr S unknown = S(0.03);  // share of the limits that a spread may take
 
-  using Jets = std::array<BasicJet<S>, static_cast<std::size_t>(coordinates)>;
-
-  [[nodiscard]] static Jets jets(const PathPoint<VectorN<S, coordinates>>& at) {
-    Jets x;
-    for (int i = 0; i < coordinates; ++i)
-      x[static_cast<std::size_t>(i)] = {at.position[i], at.first[i], at.second[i], at.third[i]};
-    return x;
-  }
-  template <class X>
-  [[nodiscard]] static auto of(const M& map, const X& x) {
-    return map.joints(x);
-  }
-
   // Without the third derivative of the joints.
   [[nodiscard]] Cell start_of(const Cubic& piece, S feed, std::size_t block) const {
     const auto& at = piece.start();
     Cell cell{piece.length(), feed};
-    const auto start = of(*maps_[block], jets(at));
+    const auto start = maps_[block]->joints(jets_of(at));
     for (int i = 0; i < joints; ++i) {
       cell.first[i] = start[static_cast<std::size_t>(i)].first;
       cell.second[i] = start[static_cast<std::size_t>(i)].second;
@@ -143,21 +142,6 @@ class MappedCells {
       cell.third[joints + k] = at.third[k];
     }
     return cell;
-  }
-
-  template <class Add>
-  void add_parts(const Cubic& piece, S feed, std::size_t block, int halvings, Add&& add) const {
-    Cell cell = proven_cell(piece, feed, block);
-    const S known = known_speed(cell, *limits_, unknown);
-    if (known >= place_speed(cell, *limits_) || halvings == 0) {
-      // What is no number lets nothing move.
-      cell.feed = known > S(0) ? std::min(feed, known) : S(0);
-      add(piece, cell);
-      return;
-    }
-    const S half = piece.length() / S(2);
-    add_parts(piece.part(S(0), half), feed, block, halvings - 1, add);
-    add_parts(piece.part(half, piece.length()), feed, block, halvings - 1, add);
   }
 
   std::span<const M* const> maps_;
