@@ -24,7 +24,6 @@ class BasicSolver {
       : law_(law), velocity_limit_(velocity_limit) {}
 
   [[nodiscard]] constexpr const BasicRampLaw<S>& law() const { return law_; }
-  [[nodiscard]] constexpr S velocity_limit() const { return velocity_limit_; }
 
   /// The profile over `length` mm (>= 0, finite). Errors: a speed limit that is not positive; a length or
   /// speed that is not finite, negative, or above the speed limit, by name; `end_speed_unreachable` with the

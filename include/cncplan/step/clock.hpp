@@ -91,22 +91,4 @@ PhaseClock(const Phases&, S) -> PhaseClock<S>;
 template <class Phases, std::floating_point S>
 PhaseClock(const Phases&, S, S) -> PhaseClock<S>;
 
-/// Any profile as a clock that starts at a given time. The profile must outlive the clock.
-template <Profile F>
-class ProfileClock {
- public:
-  using Scalar = typename F::Scalar;
-
-  explicit ProfileClock(const F& profile, Scalar start = Scalar(0)) : profile_(&profile), start_(start) {}
-  explicit ProfileClock(const F&& profile, Scalar start = Scalar(0)) = delete;
-
-  void lengths_to_times(std::span<Scalar> lengths) const {
-    for (Scalar& value : lengths) value = start_ + profile_->time_at(value);
-  }
-
- private:
-  const F* profile_;
-  Scalar start_;
-};
-
 }  // namespace cncplan::step

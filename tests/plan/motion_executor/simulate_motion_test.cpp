@@ -40,11 +40,13 @@ std::pair<double, double> durations(const std::string& text, double tolerance) {
   if (tolerance > 0)
     smoothing = detail::smoothing(all, mill, detail::SmoothingRules<double>{tolerance, 1e-3});
   const detail::JunctionRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
-  const auto cells = detail::make_cells(all, mill, rules, smoothing);
+  auto cells = detail::make_cells(all, mill, rules, smoothing);
   REQUIRE(cells);
-  const auto played = detail::simulate_motion(all, *cells, {}, 1e-3, [](const Block& block) {
+  const auto of_blocks = detail::motion_blocks(all, *cells, [](const Block& block) {
     return block.rapid ? rapid_speed(mill) : std::isfinite(block.feed) ? block.feed : feed_speed(mill);
   });
+  const auto played =
+      detail::simulate_motion(std::span<const detail::MotionBlock>(of_blocks), cells->blocks, {}, 1e-3);
   REQUIRE(played);
   const auto& last = played->back().phase;
   return {planned->duration(), last.time + last.duration};

@@ -26,8 +26,6 @@ struct BasicCorrection {
 
   /// mm on both sides of the junction in which it acts.
   [[nodiscard]] S support() const { return size * reach<S>(jump); }
-  /// The most by which it moves an axis, as a factor of `step`.
-  [[nodiscard]] S most() const { return largest<S>(jump) * (jump == Jump::direction ? size : size * size); }
 };
 
 template <int N>

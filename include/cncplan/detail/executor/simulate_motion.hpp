@@ -57,16 +57,6 @@ template <BlockModel B, std::invocable<const B&> Feed>
   return cells_of_blocks;
 }
 
-/// Both at once.
-template <BlockModel B, std::invocable<const B&> Feed>
-[[nodiscard]] Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_motion(
-    std::span<const B> blocks, BasicCells<double> cells, std::span<const TimedRequest> requests,
-    double period, Feed&& feed_of, double most_ticks = 1e10) {
-  const auto cells_of_blocks = motion_blocks(blocks, cells, std::forward<Feed>(feed_of));
-  return simulate_motion(std::span<const MotionBlock>(cells_of_blocks),
-                         std::span<const std::size_t>(cells.blocks), requests, period, most_ticks);
-}
-
 }  // namespace cncplan::detail
 
 #ifndef CNCPLAN_COMPILED

@@ -26,12 +26,4 @@ template <std::floating_point S>
   return {first, 0, profile::BasicProfile<S>({.cruise = seconds})};
 }
 
-/// How long the spans take, added up as a cursor does.
-template <std::floating_point S>
-[[nodiscard]] S duration(std::span<const BasicSpan<S>> spans) {
-  S sum = S(0);
-  for (const BasicSpan<S>& span : spans) sum += span.profile.duration();
-  return sum;
-}
-
 }  // namespace cncplan::detail
