@@ -11,6 +11,7 @@
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/jet.hpp"
 #include "cncplan/core/limits.hpp"
+#include "cncplan/detail/speed/limit_smoothing.hpp"
 #include "cncplan/trajectory.hpp"
 
 namespace cncplan {
@@ -120,14 +121,9 @@ class PeakSearch {
 
   // Of the motion along the path, which is a cubic, all is known.
   void add_along(const BasicPhase<Scalar>& phase) {
-    const BasicState<Scalar> end = phase.at(phase.duration);
-    Scalar velocity = std::max(std::abs(phase.velocity), std::abs(end.velocity));
-    const Scalar top = phase.jerk != Scalar(0) ? -phase.acceleration / phase.jerk : Scalar(0);
-    if (top > Scalar(0) && top < phase.duration)
-      velocity = std::max(velocity, std::abs(phase.at(top).velocity));
-    along_.velocity = std::max(along_.velocity, velocity);
-    along_.acceleration =
-        std::max({along_.acceleration, std::abs(phase.acceleration), std::abs(end.acceleration)});
+    const Scalar end = phase.at(phase.duration).acceleration;
+    along_.velocity = std::max(along_.velocity, phase.highest_velocity());
+    along_.acceleration = std::max({along_.acceleration, std::abs(phase.acceleration), std::abs(end)});
     along_.jerk = std::max(along_.jerk, std::abs(phase.jerk));
   }
 
@@ -180,19 +176,11 @@ class PeakSearch {
   }
 
   using I = BasicInterval<Scalar>;
-  static constexpr BasicLimits<Scalar> any_motion{std::numeric_limits<Scalar>::infinity(),
-                                                  std::numeric_limits<Scalar>::infinity(),
-                                                  std::numeric_limits<Scalar>::infinity()};
   // The bounds of a path with corrections cost more than they are worth here.
   template <class P>
   static constexpr bool is_programmed = !requires(const P& path) {
     path.corrections();
   };
-
-  static BasicLimits<Scalar> lowest(const BasicLimits<Scalar>& a, const BasicLimits<Scalar>& b) {
-    return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration),
-            std::min(a.jerk, b.jerk)};
-  }
 
   // The most that an axis may do while the path and the motion along it lie in these intervals.
   static BasicLimits<Scalar> largest(const BasicJet<I>& axis, const I& v, const I& a, Scalar j) {
@@ -240,7 +228,7 @@ class PeakSearch {
                  to = std::clamp(high, Scalar(0), path.length());
     const Scalar half = (here.to - here.from) / Scalar(2);
     Enclosed result;
-    BasicLimits<Scalar> tool = any_motion;
+    BasicLimits<Scalar> tool;
     if constexpr (is_programmed<P>)
       tool = of_tool(path.bounds(from, to).tool, v.largest(), a.largest(), std::abs(phase.jerk));
     const auto axes = path.enclosure(from, to);

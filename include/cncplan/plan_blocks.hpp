@@ -95,12 +95,10 @@ template <MachineModel M, BlockModel B>
 template <BlockRange R, MachineModel M>
 [[nodiscard]] Expected<Trajectory<M, BlockOf<R>>, ProgramError> plan_blocks(
     R&& blocks, const M& machine, const PlanOptions& options = {},
-    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) try {
-  return detail::plan_own_blocks(detail::own_blocks(std::forward<R>(blocks), memory), machine, options);
-} catch (const std::bad_alloc&) {
-  return tl::unexpected(detail::no_memory());
-} catch (const detail::Interrupted& at) {
-  return tl::unexpected(detail::interrupted(at, "planning"));
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+  return detail::guarded([&] {
+    return detail::plan_own_blocks(detail::own_blocks(std::forward<R>(blocks), memory), machine, options);
+  });
 }
 
 /// The same on the exact path, with a policy of one's own for junctions (`JunctionPolicy`) and a law for

@@ -24,22 +24,26 @@ template <std::floating_point S>
   return {};
 }
 
+/// The machine with so many times the acceleration and jerk, of its tool and of each axis.
+template <MachineModel M>
+[[nodiscard]] constexpr M with_forces(M machine, typename M::Scalar times) {
+  machine.limits.acceleration *= times;
+  machine.limits.jerk *= times;
+  for (auto& axis : machine.axes) {
+    axis.acceleration *= times;
+    axis.acceleration_down *= times;
+    axis.jerk *= times;
+  }
+  return machine;
+}
+
 }  // namespace detail
 
 /// The machine with so much less acceleration and jerk, of its tool and of each axis: a share in [0, 1). What
 /// is planned for it leaves the clock of an executor of the machine itself something to hold with.
 template <MachineModel M>
-[[nodiscard]] constexpr M with_reserve(M machine, typename M::Scalar share) {
-  const auto lower = [&](auto& limits) {
-    limits.acceleration *= 1 - share;
-    limits.jerk *= 1 - share;
-  };
-  lower(machine.limits);
-  for (auto& axis : machine.axes) {
-    lower(axis);
-    axis.acceleration_down *= 1 - share;
-  }
-  return machine;
+[[nodiscard]] constexpr M with_reserve(const M& machine, typename M::Scalar share) {
+  return detail::with_forces(machine, 1 - share);
 }
 
 }  // namespace cncplan

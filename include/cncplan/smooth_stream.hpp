@@ -18,6 +18,16 @@ namespace detail {
 /// That memory gave out.
 [[nodiscard]] inline ProgramError no_memory() { return {{{ErrorCode::no_memory, "memory"}, 0, 0, {}}}; }
 
+/// What a plan gives, or why there is none: memory gave out, or it was interrupted.
+template <class Plan>
+[[nodiscard]] auto guarded(Plan&& plan) -> decltype(plan()) try {
+  return plan();
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(no_memory());
+} catch (const Interrupted& at) {
+  return tl::unexpected(interrupted(at, "planning"));
+}
+
 }  // namespace detail
 
 /// Plans a program of any length within bounded memory: blocks go in, parts of its trajectory come out. A
@@ -81,12 +91,8 @@ class SmoothStream {
   /// Whether all that was pushed is planned.
   [[nodiscard]] bool empty() const { return merging_.empty() && planner_.empty(); }
   /// Plans a part, if it is full as the next `push` would. Errors as for that.
-  [[nodiscard]] Expected<void, ProgramError> make_part() try {
-    return planner_.make_part(merging_.size() + 1);
-  } catch (const std::bad_alloc&) {
-    return tl::unexpected(detail::no_memory());
-  } catch (const detail::Interrupted& at) {
-    return tl::unexpected(detail::interrupted(at, "planning"));
+  [[nodiscard]] Expected<void, ProgramError> make_part() {
+    return detail::guarded([&] { return planner_.make_part(merging_.size() + 1); });
   }
 
   /// The first block, of all that were pushed, whose feed may still be raised, and the first whose may be
@@ -169,32 +175,28 @@ class SmoothStream {
 };
 
 template <MachineModel M, BlockModel B>
-Expected<void, ProgramError> SmoothStream<M, B>::push(const B& block) try {
-  if (const auto ok = check(block); !ok) return ok;
-  if (const auto ok = planner_.prepare(merging_.size() + 1); !ok) return ok;
-  merging_.push_back(block);
-  end_ = block.path.position_at(block.path.length());
-  ++pushed_;
-  merger_.push([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
-  drop_merged();
-  return {};
-} catch (const std::bad_alloc&) {
-  return tl::unexpected(detail::no_memory());
-} catch (const detail::Interrupted& at) {
-  return tl::unexpected(detail::interrupted(at, "planning"));
+Expected<void, ProgramError> SmoothStream<M, B>::push(const B& block) {
+  return detail::guarded([&]() -> Expected<void, ProgramError> {
+    if (const auto ok = check(block); !ok) return ok;
+    if (const auto ok = planner_.prepare(merging_.size() + 1); !ok) return ok;
+    merging_.push_back(block);
+    end_ = block.path.position_at(block.path.length());
+    ++pushed_;
+    merger_.push([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
+    drop_merged();
+    return {};
+  });
 }
 
 template <MachineModel M, BlockModel B>
-Expected<void, ProgramError> SmoothStream<M, B>::finish_part() try {
-  if (const auto ok = check_machine(); !ok) return ok;
-  if (const auto ok = planner_.prepare(merging_.size()); !ok) return ok;
-  merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
-  drop_merged();
-  return planner_.finish();
-} catch (const std::bad_alloc&) {
-  return tl::unexpected(detail::no_memory());
-} catch (const detail::Interrupted& at) {
-  return tl::unexpected(detail::interrupted(at, "planning"));
+Expected<void, ProgramError> SmoothStream<M, B>::finish_part() {
+  return detail::guarded([&]() -> Expected<void, ProgramError> {
+    if (const auto ok = check_machine(); !ok) return ok;
+    if (const auto ok = planner_.prepare(merging_.size()); !ok) return ok;
+    merger_.end([&](std::int64_t i) -> B& { return merging(i); }, [&](std::int64_t i) { hand_on(i); });
+    drop_merged();
+    return planner_.finish();
+  });
 }
 
 }  // namespace cncplan

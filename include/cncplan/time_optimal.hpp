@@ -259,11 +259,8 @@ class PathSpeed {
   // The speed of the last law at places that are asked in order; without one, infinite.
   [[nodiscard]] auto last_speeds() const {
     return [this, at = std::size_t{0}](S s) mutable {
-      if (last_.empty()) return std::numeric_limits<S>::infinity();
-      while (at + 2 < last_.size() && last_[at + 1].first < s) ++at;
-      const auto [from, slow] = last_[at];
-      const auto [to, fast] = last_[std::min(at + 1, last_.size() - 1)];
-      return to > from ? slow + std::clamp((s - from) / (to - from), S(0), S(1)) * (fast - slow) : slow;
+      return last_.empty() ? std::numeric_limits<S>::infinity()
+                           : speed_between(std::span<const std::pair<S, S>>(last_), at, s);
     };
   }
 
@@ -272,7 +269,7 @@ class PathSpeed {
     auto speed = last_speeds();
     for (std::size_t i = 1; i + 1 < cells_.size() && !last_.empty(); ++i) {
       const S before = speed(starts_[i]), after = speed(starts_[i] + cells_[i].length);
-      cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
+      cells_[i].skew = skew_between(before, after);
     }
   }
 

@@ -233,11 +233,6 @@ class Trajectory {
     constexpr Scalar rounding = Scalar(1e6) * std::numeric_limits<Scalar>::epsilon();
     return position >= length - rounding * (Scalar(1) + length);
   }
-  // Whether the end of the last phase is not rest, but for rounding: a part of a longer trajectory.
-  static bool ends_at_speed(const BasicPhase<Scalar>& phase, const BasicState<Scalar>& end) {
-    const Scalar change = std::abs(phase.acceleration) * phase.duration + std::abs(phase.velocity);
-    return end.velocity > Scalar(1e-3) * change;
-  }
   static bool rests(const BasicPhase<Scalar>& phase) {
     return phase.velocity == Scalar(0) && phase.acceleration == Scalar(0) && phase.jerk == Scalar(0);
   }
@@ -338,7 +333,7 @@ BasicState<typename M::Scalar> Trajectory<M, B>::along(std::size_t index, Scalar
   const Scalar length = length_of_piece(piece);
   BasicState<Scalar> state = phase.at(std::clamp(time - phase.time, Scalar(0), phase.duration));
   const bool ended = !(time < phase.time + phase.duration) && index + 1 == phases_.size();
-  if (ended && !ends_at_speed(phase, state))  // at rest; a program may be stopped before a block's end
+  if (ended && phase.ends_at_rest())  // a program may be stopped before a block's end
     state = {is_whole(state.position, length) ? length : state.position, Scalar(0), Scalar(0), Scalar(0)};
   state.position = std::min(state.position, length);
   return state;

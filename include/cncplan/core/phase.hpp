@@ -72,6 +72,12 @@ struct BasicPhase {
     return inside && at(top).velocity > ends ? at(top).velocity : ends;
   }
 
+  /// Whether it ends at rest, but for rounding.
+  [[nodiscard]] constexpr bool ends_at_rest() const {
+    const S change = (acceleration > S(0) ? acceleration : -acceleration) * duration + velocity;
+    return at(duration).velocity <= S(1e-3) * change;
+  }
+
   friend bool operator==(const BasicPhase&, const BasicPhase&) = default;
 };
 

@@ -13,7 +13,8 @@
 namespace cncplan::kinematics {
 
 /// Where the axes X Y Z stand for a tip in the machine and a direction of the tool. They show the tip of a
-/// tool without length while the spindle is upright; the spindle turns about a pivot above it.
+/// tool without length while the spindle is upright; the spindle turns about a pivot above it. With both
+/// lengths negated, the other way.
 template <class T, class S>
 [[nodiscard]] std::array<T, 3> at_tip(const std::array<T, 3>& tip, const std::array<T, 3>& direction,
                                       S pivot_length, S tool_length) {
@@ -21,15 +22,6 @@ template <class T, class S>
   return {tip[0] + arm * direction[0], tip[1] + arm * direction[1],
           tip[2] + arm * direction[2] - T(pivot_length)};
 }
-/// The other way.
-template <class T, class S>
-[[nodiscard]] std::array<T, 3> tip_at(const std::array<T, 3>& axes, const std::array<T, 3>& direction,
-                                      S pivot_length, S tool_length) {
-  const T arm(pivot_length + tool_length);
-  return {axes[0] - arm * direction[0], axes[1] - arm * direction[1],
-          axes[2] - arm * direction[2] + T(pivot_length)};
-}
-
 /// The same of a head that has both rotary axes, the last two coordinates.
 template <class T, class S>
 [[nodiscard]] std::array<T, 5> axes_of_head(const std::array<T, 5>& at, const std::array<T, 3>& direction,
@@ -37,13 +29,6 @@ template <class T, class S>
   const auto q = at_tip(std::array<T, 3>{at[0], at[1], at[2]}, direction, pivot_length, tool_length);
   return {q[0], q[1], q[2], at[3], at[4]};
 }
-template <class T, class S>
-[[nodiscard]] std::array<T, 5> point_of_head(const std::array<T, 5>& at, const std::array<T, 3>& direction,
-                                             S pivot_length, S tool_length) {
-  const auto p = tip_at(std::array<T, 3>{at[0], at[1], at[2]}, direction, pivot_length, tool_length);
-  return {p[0], p[1], p[2], at[3], at[4]};
-}
-
 /// A spindle that tilts about B over a table that turns about C. Program: X Y Z of the tip in the part, mm, B
 /// and C, rad. The tip stands in the machine at center + Rz(c) (p - center), the tool along
 /// t = (sin b, 0, cos b), and the axes X Y Z at that tip + (pivot_length + tool_length) t - pivot_length ez.
@@ -70,7 +55,7 @@ struct BasicHeadTable {
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> point(const std::array<T, 5>& at) const {
     const auto& [x, y, z, b, c] = at;
-    const auto tip = tip_at(std::array<T, 3>{x, y, z}, tilted(b), pivot_length, tool_length);
+    const auto tip = at_tip(std::array<T, 3>{x, y, z}, tilted(b), -pivot_length, -tool_length);
     const auto p = sum<T>(about_z(-c, difference<T>(tip, center)), center);
     return {p[0], p[1], p[2], b, c};
   }
@@ -116,7 +101,7 @@ struct BasicHeadHead {
   }
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> point(const std::array<T, 5>& at) const {
-    return point_of_head(at, direction(at), pivot_length, tool_length);
+    return axes_of_head(at, direction(at), -pivot_length, -tool_length);
   }
 
   /// Of the tool, of length 1, from the tip to the spindle.
@@ -166,7 +151,7 @@ struct BasicNutatingHead {
   }
   template <NumberOver<S> T>
   [[nodiscard]] std::array<T, 5> point(const std::array<T, 5>& at) const {
-    return point_of_head(at, direction(at), pivot_length, tool_length);
+    return axes_of_head(at, direction(at), -pivot_length, -tool_length);
   }
 
   /// Of the tool, of length 1, from the tip to the spindle.

@@ -259,15 +259,20 @@ class ClockProof {
     const AxisMotion<Vector> axes = motion(at, now);
     const S product_off = velocity * acceleration_off + std::abs(now.acceleration) * velocity_off;
     const S square = now.velocity * now.velocity, cube = std::abs(now.velocity) * square;
-    const Vector acceleration_spread =
-        bounds.first * acceleration_off +
-        bounds.second * (S(2) * velocity * velocity_off + way * std::abs(now.acceleration)) +
-        bounds.third * (way * square);
-    const Vector jerk_spread = bounds.first * jerk_off +
-                               bounds.second * (S(3) * product_off + way * std::abs(now.jerk)) +
-                               bounds.third * (S(3) * velocity * velocity * velocity_off +
-                                               S(3) * way * std::abs(now.velocity * now.acceleration)) +
-                               Vector::Constant(third_change(path, bounds, way) * cube);
+    // From bounds of the derivatives by length, of the axes or of the tool's own point.
+    const auto acceleration_spread = [&]<class V>(const V& first, const V& second, const V& third) -> V {
+      return first * acceleration_off +
+             second * (S(2) * velocity * velocity_off + way * std::abs(now.acceleration)) +
+             third * (way * square);
+    };
+    const auto jerk_spread = [&]<class V>(const V& first, const V& second, const V& third) -> V {
+      return first * jerk_off + second * (S(3) * product_off + way * std::abs(now.jerk)) +
+             third * (S(3) * velocity * velocity * velocity_off +
+                      S(3) * way * std::abs(now.velocity * now.acceleration));
+    };
+    const Vector acceleration_off_axes = acceleration_spread(bounds.first, bounds.second, bounds.third);
+    const Vector jerk_off_axes = jerk_spread(bounds.first, bounds.second, bounds.third) +
+                                 Vector::Constant(third_change(path, bounds, way) * cube);
 
     bool proven = true;
     const auto fits = [&](S value, S spread, S limit) {
@@ -280,26 +285,20 @@ class ClockProof {
       const S first = bounds.tool.first,
               second = std::hypot(bounds.tool.second_along, bounds.tool.second_across),
               third = std::hypot(bounds.tool.third_along, bounds.tool.third_across);
-      const S spread = first * acceleration_off +
-                       second * (S(2) * velocity * velocity_off + way * std::abs(now.acceleration)) +
-                       third * way * square;
       const S third_off = third_of_tool_is_constant<P> ? S(0) : S(2) * third;
-      const S jerk_of_tool = first * jerk_off + second * (S(3) * product_off + way * std::abs(now.jerk)) +
-                             third * (S(3) * velocity * velocity * velocity_off +
-                                      S(3) * way * std::abs(now.velocity * now.acceleration)) +
-                             third_off * cube;
-      if (!fits(tool.acceleration.norm(), spread, limits_.tool.acceleration) ||
-          !fits(tool.jerk.norm(), jerk_of_tool, limits_.tool.jerk))
+      if (!fits(tool.acceleration.norm(), acceleration_spread(first, second, third),
+                limits_.tool.acceleration) ||
+          !fits(tool.jerk.norm(), jerk_spread(first, second, third) + third_off * cube, limits_.tool.jerk))
         return Answer::no;
     } else {
       const auto tool = [&](const Vector& v) { return in_space(v, tool_).norm(); };
-      if (!fits(tool(axes.acceleration), tool(acceleration_spread), limits_.tool.acceleration) ||
-          !fits(tool(axes.jerk), tool(jerk_spread), limits_.tool.jerk))
+      if (!fits(tool(axes.acceleration), tool(acceleration_off_axes), limits_.tool.acceleration) ||
+          !fits(tool(axes.jerk), tool(jerk_off_axes), limits_.tool.jerk))
         return Answer::no;
     }
     for (const auto& [i, own] : limits_.axes)
-      if (!fits(std::abs(axes.acceleration[i]), acceleration_spread[i], own.acceleration) ||
-          !fits(std::abs(axes.jerk[i]), jerk_spread[i], own.jerk))
+      if (!fits(std::abs(axes.acceleration[i]), acceleration_off_axes[i], own.acceleration) ||
+          !fits(std::abs(axes.jerk[i]), jerk_off_axes[i], own.jerk))
         return Answer::no;
     return proven ? Answer::yes : Answer::unknown;
   }

@@ -110,7 +110,7 @@ class GivenPlan {
     const auto& last = trajectory_.phases().back().phase;
     if (first.velocity != S(0))
       return refusal(ErrorCode::above_limit, "speed at the start of the trajectory", first.velocity);
-    if (!ends_at_rest(last))
+    if (!last.ends_at_rest())
       return refusal(ErrorCode::above_limit, "speed at the end of the trajectory",
                      last.at(last.duration).velocity);
     if constexpr (!MappedModel<M>) {  // there a proof takes too long

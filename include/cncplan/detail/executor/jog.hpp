@@ -12,6 +12,7 @@
 #include "cncplan/detail/executor/tool_jog.hpp"
 #include "cncplan/jog_speed.hpp"
 #include "cncplan/move_to.hpp"
+#include "cncplan/reserve.hpp"
 #include "cncplan/tool.hpp"
 
 namespace cncplan {
@@ -80,12 +81,7 @@ class Jog {
   void to_rest(const M& machine, Scalar share) {
     tool_.to_rest(share);
     if (!moves_ || share <= brakes_) return;
-    Axes stronger = axes_of(machine);
-    for (auto& axis : stronger.axes) {
-      axis.acceleration *= share;
-      axis.acceleration_down *= share;
-      axis.jerk *= share;
-    }
+    const Axes stronger = axes_of(with_forces(machine, share));
     if (follow(reach_velocity(move_.state(), typename States::Row{}, stronger))) brakes_ = share;
   }
 

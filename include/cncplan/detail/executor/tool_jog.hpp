@@ -216,13 +216,9 @@ class ToolJog<M> {
   [[nodiscard]] static BasicPathBounds<S, M::axis_count> bounds_from(const P& path, S from) {
     const S width = (path.length() - from) / static_cast<S>(cells);
     auto most = path.bounds(from, from + width);
-    for (int i = 1; i < cells; ++i) {
-      const auto part = path.bounds(from + static_cast<S>(i) * width,
-                                    i + 1 < cells ? from + static_cast<S>(i + 1) * width : path.length());
-      most.first = most.first.cwiseMax(part.first);
-      most.second = most.second.cwiseMax(part.second);
-      most.third = most.third.cwiseMax(part.third);
-    }
+    for (int i = 1; i < cells; ++i)
+      most = most.joined(path.bounds(from + static_cast<S>(i) * width,
+                                     i + 1 < cells ? from + static_cast<S>(i + 1) * width : path.length()));
     return most;
   }
 

@@ -30,13 +30,6 @@ void add_rest(std::pmr::vector<BasicRest<S>>& rests, BasicRest<S> rest) {
     rests.back().to = std::max(rests.back().to, rest.to);
 }
 
-/// Whether a phase ends at rest, but for rounding.
-template <std::floating_point S>
-[[nodiscard]] bool ends_at_rest(const BasicPhase<S>& phase) {
-  const S change = std::abs(phase.acceleration) * phase.duration + std::abs(phase.velocity);
-  return std::abs(phase.at(phase.duration).velocity) <= S(1e-3) * change;
-}
-
 /// Where a trajectory stands, in order: at its start and its end too, if it begins and ends at rest.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] std::pmr::vector<BasicRest<typename M::Scalar>> rests_of(
@@ -49,7 +42,7 @@ template <MachineModel M, BlockModel B>
   for (const auto& [phase, piece] : phases)
     if (phase.velocity == S(0) && phase.acceleration == S(0))
       add_rest(rests, {phase.time, phase.time + (phase.jerk == S(0) ? phase.duration : S(0))});
-  if (phases.empty() || ends_at_rest(phases.back().phase))
+  if (phases.empty() || phases.back().phase.ends_at_rest())
     add_rest(rests, {trajectory.duration(), trajectory.duration()});
   return rests;
 }
@@ -86,9 +79,7 @@ class TrajectoryChain {
     std::move(parts_.begin() + 1, parts_.begin() + static_cast<std::ptrdiff_t>(count_), parts_.begin());
     --count_;
   }
-  void clear() { count_ = 0; }
 
-  [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
   /// When a trajectory begins and ends, s.
   [[nodiscard]] S start_time(std::size_t part) const { return parts_[part].start; }
@@ -139,9 +130,7 @@ class TrajectoryChain {
   /// The number of the block that is driven at a time, of those of all trajectories.
   [[nodiscard]] std::int64_t number_at(S time) const {
     const Part& part = part_at(time);
-    const std::size_t phase = part.trajectory->phase_at(time - part.start);
-    return static_cast<std::int64_t>(part.trajectory->first_block() +
-                                     part.trajectory->block_of(part.trajectory->phases()[phase].piece));
+    return static_cast<std::int64_t>(part.trajectory->first_block() + block_in(part, time));
   }
   /// The highest speed from one time to another, mm/s; of some hundred phases at most.
   [[nodiscard]] S peak_between(S from, S to) const {
@@ -158,8 +147,7 @@ class TrajectoryChain {
   /// The block that is driven at a time.
   [[nodiscard]] const B& block_at(S time) const {
     const Part& part = part_at(time);
-    const std::size_t phase = part.trajectory->phase_at(time - part.start);
-    return part.trajectory->program()[part.trajectory->block_of(part.trajectory->phases()[phase].piece)];
+    return part.trajectory->program()[block_in(part, time)];
   }
 
   /// The first rest that is not over at a time; the last one that had begun before it. Nothing if there is
@@ -216,6 +204,11 @@ class TrajectoryChain {
     return i;
   }
   [[nodiscard]] const Part& part_at(S time) const { return parts_[part_number(time)]; }
+  // The block of a part's program that is driven at a time.
+  [[nodiscard]] static std::size_t block_in(const Part& part, S time) {
+    const std::size_t phase = part.trajectory->phase_at(time - part.start);
+    return part.trajectory->block_of(part.trajectory->phases()[phase].piece);
+  }
   [[nodiscard]] const Part& part_of(std::size_t phase) const {
     std::size_t i = count_ - 1;
     while (i > 0 && phase < parts_[i].first_phase) --i;

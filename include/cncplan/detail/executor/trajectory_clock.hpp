@@ -15,6 +15,7 @@
 #include "cncplan/detail/executor/clock_ramp.hpp"
 #include "cncplan/detail/executor/path_brake.hpp"
 #include "cncplan/detail/executor/trajectory_chain.hpp"
+#include "cncplan/reserve.hpp"
 #include "cncplan/state/detail/velocity_change.hpp"
 
 namespace cncplan::detail {
@@ -87,17 +88,7 @@ class TrajectoryClock {
 
   /// Asks for a brake with so many times the limits, until the axes stand.
   void brake_with(S share) {
-    M stronger = machine_;
-    const auto raise = [&](auto& limits) {
-      limits.acceleration *= share;
-      limits.jerk *= share;
-    };
-    raise(stronger.limits);
-    for (auto& axis : stronger.axes) {
-      raise(axis);
-      axis.acceleration_down *= share;
-    }
-    braked_ = ClockProof<M, B>(stronger);
+    braked_ = ClockProof<M, B>(with_forces(machine_, share));
     brakes_ = true;
     search_from(S(1));
   }

@@ -50,8 +50,7 @@ class SmoothPlanner {
 
   /// Plans what has to be planned before more blocks are pushed.
   [[nodiscard]] Expected<void, ProgramError> prepare(std::size_t more) {
-    if (blocks_.size() >= most_)
-      if (const auto ok = plan(false); !ok) return ok;
+    if (full()) return make_part(more);
     make_room(blocks_, more);
     return {};
   }
@@ -119,10 +118,7 @@ class SmoothPlanner {
     part.set_level(options_.level);
     part.set_fallbacks(std::move(fallbacks_));
     part.set_brakes(std::move(brakes_), longest_hold_);
-    fallbacks_.clear();
-    smoothing_.blocks.clear();
-    brakes_.clear();
-    longest_hold_ = time_ = S(0);
+    take_nothing();
     return part;
   }
 

@@ -141,7 +141,7 @@ class CurveSpeed {
     std::size_t knot = 0;
     for (std::size_t i = 1 + ends_.given; i + 1 < cells_.size() && !knots_.empty(); ++i) {
       const S before = last_speed(starts_[i], knot), after = last_speed(starts_[i] + cells_[i].length, knot);
-      cells_[i].skew = std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
+      cells_[i].skew = skew_between(before, after);
     }
     set_scales();
     const std::size_t n = cells_.size();
@@ -382,14 +382,7 @@ class CurveSpeed {
       for (std::size_t k = 0; k < left_out; ++k) law_[--to] = speed_sq;
     }
     const S slow_down = plan.slow_down;
-    plan.utilisation = {};
-    emit_phases(std::span<const Cell>(cells_), law(), plan.start, plan.end,
-                [&](std::size_t cell, const BasicPhase<S>& phase) {
-                  if (options_.window.proven)
-                    plan.utilisation.include(utilisation_of(phase, cells_[cell], limits_));
-                  plan.duration = phase.time + phase.duration;
-                });
-    plan.slow_down = std::max(S(1), plan.utilisation.slow_down());
+    add_up(plan, std::span<const Cell>(cells_), law(), limits_, options_.window.proven);
     if (plan.slow_down > slow_down) return std::nullopt;
     return plan;
   }
@@ -413,10 +406,7 @@ class CurveSpeed {
 
   // The speed of the last plan at a place; `knot` goes on from call to call.
   [[nodiscard]] S last_speed(S at, std::size_t& knot) const {
-    while (knot + 2 < knots_.size() && knots_[knot + 1].first < at) ++knot;
-    const auto [from, slow] = knots_[knot];
-    const auto [to, fast] = knots_[std::min(knot + 1, knots_.size() - 1)];
-    return to > from ? slow + std::clamp((at - from) / (to - from), S(0), S(1)) * (fast - slow) : slow;
+    return speed_between(std::span<const std::pair<S, S>>(knots_), knot, at);
   }
 
   // So short that what motion from rest has come to at its end is well below what the cells near by allow.

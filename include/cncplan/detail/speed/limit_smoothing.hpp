@@ -30,21 +30,12 @@ class BasicLimitSmoothing {
   /// The limits for the next cell, of such a length, in place of its own. A cell that `begins` a motion has
   /// nothing in common with those before.
   [[nodiscard]] BasicLimits<S> next(const BasicLimits<S>& own, S length, bool begins = false) {
-    if (begins) return begin(own);
-    return go_on(own, length);
-  }
-
- private:
-  BasicLimits<S> begin(const BasicLimits<S>& own) {
-    level_ = own;
-    lost_ = S(0);
-    return own;
-  }
-
-  BasicLimits<S> go_on(const BasicLimits<S>& own, S length) {
-    if (far(level_.velocity, own.velocity) || far(level_.acceleration, own.acceleration) ||
-        far(level_.jerk, own.jerk))
-      return begin(own);
+    if (begins || far(level_.velocity, own.velocity) || far(level_.acceleration, own.acceleration) ||
+        far(level_.jerk, own.jerk)) {
+      level_ = own;
+      lost_ = S(0);
+      return own;
+    }
     level_.acceleration = std::min(level_.acceleration, own.acceleration);
     level_.jerk = std::min(level_.jerk, own.jerk);
     lost_ += length / level_.velocity - length / own.velocity;
@@ -54,6 +45,7 @@ class BasicLimitSmoothing {
     return level_;
   }
 
+ private:
   static bool far(S a, S b) { return !(std::max(a, b) <= most_apart * std::min(a, b)); }
 
   BasicLimits<S> level_{};

@@ -124,6 +124,18 @@ struct BasicSpeedEnds {
   std::size_t given{};
 };
 
+/// The duration of a plan by its law, and what the phases use of the limits, if that is to be proven.
+template <std::floating_point S, int N>
+void add_up(BasicSpeedPlan<S>& plan, std::span<const BasicSpeedCell<S, N>> cells, std::span<const S> law,
+            const BasicMotionLimits<S, N>& limits, bool proven) {
+  plan.utilisation = {};
+  emit_phases(cells, law, plan.start, plan.end, [&](std::size_t cell, const BasicPhase<S>& phase) {
+    if (proven) plan.utilisation.include(utilisation_of(phase, cells[cell], limits));
+    plan.duration = phase.time + phase.duration;
+  });
+  plan.slow_down = std::max(S(1), plan.utilisation.slow_down());
+}
+
 /// Plans the speed over cells of which the first and the last, short ones, are those in which motion leaves
 /// rest and comes to it; where it begins or ends at a speed, they have no length.
 template <std::floating_point S, int N>
@@ -231,13 +243,7 @@ template <std::floating_point S, int N>
     }
     k = end;
   }
-  emit_phases(cells, std::span<const S>(law), plan.start, plan.end,
-              [&](std::size_t cell, const BasicPhase<S>& phase) {
-                if (options.window.proven)
-                  plan.utilisation.include(utilisation_of(phase, cells[cell], limits));
-                plan.duration = phase.time + phase.duration;
-              });
-  plan.slow_down = std::max(S(1), plan.utilisation.slow_down());
+  add_up(plan, cells, std::span<const S>(law), limits, options.window.proven);
   return plan;
 }
 

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "cncplan/core/compiler.hpp"
 #include "cncplan/core/phase.hpp"
@@ -26,6 +27,22 @@ struct BasicCellShape {
   /// From there to the end.
   [[nodiscard]] constexpr S from_middle() const { return length * (S(0.5) - skew / S(6)); }
 };
+
+/// The skew of a cell in which the speed goes from one to another at a constant jerk.
+template <std::floating_point S>
+[[nodiscard]] constexpr S skew_between(S before, S after) {
+  return std::clamp((before - after) / (before + after), S(-0.5), S(0.5));
+}
+
+/// A speed at a length, between places with speeds in order; `place` goes on from call to call with lengths
+/// that grow.
+template <std::floating_point S>
+[[nodiscard]] S speed_between(std::span<const std::pair<S, S>> places, std::size_t& place, S at) {
+  while (place + 2 < places.size() && places[place + 1].first < at) ++place;
+  const auto [from, slow] = places[place];
+  const auto [to, fast] = places[std::min(place + 1, places.size() - 1)];
+  return to > from ? slow + std::clamp((at - from) / (to - from), S(0), S(1)) * (fast - slow) : slow;
+}
 
 /// b(s) = v^2 within one cell, mm^2/s^2, by its values at both ends and where the tangents there meet. Along
 /// the path the acceleration is b'/2 and the jerk sqrt(b) b''/2.
