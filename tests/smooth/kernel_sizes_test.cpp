@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/fit_sizes.hpp"
 #include "support/no_heap.hpp"
 #include "support/random.hpp"
 
@@ -95,7 +96,7 @@ TEST_CASE("a lone kernel is as large as wanted, has room for, or may be", "[smoo
                       .tolerance = 0.01};
   const auto fitted = [](Sizing sizing) {
     std::vector<Sizing> all{sizing};
-    detail::fit_sizes(std::span(all), tolerances);
+    test::fit_sizes(std::span(all), tolerances);
     return all[0].size;
   };
   CHECK(fitted(corner) == Approx(0.01 / (28.0 / 120 * 1.4)));
@@ -157,7 +158,7 @@ TEST_CASE("kernels that overlap stay within the tolerance together, and so do an
       if (kinds != 1) add(Jump::direction);
       if (kinds != 0) add(Jump::curvature);
     }
-    detail::fit_sizes(std::span(all), tolerances);
+    test::fit_sizes(std::span(all), tolerances);
     INFO(pasteable(all));
     for (const Sizing& own : all) {
       REQUIRE(own.size > 0);
@@ -192,7 +193,7 @@ TEST_CASE("kernels to and fro are as large as those one way are by themselves", 
                      .wanted = 10,
                      .room = 1.6,
                      .tolerance = 0.01});
-    detail::fit_sizes(std::span(all), tolerances);
+    test::fit_sizes(std::span(all), tolerances);
     return all[all.size() / 2].size;
   };
   CHECK(size_of(1, -1) == Approx(size_of(2, 1)).epsilon(1e-12));
@@ -204,5 +205,5 @@ TEST_CASE("sizes are found without the heap", "[smooth]") {
       100,
       Sizing{.jump = Jump::direction, .step = {0.5, 0, 0, 0, 0}, .wanted = 1, .room = 5, .tolerance = 0.01});
   for (std::size_t i = 0; i < all.size(); ++i) all[i].at = static_cast<double>(i) * 0.1;
-  CHECK(test::heap_allocations_of([&] { detail::fit_sizes(std::span(all), tolerances); }) == 0);
+  CHECK(test::heap_allocations_of([&] { test::fit_sizes(std::span(all), tolerances); }) == 0);
 }

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <thread>
 
+#include "cncplan/core/detail/ring_places.hpp"
 #include "cncplan/detail/executor/block_ring.hpp"
-#include "cncplan/detail/executor/ring_places.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 

@@ -7,11 +7,9 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
-#include <utility>
 
 #include "cncplan/core/detail/long_length.hpp"
 #include "cncplan/core/in_space.hpp"
-#include "cncplan/core/progress.hpp"
 #include "cncplan/core/vector.hpp"
 #include "cncplan/detail/curve/kernel.hpp"
 
@@ -36,10 +34,10 @@ struct BasicSizing {
   S room{};                                    ///< mm on each side that it may reach
   S tolerance{};                               ///< mm, > 0: how far the tool may leave the path here
   S left = 1;  ///< share of the tolerances of rotary axes that there is here, > 0
-  S tool{};    ///< length of the jump in space; by `fit_sizes`
-  S widest{};  ///< mm, of the kernel if it were alone; by `fit_sizes`
-  S sum{};     ///< what the widest kernels may deviate here, over the tolerance; by `fit_sizes`
-  S size{};    ///< mm, by `fit_sizes`
+  S tool{};    ///< length of the jump in space; by `set_widest`
+  S widest{};  ///< mm, of the kernel if it were alone; by `set_widest`
+  S sum{};     ///< what the widest kernels may deviate here, over the tolerance: `deviation_sum`
+  S size{};    ///< mm: `fitted_size`
 };
 
 /// Kernels reach over no more than so many junctions on each side: what bounds the work for one.
@@ -142,31 +140,6 @@ template <std::floating_point S, int N>
     if (all[j].sum > S(1) && distance_at(all, i, j) < reach<S>(all[i].jump))
       size = std::min(size, all[i].widest / all[j].sum);
   return size;
-}
-
-/// Finds the sizes for corrections in order of their places, at most two at one: as large as wanted, as there
-/// is room for, and as the tolerance allows where kernels overlap.
-template <std::floating_point S, int N>
-void fit_sizes(std::span<BasicSizing<S, N>> all, const BasicAxisTolerances<S, N>& axes,
-               const Progress& progress = {}) {
-  constexpr std::size_t window = 2 * most_neighbours + 1;
-  const auto around = [&](std::size_t j) {
-    const std::size_t first = j > window ? j - window : 0;
-    return std::pair(
-        std::span<const BasicSizing<S, N>>(all).subspan(first, std::min(j + window + 1, all.size()) - first),
-        j - first);
-  };
-  for (BasicSizing<S, N>& own : all) set_widest(own, axes);
-  for (std::size_t j = 0; j < all.size(); ++j) {
-    constexpr std::size_t seldom = 256;  // some milliseconds
-    if (j % seldom == 0) progress.reach(static_cast<double>(j) / static_cast<double>(all.size()));
-    const auto [near, at] = around(j);
-    all[j].sum = deviation_sum(near, at, axes);
-  }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto [near, at] = around(i);
-    all[i].size = fitted_size(near, at);
-  }
 }
 
 }  // namespace cncplan::detail

@@ -3,31 +3,25 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
-#include <limits>
+#include <cstdint>
 #include <memory_resource>
 #include <span>
 #include <vector>
 
 #include "cncplan/block.hpp"
 #include "cncplan/core/detail/long_length.hpp"
-#include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/core/progress.hpp"
-#include "cncplan/detail/curve/kernel_sizes.hpp"
-#include "cncplan/detail/curve/smooth_junction.hpp"
 #include "cncplan/detail/curve/smoothed.hpp"
+#include "cncplan/detail/curve/smoothing_ahead.hpp"
 
 namespace cncplan::detail {
 
 /// The corrections of a program, and those of them that act on each block.
 template <std::floating_point S, int N>
 struct BasicSmoothing {
-  struct OfBlock {
-    std::size_t first{};  ///< of the corrections
-    std::size_t count{};
-    LongLength<S> start{};  ///< mm from the start of the program, as the corrections are counted
-    JunctionMode junction_mode = JunctionMode::exact;
-  };
+  using OfBlock = BasicBlockSmoothing<S>;
 
   std::pmr::vector<BasicCorrection<S, N>> corrections;  ///< in order
   std::pmr::vector<OfBlock> blocks;                     ///< empty where nothing is smoothed
@@ -48,166 +42,91 @@ struct BasicSmoothing {
   }
 };
 
-/// Makes the corrections of a program, one part from rest to rest after the other.
-template <MachineModel M, BlockModel B>
-class Smoother {
- public:
-  using S = typename M::Scalar;
-  static constexpr int n = M::axis_count;
-  using Result = BasicSmoothing<S, n>;
-
-  Smoother(std::span<const B> blocks, const M& machine, const SmoothingRules<S>& rules,
-           std::pmr::memory_resource* memory, const Progress& progress)
-      : blocks_(blocks),
-        machine_(machine),
-        rules_(rules),
-        progress_(progress),
-        axes_(axis_tolerances(machine, rules)),
-        result_(memory),
-        moving_(memory),
-        sizings_(memory),
-        junctions_(memory) {}
-
-  [[nodiscard]] Result run() {
-    result_.blocks.resize(blocks_.size());
-    LongLength<S> place{};
-    bool rests = true;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const B& block = blocks_[i];
-      auto& own = result_.blocks[i];
-      own.start = place;
-      if (block.path.length() > S(0)) {
-        own.junction_mode =
-            rests ? JunctionMode::stop : junction_mode_between(blocks_[last_], block, machine_, rules_);
-        if (own.junction_mode != JunctionMode::smooth) finish(place);
-        if (rests || !blocks_[last_].straight_on) {
-          if (own.junction_mode == JunctionMode::smooth) add_junction(last_, i);
-          moving_.push_back(i);
-        }
-        last_ = i;
-        rests = false;
-        place += block.path.length();
-      }
-      rests = rests || block.exact_stop || block.pause > S(0);
-    }
-    finish(place);
-    return std::move(result_);
-  }
-
- private:
-  // A line that begins with a block.
-  [[nodiscard]] BasicBeside<S> beside(std::size_t first) const {
-    S length = blocks_[first].path.length();
-    for (std::size_t i = first; i < last_ && blocks_[i].straight_on; ++i)
-      length += blocks_[i + 1].path.length();
-    return {length, top_limits(blocks_[first], machine_)};
-  }
-
-  void add_junction(std::size_t before, std::size_t behind) {
-    const S speed = std::min(top_limits(blocks_[before], machine_).velocity,
-                             top_limits(blocks_[behind], machine_).velocity);
-    for (const auto& jump :
-         jumps_between(blocks_[before], blocks_[behind], result_.blocks[behind].start, speed, machine_)) {
-      sizings_.push_back(jump);
-      junctions_.push_back(moving_.size());
-    }
-  }
-
-  // Corrections of the part that ends here, and which of its blocks each acts on.
-  void finish(LongLength<S> end) {
-    if (!sizings_.empty()) {
-      set_rooms(end);
-      const auto all = static_cast<double>(blocks_.size());
-      fit_sizes(std::span(sizings_), axes_,
-                progress_.part(static_cast<double>(moving_.front()) / all, static_cast<double>(last_) / all));
-      for (std::size_t i = 0; i < sizings_.size(); ++i) {
-        auto& behind = result_.blocks[moving_[junctions_[i]]];
-        if (rests_at(i)) behind.junction_mode = JunctionMode::stop;
-        if (behind.junction_mode == JunctionMode::stop) continue;  // jumps do no harm at rest
-        result_.corrections.push_back({sizings_[i].at, sizings_[i].size, sizings_[i].jump, sizings_[i].step});
-        reach_blocks(result_.corrections.size() - 1, junctions_[i]);
-      }
-      sizings_.clear();
-      junctions_.clear();
-    }
-    moving_.clear();
-  }
-
-  [[nodiscard]] LongLength<S> start_of(std::size_t moving, LongLength<S> end) const {
-    return moving < moving_.size() ? result_.blocks[moving_[moving]].start : end;
-  }
-
-  // Room to the rests on both sides and to the farthest neighbours; the lowest tolerance next to each.
-  void set_rooms(LongLength<S> end) {
-    for (std::size_t i = 0; i < sizings_.size(); ++i) {
-      auto& sizing = sizings_[i];
-      const std::size_t at = junctions_[i];  // the block behind
-      const std::size_t left = at > most_neighbours ? at - most_neighbours : 0;
-      const std::size_t right = std::min(at + most_neighbours, moving_.size());
-      sizing.room = std::min(sizing.at - start_of(left, end), start_of(right, end) - sizing.at);
-      std::size_t from = left, to = right;
-      for (std::size_t k = i; k-- > 0 && from == left && junctions_[k] > left;)
-        if (junctions_[k] < at) from = junctions_[k];
-      for (std::size_t k = i + 1; k < sizings_.size() && to == right && junctions_[k] < right; ++k)
-        if (junctions_[k] > at) to = junctions_[k];
-      sizing.tolerance = std::numeric_limits<S>::infinity();
-      for (std::size_t k = from; k < to; ++k) {
-        const B& block = blocks_[moving_[k]];
-        sizing.tolerance = std::min(sizing.tolerance, tolerance_of(block, rules_));
-        sizing.left = std::min(sizing.left, S(1) - block.merged);
-      }
-    }
-  }
-
-  [[nodiscard]] bool rests_at(std::size_t i) const {
-    const std::size_t behind = junctions_[i];
-    return faster_at_rest(sizings_[i], beside(moving_[behind - 1]), beside(moving_[behind]));
-  }
-
-  void reach_blocks(std::size_t correction, std::size_t junction) {
-    const auto& own = result_.corrections[correction];
-    const S support = own.support();
-    const LongLength<S> from = own.at - support, to = own.at + support;
-    const auto act_on = [&](std::size_t i) {
-      auto& block = result_.blocks[i];
-      if (block.count == 0) block.first = correction;
-      block.count = correction + 1 - block.first;
-    };
-    const auto moves = [&](std::size_t i) { return blocks_[i].path.length() > S(0); };
-    const std::size_t behind = moving_[junction];
-    for (std::size_t i = behind; i-- > moving_.front();) {
-      if (!moves(i)) continue;
-      act_on(i);
-      if (!(result_.blocks[i].start > from)) break;
-    }
-    for (std::size_t i = behind; i <= last_; ++i) {
-      if (!moves(i)) continue;
-      if (i > behind && !(result_.blocks[i].start < to)) break;
-      act_on(i);
-    }
-  }
-
-  std::span<const B> blocks_;
-  const M& machine_;
-  SmoothingRules<S> rules_;
-  const Progress progress_;
-  BasicAxisTolerances<S, n> axes_;
-  Result result_;
-  // Of the part that is open: blocks that move, of a merged line the first.
-  std::pmr::vector<std::size_t> moving_;
-  std::size_t last_ = 0;  // block of it that moves
-  std::pmr::vector<BasicSizing<S, n>> sizings_;
-  std::pmr::vector<std::size_t> junctions_;  // of each, the block behind it among those that move
-};
-
 /// The corrections of a program. Its junctions are smoothed but for those at rests, at blocks that are to be
-/// exact, where the unit of length changes, and where the tool turns back.
+/// exact, where the unit of length changes, and where the tool turns back. Blocks go through `SmoothingAhead`
+/// as they do in an executor.
 template <MachineModel M, BlockModel B>
   requires EnclosedPath<typename B::Path>
 [[nodiscard]] BasicSmoothing<typename M::Scalar, M::axis_count> smoothing(
     std::span<const B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules,
     std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
-  return Smoother<M, B>(blocks, machine, rules, memory, progress).run();
+  using S = typename M::Scalar;
+  using Ahead = SmoothingAhead<M, B>;
+  constexpr std::size_t kept = std::bit_ceil(4 * most_neighbours + 3);
+  std::pmr::vector<SmoothingRoom<M, B, kept, most_neighbours>> room(1, memory);
+  Ahead ahead(rules, machine, room.front().memory());
+  BasicSmoothing<S, M::axis_count> result(memory);
+  result.blocks.resize(blocks.size());
+  std::pmr::vector<std::size_t> lines(memory);  // the first block of each, where a line is merged or not
+  // The next block of a merged line.
+  const auto next_of = [&](std::size_t i) {
+    if (!blocks[i].straight_on) return blocks.size();
+    do ++i;
+    while (i < blocks.size() && !(blocks[i].path.length() > S(0)));
+    return i;
+  };
+  std::int64_t told = 0;
+  const std::span corrections(room.front().corrections);  // each of them stands there twice
+  std::size_t slot = 0;                                   // of the next one
+  const auto take = [&] {
+    for (; told < ahead.known(); ++told) {
+      auto own = ahead.of_block(told);
+      // The wider one of two at a junction acts on blocks on which the one before it does not.
+      const auto places = static_cast<std::ptrdiff_t>(corrections.size() / 2);
+      auto behind = static_cast<std::ptrdiff_t>(own.first) - static_cast<std::ptrdiff_t>(slot);
+      if (behind > places / 2) behind -= places;
+      if (behind < -places / 2) behind += places;
+      const auto there = static_cast<std::ptrdiff_t>(result.corrections.size());
+      const std::ptrdiff_t more = behind + static_cast<std::ptrdiff_t>(own.count);
+      if (own.count > 0) own.first = static_cast<std::size_t>(there + behind);
+      if (own.count > 0 && more > 0) {
+        const auto next = corrections.subspan(slot, static_cast<std::size_t>(more));
+        result.corrections.insert(result.corrections.end(), next.begin(), next.end());
+        slot = (slot + next.size()) % static_cast<std::size_t>(places);
+      }
+      for (std::size_t i = lines[static_cast<std::size_t>(told)]; i < blocks.size(); i = next_of(i)) {
+        auto& block = result.blocks[i] = own;
+        own.start += blocks[i].path.length();
+        own.junction_mode = JunctionMode::smooth;
+        // Those of the line that reach this block.
+        const auto* acting = result.corrections.data() + block.first;
+        for (; block.count > 0 && !(acting->at + acting->support() > block.start); --block.count)
+          ++acting, ++block.first;
+        while (block.count > 0 &&
+               !(acting[block.count - 1].at - acting[block.count - 1].support() < own.start))
+          --block.count;
+      }
+    }
+  };
+  const auto finish = [&] {
+    while (ahead.ends()) ahead.work();
+    take();
+  };
+  std::size_t goes_on = 0;  // the block that is part of the last line
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    constexpr std::size_t seldom = 256;  // some milliseconds
+    if (i % seldom == 0) progress.reach(static_cast<double>(i) / static_cast<double>(blocks.size()));
+    const B& block = blocks[i];
+    if (!(block.path.length() > S(0))) {
+      if (block.exact_stop || block.pause > S(0)) ahead.end_part();
+    } else if (i > 0 && i == goes_on) {
+      ahead.extend(block);
+      goes_on = next_of(i);
+    } else {
+      S length = S(0);
+      for (std::size_t k = i; k < blocks.size(); k = next_of(k)) length += blocks[k].path.length();
+      lines.push_back(i);
+      if (!ahead.push(block, machine, length)) {
+        finish();
+        ahead.push(block, machine, length);
+      }
+      goes_on = next_of(i);
+    }
+    finish();
+  }
+  ahead.end_part();
+  finish();
+  return result;
 }
 
 }  // namespace cncplan::detail

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "cncplan/detail/executor/ring_places.hpp"
+#include "cncplan/core/detail/ring_places.hpp"
 #include "cncplan/detail/executor/shared_count.hpp"
 #include "cncplan/detail/speed/segment_limits.hpp"
 

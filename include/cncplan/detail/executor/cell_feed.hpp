@@ -16,10 +16,10 @@
 
 #include "cncplan/detail/curve/merge_lines.hpp"
 #include "cncplan/detail/curve/smooth_junction.hpp"
+#include "cncplan/detail/curve/smoothing_ahead.hpp"
 #include "cncplan/detail/executor/block_ring.hpp"
 #include "cncplan/detail/executor/nearest.hpp"
 #include "cncplan/detail/executor/shared_count.hpp"
-#include "cncplan/detail/executor/smoothing_ahead.hpp"
 #include "cncplan/detail/speed/cell_maker.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
 #include "cncplan/junction/deviation.hpp"

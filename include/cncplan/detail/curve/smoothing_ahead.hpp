@@ -10,20 +10,29 @@
 
 #include "cncplan/block.hpp"
 #include "cncplan/core/detail/long_length.hpp"
+#include "cncplan/core/detail/ring_places.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/detail/curve/correction.hpp"
 #include "cncplan/detail/curve/junction_mode.hpp"
 #include "cncplan/detail/curve/kernel_sizes.hpp"
 #include "cncplan/detail/curve/smooth_junction.hpp"
 #include "cncplan/detail/curve/smoothed.hpp"
-#include "cncplan/detail/executor/ring_places.hpp"
 
 namespace cncplan::detail {
 
-/// The corrections of a program, as `smoothing` finds them, for blocks of which only the last ones are kept.
-/// Kernels reach over no more than `neighbours` blocks on each side, so a block's path is known once
-/// `4 neighbours + 2` blocks that move have followed, or none will without a rest. Bounded work in each call:
-/// the sums over `4 neighbours` kernels, and the limits of one block.
+/// How a block is driven.
+template <std::floating_point S>
+struct BasicBlockSmoothing {
+  std::size_t first{};    ///< of the corrections that act on it: its place among those that are kept
+  std::size_t count{};    ///< of them
+  LongLength<S> start{};  ///< mm from the start of the program
+  JunctionMode junction_mode = JunctionMode::exact;
+};
+
+/// The corrections of a program, for blocks of which only the last ones are kept. Kernels reach over no more
+/// than `neighbours` blocks on each side, so a block's path is known once `4 neighbours + 2` blocks that move
+/// have followed, or none will without a rest. Bounded work in each call: the sums over `4 neighbours`
+/// kernels, and the limits of one block.
 ///
 /// One thread pushes. What it has told as known stays as it is while the block is kept.
 template <MachineModel M, BlockModel B>
@@ -37,13 +46,7 @@ class SmoothingAhead {
   /// Whether blocks of this kind can be smoothed.
   static constexpr bool possible = EnclosedPath<typename B::Path> && !MappedModel<M>;
 
-  /// How a block is driven.
-  struct OfBlock {
-    std::size_t first{};         ///< of the corrections: its place in memory
-    std::size_t count{};         ///< of them
-    LongLength<Scalar> start{};  ///< mm from the start of the part from rest to rest
-    JunctionMode junction_mode = JunctionMode::exact;
-  };
+  using OfBlock = BasicBlockSmoothing<Scalar>;
   /// A block that moves, and the junction at its start.
   struct Mover {
     std::int64_t number{};
@@ -75,6 +78,13 @@ class SmoothingAhead {
   /// Takes the next block, which is to stay until it is not asked for any more. `line` is the length of the
   /// merged line that begins with it, else its own. False, and nothing done, while a part ends: `work` first.
   bool push(const B& block, const M& machine, Scalar line);
+  /// Takes a block that goes straight on from the last one, as a part of it: where kernels reach over no more
+  /// than so many neighbours, it is none. `line` of that one counts it too.
+  void extend(const B& block) {
+    place_ += block.path.length();
+    last_ = &block;
+    if (block.exact_stop || block.pause > Scalar(0)) end_part();
+  }
   /// Behind what has been pushed the motion rests: `work` finds how it comes there.
   void end_part() {
     rests_ = true;
@@ -90,17 +100,25 @@ class SmoothingAhead {
   /// Of how many blocks it is known how they are driven.
   [[nodiscard]] std::int64_t known() const { return known_ == end_ ? pushed_ : mover(known_).number; }
   [[nodiscard]] std::int64_t pushed() const { return pushed_; }
-  /// How the motion passes the start of a block that is known, and the path that is driven in its place.
+  // Of a block that is known.
+
+  [[nodiscard]] const OfBlock& of_block(std::int64_t number) const {
+    return memory_.blocks[static_cast<std::size_t>(number) & (memory_.blocks.size() - 1)];
+  }
+  /// Those that act on it, in order.
+  [[nodiscard]] std::span<const Correction> corrections(std::int64_t number) const {
+    return memory_.corrections.subspan(of_block(number).first, of_block(number).count);
+  }
+  /// How the motion passes its start, and the path that is driven in its place.
   [[nodiscard]] JunctionMode junction_mode(std::int64_t number) const {
     return of_block(number).junction_mode;
   }
   [[nodiscard]] Driven driven(const B& block, std::int64_t number, const std::array<int, 3>& tool) const {
-    const OfBlock& own = of_block(number);
-    return {block.path, memory_.corrections.subspan(own.first, own.count), own.start, tool};
+    return {block.path, corrections(number), of_block(number).start, tool};
   }
 
  private:
-  [[nodiscard]] OfBlock& of_block(std::int64_t number) const {
+  [[nodiscard]] OfBlock& place_of(std::int64_t number) {
     return memory_.blocks[static_cast<std::size_t>(number) & (memory_.blocks.size() - 1)];
   }
   [[nodiscard]] Mover& mover(std::int64_t i) const { return memory_.movers[places_(i)]; }
@@ -123,7 +141,7 @@ class SmoothingAhead {
   const B* last_ = nullptr;     // that moves
   bool rests_ = true;           // behind it
   bool ends_ = false;           // the part takes no more blocks
-  LongLength<Scalar> place_{};  // mm from the start of the part to its end so far
+  LongLength<Scalar> place_{};  // mm from the start of the program to its end so far
   std::int64_t pushed_ = 0;
   // Blocks that move: the first one of the part, and how far each step has come.
   std::int64_t begin_ = 0, end_ = 0, widest_ = 0, summed_ = 0, sized_ = 0, known_ = 0;
@@ -162,14 +180,14 @@ bool SmoothingAhead<M, B>::push(const B& block, const M& machine, Scalar line) {
         }
         add(block, junction_mode, machine, line);
       } else {
-        of_block(pushed_) = {};
+        place_of(pushed_) = {};
       }
       ++pushed_;
       if (block.exact_stop || block.pause > Scalar(0)) end_part();
       return true;
     }
   }
-  of_block(pushed_++) = {};
+  place_of(pushed_++) = {};
   return true;
 }
 
@@ -180,7 +198,6 @@ void SmoothingAhead<M, B>::work() {
   if (known_ < end_) return;
   begin_ = end_;
   sizings_end_ = 0;
-  place_ = {};
   ends_ = false;
 }
 
@@ -251,7 +268,7 @@ void SmoothingAhead<M, B>::advance(int most) {
     for_each_sizing(at, [](auto& sizing, auto near, std::size_t i) { sizing.size = fitted_size(near, i); });
     correct(at);
   });
-  step(known_, sized_, reach(), [this](std::int64_t at) { of_block(mover(at).number) = mover(at).own; });
+  step(known_, sized_, reach(), [this](std::int64_t at) { place_of(mover(at).number) = mover(at).own; });
 }
 
 // Calls visit(sizing, those near it, which of them it is) for each of a junction.
