@@ -302,3 +302,58 @@ TEST_CASE("executor levels: half of the feed takes twice the time", "[executor-l
   };
   CHECK(time_at(0.5) == Approx(2 * time_at(1)).margin(3 * period));
 }
+
+TEST_CASE("executor levels: a rapid behind a feed begins at its own share, and a feed behind a rapid",
+          "[executor-levels]") {
+  Random random;
+  struct Shares {
+    double feed{}, rapid{};
+  };
+  for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best})
+    for (const std::string corner : {"X80", "X70 Y25", "X55 Y35 Z4"})
+      for (const Shares shares :
+           {Shares{1, 0.2}, {1, 0.5}, {0.3, 1}, {0.5, 1}, {0.2, 0.6}, {1, 0}, {0.8, 0.1}}) {
+        const int asked = random.integer(0, 1) == 0 ? 0 : static_cast<int>(random.integer(1, 1200));
+        CAPTURE(level, corner, shares.feed, shares.rapid, asked);
+        const MillBlocks blocks = blocks_of("F1200\nG1 X40\nG0 " + corner + "\nG1 X120 Y50\n");
+        const auto executor = runner({.level = level});
+        std::size_t fed = 0;
+        double above = 0, x = 0;
+        int tick = 0;
+        for (; tick < 60000 && !executor->finished(); ++tick) {
+          feed(*executor, blocks, fed);
+          if (tick == asked) executor->feed_override(shares.feed), executor->rapid_override(shares.rapid);
+          const auto now = executor->tick(period);
+          const double most = now.line == 3 ? 30 * shares.rapid : 20 * shares.feed;
+          if (tick > asked + 400) above = std::max(above, now.velocity.norm() - most);
+          if (shares.rapid == 0 && tick == 6000) {
+            CHECK(executor->state() == ExecutorState::held);
+            CHECK(now.position.x() <= 40);
+            CHECK(now.position.x() > 39);
+            break;
+          }
+          x = now.position.x();
+        }
+        CHECK(above < 0.01);
+        if (shares.rapid == 0) continue;
+        CHECK(executor->finished());
+        CHECK(x == Approx(120));
+      }
+}
+
+TEST_CASE("executor levels: what stands before a rapid without speed goes on once it has one",
+          "[executor-levels]") {
+  const MillBlocks blocks = blocks_of("F1200\nG1 X40\nG0 X80\nG1 X120\n");
+  const auto executor = runner();
+  std::size_t fed = 0;
+  executor->rapid_override(0);
+  double x = 0;
+  for (int tick = 0; tick < 60000 && !executor->finished(); ++tick) {
+    feed(*executor, blocks, fed);
+    if (tick == 4000) executor->rapid_override(1);
+    x = executor->tick(period).position.x();
+    if (tick < 4000) CHECK(x <= 40);
+  }
+  CHECK(executor->finished());
+  CHECK(x == Approx(120));
+}

@@ -23,6 +23,7 @@ struct ClockedTrajectory {
   struct Begin {
     S time{};  ///< s
     int line{};
+    bool rapid{};
   };
   struct Word {
     S time{};  ///< s
@@ -43,7 +44,7 @@ struct ClockedTrajectory {
       const S time = trajectory.start_time(i);
       if (blocks[i].word.letter != '\0') words.push_back({time, blocks[i].word});
       if (blocks[i].path.length() > S(0) && trajectory.first_block() + i != begun)
-        begins.push_back({time, blocks[i].line});
+        begins.push_back({time, blocks[i].line, blocks[i].rapid});
     }
     std::ranges::stable_sort(words, {}, &Word::time);
   }

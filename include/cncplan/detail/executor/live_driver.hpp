@@ -166,11 +166,11 @@ class LiveDriver final : public LevelDriver<M, B> {
     clock_ = Clock(machine_);
     oldest_ = seen_ = told_part_ = 0;
     told_ = 0;
-    tail_ahead_ = tells_tail_ = stopped_ = program_holds_ = backwards_ = false;
+    tail_ahead_ = tells_tail_ = stopped_ = program_holds_ = backwards_ = rests_before_ = false;
     rested_ = quiet_ = S(0);
     feed_rate_ = S(1);
     pushed_before_ = 0;
-    passed_ = -infinity;
+    passed_ = slower_from_ = -infinity;
     return true;
   }
 
@@ -179,7 +179,8 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
   static constexpr std::int64_t parts_behind = 3;
-  static constexpr S same_time = S(1e-9);    // s
+  static constexpr S same_time = S(1e-9);  // s
+  static constexpr S rounding = S(1e-6);
   static constexpr S time_to_plan = S(0.5);  // s of motion that is left when blocks go on without others
 
   // A part that is in the chain.
@@ -218,9 +219,14 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Whether a feed or a rapid of no speed is asked for where it is.
   [[nodiscard]] bool no_speed() const {
     if (clock_.chain().empty()) return !(feed_share_ > S(0));
-    const bool rapid = clock_.chain().block_at(clock_.state().position).rapid;
-    return !((rapid ? rapid_share_ : feed_share_) > S(0));
+    const auto none_at = [&](S time) {
+      return !((clock_.chain().block_at(time).rapid ? rapid_share_ : feed_share_) > S(0));
+    };
+    const S now = clock_.state().position;
+    return none_at(now) || (comes_down(now) && none_at(slower_from_));
   }
+  // Whether the rate is that of a block ahead, which is lower.
+  [[nodiscard]] bool comes_down(S now) const { return !backwards_ && now < slower_from_; }
   // Whether it is to run back, and stands where the way that is kept begins.
   [[nodiscard]] bool nothing_behind() const {
     return backwards_ && !clock_.chain().empty() && !(clock_.state().position > clock_.chain().start_time(0));
@@ -303,6 +309,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!clock_.chain().empty()) {
       const S now = clock_.state().position;
       share = clock_.chain().block_at(now).rapid ? rapid_share_ : rate_of_feed(now);
+      if (comes_down(now)) share = rests_before_ ? S(0) : std::min(share, lowest_share(slower_from_));
     }
     return backwards_ ? -std::min(share, S(1)) : pauses() ? std::min(share, S(1)) : share;
   }
@@ -317,6 +324,10 @@ class LiveDriver final : public LevelDriver<M, B> {
     const S rate = std::clamp(low * feed / clock_.chain().peak_between(now, now + window), low, S(1));
     feed_rate_ = rate > worth_it * feed_rate_ ? rate : std::min(rate, std::max(feed_rate_, low));
     return std::min(feed_share_, S(1)) * feed_rate_;
+  }
+  // The rate on the block that is driven at a time, no more.
+  [[nodiscard]] S lowest_share(S time) {
+    return clock_.chain().block_at(time).rapid ? rapid_share_ : feed_share_ / planned_share(time);
   }
   // Of its feed, by which the block is planned that is driven at a time.
   [[nodiscard]] S planned_share(S time) {
@@ -335,7 +346,12 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (tail_ahead_ && !clock_.heads_back() &&
         clock_.state().position + std::max(clock_.state().velocity, S(1)) * left >= cut_)
       take_tail();
-    if (!clock_.standing()) brake_for_pause(period);
+    if (clock_.standing()) {
+      rests_before_ = false;
+    } else {
+      brake_for_pause(period);
+      slow_for_next(period);
+    }
     const S before = left;
     const bool stood = clock_.standing();
     const bool goes_on = clock_.step(
@@ -375,30 +391,78 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!pauses() || held_ || stopped_) return;
     const auto pause = next_pause();
     if (!pause || clock_.next_rest() <= *pause + same_time) return;
+    if (is_last_chance(*pause, period)) hold_at(*pause);
+  }
+  // Whether a brake that begins a tick later ends behind a time.
+  [[nodiscard]] bool is_last_chance(S time, S period) {
     const auto brake = clock_.brake_in(period);
-    if (brake ? *brake > *pause
-              : clock_.passes_last_brake_before(*pause, period) ||
-                    clock_.state_after(S(1.5) * period).position >= *pause)
-      hold_at(*pause);
+    return brake ? *brake > time
+                 : clock_.passes_last_brake_before(time, period) ||
+                       clock_.state_after(S(1.5) * period).position >= time;
+  }
+  // Where less is asked for a block ahead, as for a rapid behind a feed, the rate has come down to that when
+  // the block begins: it goes down a little before a brake to rest would have to begin, which takes longer.
+  // Where no change of the rate is proven in time, the motion rests before the block.
+  void slow_for_next(S period) {
+    const S now = clock_.state().position;
+    if (backwards_) slower_from_ = -infinity;
+    if (held_ || stopped_ || backwards_) return;
+    if (!comes_down(now)) {
+      const auto next = next_slower(now, period);
+      const S early = next && lowest_share(*next + same_time) > S(0) ? S(0.1) : S(0);  // s
+      if (next && clock_.next_rest() > *next + same_time && is_last_chance(*next - early, period))
+        slower_from_ = *next + same_time;
+    } else if (const S low = lowest_share(slower_from_); !(low < lowest_share(now))) {
+      slower_from_ = -infinity;  // more is asked for by now
+    } else if (!rests_before_) {
+      const BasicState<S> then =
+          clock_.state_after(std::max(clock_.ramp().duration() - clock_.elapsed(), S(0)));
+      const auto slow = [&](S rate) { return rate <= low + rounding; };
+      const bool in_time = then.position <= slower_from_ || slow(clock_.state().velocity);
+      rests_before_ = !(slow(then.velocity) && in_time) && is_last_chance(slower_from_, period);
+    }
+  }
+  // When a block begins for which less is asked than where it is now, if a brake may be as long.
+  [[nodiscard]] std::optional<S> next_slower(S now, S period) {
+    const S own = lowest_share(now);
+    if (!(own > S(0))) return std::nullopt;
+    const bool rapid = clock_.chain().block_at(now).rapid;
+    const S hold = planner_.longest_hold(), most = now + S(2) * (hold > S(0) ? hold : S(1)) + S(4) * period;
+    std::optional<S> found;
+    for_begins(now, [&](S time, const auto& begin) {
+      if (time > most) return true;
+      if (begin.rapid == rapid || !(lowest_share(time + same_time) < own)) return false;
+      found = time;
+      return true;
+    });
+    return found;
   }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
-    const S from = std::max(clock_.state().position - same_time, passed_ + same_time);
-    const auto in = [&](const Clocked& motion, S start) -> std::optional<S> {
+    std::optional<S> found;
+    for_begins(std::max(clock_.state().position - same_time, passed_ + same_time),
+               [&](S time, const auto& begin) {
+                 const bool here = single_step_ ? time > begins_at_ + same_time : begin.line == pause_line_;
+                 if (here) found = time;
+                 return here;
+               });
+    return found;
+  }
+  // Calls visit(time, start of a block) for those from a time on, until it says that it is enough.
+  template <class Visit>
+  void for_begins(S from, Visit&& visit) const {
+    const auto in = [&](const Clocked& motion, S start) {
       auto begin = std::lower_bound(motion.begins.begin(), motion.begins.end(), from - start,
                                     [](const auto& one, S time) { return one.time < time; });
       for (; begin != motion.begins.end(); ++begin)
-        if (single_step_ ? start + begin->time > begins_at_ + same_time : begin->line == pause_line_)
-          return start + begin->time;
-      return std::nullopt;
+        if (visit(start + begin->time, *begin)) return true;
+      return false;
     };
     for (std::int64_t i = oldest_; i < seen_; ++i) {
       const auto& part = planner_.part(i);
-      if (const auto time = in(*part.motion, seen(i).start)) return time;
-      if (seen(i).has_tail || (tail_ahead_ && i + 1 == seen_))
-        if (const auto time = in(*part.tail, seen(i).tail_start)) return time;
+      if (in(*part.motion, seen(i).start)) return;
+      if ((seen(i).has_tail || (tail_ahead_ && i + 1 == seen_)) && in(*part.tail, seen(i).tail_start)) return;
     }
-    return std::nullopt;
   }
 
   // Whether there is a word that is to be told next; if so, when it is reached.
@@ -471,7 +535,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool program_stop_ = true;
   int pause_line_ = 0;
   S feed_share_ = S(1), rapid_share_ = S(1);
-  S passed_ = -infinity;  // when the block begins before which it last paused
+  S passed_ = -infinity;       // when the block begins before which it last paused
+  S slower_from_ = -infinity;  // when the block begins for which the rate comes down
+  bool rests_before_ = false;  // that one: nothing else comes down in time
   // Parts: the oldest that is kept, and behind the last one that was taken into the chain.
   std::int64_t oldest_ = 0, seen_ = 0;
   S begins_at_{};  // s of the first one, at which it stands first
