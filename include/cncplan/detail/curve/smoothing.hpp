@@ -51,10 +51,9 @@ template <MachineModel M, BlockModel B>
     std::span<const B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules,
     std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
   using S = typename M::Scalar;
-  using Ahead = SmoothingAhead<M, B>;
   constexpr std::size_t kept = std::bit_ceil(4 * most_neighbours + 3);
   std::pmr::vector<SmoothingRoom<M, B, kept, most_neighbours>> room(1, memory);
-  Ahead ahead(rules, machine, room.front().memory());
+  SmoothingAhead<M, B> ahead(rules, machine, room.front().memory());
   BasicSmoothing<S, M::axis_count> result(memory);
   result.blocks.resize(blocks.size());
   std::pmr::vector<std::size_t> lines(memory);  // the first block of each, where a line is merged or not
