@@ -212,3 +212,29 @@ TEST_CASE("levels: a tolerance that is none is an error at every door", "[levels
       CHECK_FALSE(stream.finish());
     }
 }
+
+TEST_CASE("levels: rapids run at the machine's rapid rate, above the speed of feeds", "[levels]") {
+  Machine<3> fast_rapids{.limits = {.velocity = 10, .acceleration = 1000, .jerk = 10000}, .rapid_rate = 60};
+  const std::string program =
+      "F600\nG1 X5\nG1 X10 Y1\nG1 X20 Y3\nG1 X30 Y6\nG1 X40 Y10\nG0 X100 Y70\nG1 X105 Y75\nX110 Y82\nX113 "
+      "Y90\n"
+      "X115 Y100\n";
+  double fast = 0;
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(to_text(level));
+    const auto planned = plan_text(program, fast_rapids, {.tolerance = 0.01, .level = level});
+    REQUIRE(planned);
+    CHECK(planned->fallbacks().empty());
+    double rapid = 0, feed = 0;
+    for (double t = 0; t < planned->duration(); t += 1e-3) {
+      const auto now = planned->at(t);
+      double& most = planned->program()[now.block].rapid ? rapid : feed;
+      most = std::max(most, now.velocity.norm());
+    }
+    CHECK(rapid > 55);
+    CHECK(rapid <= 60 * (1 + 1e-6));
+    CHECK(feed <= 10 * (1 + 1e-3));
+    if (level == SmoothLevel::fast) fast = planned->duration();
+    CHECK(planned->duration() <= fast);
+  }
+}

@@ -19,6 +19,7 @@
 #include "cncplan/detail/plan/look_ahead_plan.hpp"
 #include "cncplan/detail/plan/make_room.hpp"
 #include "cncplan/detail/plan/run_finder.hpp"
+#include "cncplan/detail/speed/curve_limits.hpp"
 
 namespace cncplan::detail {
 
@@ -40,7 +41,7 @@ class SmoothPlanner {
         full_machine_(machine),
         options_(options),
         work_(options.level == SmoothLevel::best ? BasicSmoothOptions<S>{} : good_smoothing<S>),
-        limits_(motion_limits(planned_for)),
+        limits_(limits_of_curves(planned_for)),
         most_(most),
         memory_(memory),
         run_brakes_(machine, static_cast<S>(options.hold_factor), memory) {}

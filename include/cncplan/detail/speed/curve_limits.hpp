@@ -1,6 +1,7 @@
-// The machines that the levels `good` and `best` of smoothing can plan for.
+// What the levels `good` and `best` of smoothing take of a machine.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -28,6 +29,14 @@ template <MachineModel M>
     if (tool_axes(machine) != BasicMotionLimits<S, M::axis_count>::first_axes()) return FallbackReason::axes;
   }
   return std::nullopt;
+}
+
+/// What limits curves: the tool's velocity is that of rapids, where they are faster. A run without them keeps
+/// that of its feeds.
+template <MachineModel M>
+[[nodiscard]] auto limits_of_curves(M machine) {
+  machine.limits.velocity = std::max(machine.limits.velocity, rapid_speed(machine));
+  return motion_limits(machine);
 }
 
 }  // namespace cncplan::detail
