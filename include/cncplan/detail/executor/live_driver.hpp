@@ -82,6 +82,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   void feed_override(S share) override {
     feed_share_ = cut(share, BasicFeedShares<S>::most_share);
     planner_.shares().ask(feed_share_);
+    raised_ = raised_ || feed_share_ > S(1);
   }
   void rapid_override(S share) override { rapid_share_ = cut(share, S(1)); }
   void backwards(bool wanted) override { backwards_ = wanted; }
@@ -406,7 +407,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   void slow_for_next(S period) {
     const S now = clock_.state().position;
     if (backwards_) slower_from_ = -infinity;
-    if (held_ || stopped_ || backwards_) return;
+    if (!comes_down(now)) rests_before_ = false;
+    if (held_ || stopped_ || backwards_ || (rapid_share_ == feed_share_ && !raised_)) return;
     if (!comes_down(now)) {
       const auto next = next_slower(now, period);
       const S early = next && lowest_share(*next + same_time) > S(0) ? S(0.1) : S(0);  // s
@@ -535,6 +537,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool program_stop_ = true;
   int pause_line_ = 0;
   S feed_share_ = S(1), rapid_share_ = S(1);
+  bool raised_ = false;        // a feed above the program's has been asked for
   S passed_ = -infinity;       // when the block begins before which it last paused
   S slower_from_ = -infinity;  // when the block begins for which the rate comes down
   bool rests_before_ = false;  // that one: nothing else comes down in time
