@@ -79,7 +79,7 @@ TEST_CASE("places of rotary axes are told in degrees", "[program]") {
         "axis C: 90 degrees is above the limit -90");
   CHECK(
       to_text(gcode::Diagnostic{{ErrorCode::above_limit, "axis C", 1, 0.5, ErrorUnit::radians}, 1, 1, {}}) ==
-      "axis C is above the limit 28.64788976");
+      "axis C: 57.29577951 degrees is above the limit 28.64788976");
   machine.axes[3].kind = AxisKind::linear;
   CHECK(problems(read_text("G1 A200 F600\n", machine))[0] ==
         "1:4: error: axis A: 200 is above the limit " + number_text(110 * degree));

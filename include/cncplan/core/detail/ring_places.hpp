@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "cncplan/core/compiler.hpp"
+
 namespace cncplan::detail {
 
 /// The places of numbers in memory for `size` of them, without a division, which would take longer than all
