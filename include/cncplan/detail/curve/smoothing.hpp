@@ -42,21 +42,52 @@ struct BasicSmoothing {
   }
 };
 
+/// Adds to the corrections of a program those that act on a block and are not there yet, and says where its
+/// own stand among them. They come from a ring in which each stands twice; `slot` is the place in it of the
+/// first one that is not there yet.
+template <std::floating_point S, int N>
+void add_acting(std::span<const BasicCorrection<S, N>> ring, std::size_t& slot, BasicBlockSmoothing<S>& own,
+                std::pmr::vector<BasicCorrection<S, N>>& all) {
+  if (own.count == 0) return;
+  const auto places = static_cast<std::ptrdiff_t>(ring.size() / 2);
+  // Below 0 where some are there; above where the wider one of two at a junction acts on it alone.
+  auto ahead = static_cast<std::ptrdiff_t>(own.first) - static_cast<std::ptrdiff_t>(slot);
+  if (ahead > places / 2) ahead -= places;
+  if (ahead < -places / 2) ahead += places;
+  own.first = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(all.size()) + ahead);
+  if (own.first + own.count <= all.size()) return;
+  const auto more = ring.subspan(slot, own.first + own.count - all.size());
+  all.insert(all.end(), more.begin(), more.end());
+  slot = (slot + more.size()) % static_cast<std::size_t>(places);
+}
+
+/// Leaves out the first and the last corrections of a block that do not reach it; it ends at so many mm.
+template <std::floating_point S, int N>
+void leave_out_far(std::span<const BasicCorrection<S, N>> all, const LongLength<S>& end,
+                   BasicBlockSmoothing<S>& own) {
+  const auto reaches = [&](const BasicCorrection<S, N>& one) {
+    return one.at + one.support() > own.start && one.at - one.support() < end;
+  };
+  for (; own.count > 0 && !reaches(all[own.first]); --own.count) ++own.first;
+  while (own.count > 0 && !reaches(all[own.first + own.count - 1])) --own.count;
+}
+
 /// The corrections of a program. Its junctions are smoothed but for those at rests, at blocks that are to be
 /// exact, where the unit of length changes, and where the tool turns back. Blocks go through `SmoothingAhead`
-/// as they do in an executor.
+/// as they do in an executor, a merged line as one.
 template <MachineModel M, BlockModel B>
   requires EnclosedPath<typename B::Path>
 [[nodiscard]] BasicSmoothing<typename M::Scalar, M::axis_count> smoothing(
     std::span<const B> blocks, const M& machine, const SmoothingRules<typename M::Scalar>& rules,
     std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
   using S = typename M::Scalar;
+  using Correction = BasicCorrection<S, M::axis_count>;
   constexpr std::size_t kept = std::bit_ceil(4 * most_neighbours + 3);
   std::pmr::vector<SmoothingRoom<M, B, kept, most_neighbours>> room(1, memory);
   SmoothingAhead<M, B> ahead(rules, machine, room.front().memory());
   BasicSmoothing<S, M::axis_count> result(memory);
   result.blocks.resize(blocks.size());
-  std::pmr::vector<std::size_t> lines(memory);  // the first block of each, where a line is merged or not
+  std::pmr::vector<std::size_t> lines(memory);  // of each line, merged or not, the first block
   // The next block of a merged line.
   const auto next_of = [&](std::size_t i) {
     if (!blocks[i].straight_on) return blocks.size();
@@ -65,35 +96,16 @@ template <MachineModel M, BlockModel B>
     return i;
   };
   std::int64_t told = 0;
-  const std::span corrections(room.front().corrections);  // each of them stands there twice
-  std::size_t slot = 0;                                   // of the next one
+  std::size_t slot = 0;
   const auto take = [&] {
     for (; told < ahead.known(); ++told) {
       auto own = ahead.of_block(told);
-      // The wider one of two at a junction acts on blocks on which the one before it does not.
-      const auto places = static_cast<std::ptrdiff_t>(corrections.size() / 2);
-      auto behind = static_cast<std::ptrdiff_t>(own.first) - static_cast<std::ptrdiff_t>(slot);
-      if (behind > places / 2) behind -= places;
-      if (behind < -places / 2) behind += places;
-      const auto there = static_cast<std::ptrdiff_t>(result.corrections.size());
-      const std::ptrdiff_t more = behind + static_cast<std::ptrdiff_t>(own.count);
-      if (own.count > 0) own.first = static_cast<std::size_t>(there + behind);
-      if (own.count > 0 && more > 0) {
-        const auto next = corrections.subspan(slot, static_cast<std::size_t>(more));
-        result.corrections.insert(result.corrections.end(), next.begin(), next.end());
-        slot = (slot + next.size()) % static_cast<std::size_t>(places);
-      }
+      add_acting(std::span<const Correction>(room.front().corrections), slot, own, result.corrections);
       for (std::size_t i = lines[static_cast<std::size_t>(told)]; i < blocks.size(); i = next_of(i)) {
-        auto& block = result.blocks[i] = own;
+        result.blocks[i] = own;
         own.start += blocks[i].path.length();
         own.junction_mode = JunctionMode::smooth;
-        // Those of the line that reach this block.
-        const auto* acting = result.corrections.data() + block.first;
-        for (; block.count > 0 && !(acting->at + acting->support() > block.start); --block.count)
-          ++acting, ++block.first;
-        while (block.count > 0 &&
-               !(acting[block.count - 1].at - acting[block.count - 1].support() < own.start))
-          --block.count;
+        leave_out_far(std::span<const Correction>(result.corrections), own.start, result.blocks[i]);
       }
     }
   };

@@ -78,8 +78,8 @@ class SmoothingAhead {
   /// Takes the next block, which is to stay until it is not asked for any more. `line` is the length of the
   /// merged line that begins with it, else its own. False, and nothing done, while a part ends: `work` first.
   bool push(const B& block, const M& machine, Scalar line);
-  /// Takes a block that goes straight on from the last one, as a part of it: where kernels reach over no more
-  /// than so many neighbours, it is none. `line` of that one counts it too.
+  /// Takes a block that goes straight on from the last one, as a part of it: it counts as no neighbour of its
+  /// own, and `line` of that one has its length too.
   void extend(const B& block) {
     place_ += block.path.length();
     last_ = &block;
@@ -100,21 +100,17 @@ class SmoothingAhead {
   /// Of how many blocks it is known how they are driven.
   [[nodiscard]] std::int64_t known() const { return known_ == end_ ? pushed_ : mover(known_).number; }
   [[nodiscard]] std::int64_t pushed() const { return pushed_; }
-  // Of a block that is known.
-
+  /// Of a block that is known.
   [[nodiscard]] const OfBlock& of_block(std::int64_t number) const {
     return memory_.blocks[static_cast<std::size_t>(number) & (memory_.blocks.size() - 1)];
-  }
-  /// Those that act on it, in order.
-  [[nodiscard]] std::span<const Correction> corrections(std::int64_t number) const {
-    return memory_.corrections.subspan(of_block(number).first, of_block(number).count);
   }
   /// How the motion passes its start, and the path that is driven in its place.
   [[nodiscard]] JunctionMode junction_mode(std::int64_t number) const {
     return of_block(number).junction_mode;
   }
   [[nodiscard]] Driven driven(const B& block, std::int64_t number, const std::array<int, 3>& tool) const {
-    return {block.path, corrections(number), of_block(number).start, tool};
+    const OfBlock& own = of_block(number);
+    return {block.path, memory_.corrections.subspan(own.first, own.count), own.start, tool};
   }
 
  private:
