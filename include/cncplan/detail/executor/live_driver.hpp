@@ -406,9 +406,10 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Where no change of the rate is proven in time, the motion rests before the block.
   void slow_for_next(S period) {
     const S now = clock_.state().position;
-    if (backwards_) slower_from_ = -infinity;
+    const bool never = backwards_ || (rapid_share_ == feed_share_ && !raised_);
+    if (never) slower_from_ = -infinity;
     if (!comes_down(now)) rests_before_ = false;
-    if (held_ || stopped_ || backwards_ || (rapid_share_ == feed_share_ && !raised_)) return;
+    if (held_ || stopped_ || never) return;
     if (!comes_down(now)) {
       const auto next = next_slower(now, period);
       const S early = next && lowest_share(*next + same_time) > S(0) ? S(0.1) : S(0);  // s
