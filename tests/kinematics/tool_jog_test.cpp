@@ -215,6 +215,32 @@ TEST_CASE("a quick stop ends a jog of the tool on its line with more than the li
   CHECK(braked(4) < 0.6 * gentle);
 }
 
+TEST_CASE("joints that are jogged during a quick stop of the tool wait until it rests", "[tool jog]") {
+  constexpr double share = 4;
+  const bool back_to_tool = GENERATE(false, true);
+  ArmRunner runner(Scara::machine(), {.quick_stop_share = share});
+  ToolJogRun<Scara, ArmRunner> braking(runner);
+  REQUIRE(runner.jog_to({0.2, -1.4, 0}));
+  braking.run(3);
+  REQUIRE(braking.to({200, 30, 8}));
+  braking.run(0.4);
+  runner.quick_stop();
+  braking.run(0.005);
+  REQUIRE_FALSE(braking.rests);
+  REQUIRE(runner.jog_to({0.3, -1.2, 1}));
+  if (back_to_tool) REQUIRE(runner.jog_tool_to({200, 20, 5}));  // the last request is the one that counts
+  while (!braking.rests) braking.tick();
+  braking.check(share);
+  ToolJogRun<Scara, ArmRunner> behind(runner);
+  behind.run(5);
+  if (back_to_tool)
+    CHECK((behind.at() - Vector3(200, 20, 5)).norm() < 1e-7);
+  else
+    CHECK(behind.joints().isApprox(Vector3(0.3, -1.2, 1)));
+  CHECK(behind.velocity > 0.01);
+  behind.check();
+}
+
 TEST_CASE("jogs of the tool ask for no memory", "[tool jog]") {
   const auto runner = std::make_unique<ArmRunner>(Delta::machine(), ArmRunner::Options{.tolerance = 0});
   const std::size_t before = test::heap_allocations();

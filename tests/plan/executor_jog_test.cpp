@@ -255,3 +255,64 @@ TEST_CASE("a jog of no speed is refused", "[executor]") {
   CHECK(executor.jog_by({1, 0, 0}, {.tool = std::nan("")}).error().code == ErrorCode::not_finite);
   CHECK(run(executor, 1.0).position == Vector3::Zero());
 }
+
+TEST_CASE("what is asked for during a quick stop of a jog begins at rest behind it", "[executor]") {
+  constexpr double share = 5;
+  const int request = GENERATE(0, 1, 2, 3, 4);
+  const int ticks_before = GENERATE(1, 10, 20);
+  CAPTURE(request, ticks_before);
+  Runner executor(mill, {.quick_stop_share = share});
+  load(executor, {"G1 X20 F1200"});
+  run(executor, 0.3);
+  executor.feed_hold();
+  const Vector3 held = run(executor, 0.5).position;
+  const Vector3 away = held + Vector3(3, 0, 5);
+  REQUIRE(executor.jog({20, 10, 0}));
+  const Vector3 from = run(executor, 1.0).position;
+  executor.quick_stop();
+  const auto braking = run(executor, ticks_before * period);
+  REQUIRE(!braking.velocity.isZero());
+  if (request == 0) REQUIRE(executor.jog({0, 0, 0}));
+  if (request == 1) REQUIRE(executor.jog({-20, -10, 5}));
+  if (request == 2) REQUIRE(executor.jog_to(away));
+  if (request == 3) REQUIRE(executor.jog_to(from + Vector3(30, 0, 0)));
+  if (request == 4) executor.resume();
+  bool rested = false;
+  auto before = braking;
+  for (int tick = 0; tick < 6000; ++tick) {
+    const auto point = executor.tick(period);
+    const double most = rested ? 1 : share;
+    for (int i = 0; i < 3; ++i) {
+      const auto& axis = mill.axes[static_cast<std::size_t>(i)];
+      CHECK(std::abs(point.velocity[i]) <= axis.velocity * (1 + 1e-9));
+      CHECK(std::abs(point.acceleration[i]) <= most * axis.acceleration * (1 + 1e-9));
+      CHECK(std::abs(point.acceleration[i] - before.acceleration[i]) <=
+            most * axis.jerk * period * (1 + 1e-9));
+      if (!rested) CHECK(point.velocity[i] * braking.velocity[i] >= 0);
+    }
+    rested = rested || point.velocity.isZero();
+    before = point;
+  }
+  CHECK(rested);
+  if (request == 0) CHECK(before.velocity.isZero());
+  if (request == 1) CHECK(before.velocity.isApprox(Vector3(-20, -10, 5)));
+  if (request == 2) CHECK(before.position.isApprox(away));
+  if (request == 3) CHECK(before.position.isApprox(from + Vector3(30, 0, 0)));
+  if (request == 4) CHECK((before.position.isApprox(Vector3(20, 0, 0)) && executor.finished()));
+}
+
+TEST_CASE("a stop takes back what waits for the end of a quick stop of a jog", "[executor]") {
+  Runner executor(mill, {.quick_stop_share = 5});
+  REQUIRE(executor.jog({20, 0, 0}));
+  run(executor, 1.0);
+  executor.quick_stop();
+  run(executor, 0.01);
+  REQUIRE(executor.jog_to({90, 5, 5}));
+  run(executor, 0.005);
+  executor.feed_hold();
+  const auto rest = run(executor, 1.0);
+  CHECK(rest.velocity.isZero());
+  CHECK(rest.position[1] == 0);
+  REQUIRE(executor.jog_by({1, 0, 0}));  // from where it stands, not from where it was to go
+  CHECK(run(executor, 2.0).position.isApprox(rest.position + Vector3(1, 0, 0)));
+}

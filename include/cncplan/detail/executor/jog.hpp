@@ -33,9 +33,10 @@ class Jog {
   explicit Jog(const M& machine) : tool_(machine) {}
 
   /// Begins to come to velocities, from where the axes are and as they move; from rest at `place` where they
-  /// are at rest. Errors: those of `reach_velocity`.
+  /// are at rest, and behind a rest that they come to with more than their limits. Errors: those of
+  /// `reach_velocity`.
   Expected<void> to_velocities(const Vector& place, const Vector& velocities, const M& machine) {
-    return follow(reach_velocity(now(place), row(velocities), axes_of(machine)));
+    return go_on(reach_velocity(start(place), row(velocities), axes_of(machine)));
   }
   /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`; not_supported
   /// for a speed of the tool under a map, where joints move.
@@ -44,10 +45,10 @@ class Jog {
     if (auto ok = validate(speed); !ok) return ok;
     if (MappedModel<M> && std::isfinite(speed.tool))
       return refusal(ErrorCode::not_supported, "speed of the tool in a jog of joints", speed.tool);
-    const States from = now(place);
+    const States from = start(place);
     const auto together = std::isfinite(speed.tool) ? Synchronization::phase : Synchronization::time;
     if (auto ok =
-            follow(move_to(from, row(positions), slowed(machine, speed, positions - vector(from.position)),
+            go_on(move_to(from, row(positions), slowed(machine, speed, positions - vector(from.position)),
                            {.synchronization = together}));
         !ok)
       return ok;
@@ -59,15 +60,18 @@ class Jog {
   Expected<void> tool_to(const Vector& place, const Coordinates& point, const M& machine,
                          const Speed& speed) requires ToolJogModel<M> {
     if (auto ok = validate(speed); !ok) return ok;
-    if (!moves_) return tool_.to(machine, place, point, speed);
+    if (!moves_) {
+      const auto done = tool_.to(machine, place, point, speed);
+      if (done) forget_next();
+      return done;
+    }
     const Expected<Moved> rest =
         brakes_ > Scalar(0) ? move_ : reach_velocity(move_.state(), typename States::Row{}, axes_of(machine));
     if (!rest) return tl::unexpected(rest.error());
-    const auto line = tool_.line(machine, vector(rest->at(rest->duration()).position), point, speed);
+    const auto line = tool_.line(machine, vector(end_of(*rest)), point, speed);
     if (!line) return tl::unexpected(line.error());
-    const Scalar share = std::max(brakes_, Scalar(1));
-    follow(rest);
-    brakes_ = share;
+    follow(*rest, std::max(brakes_, Scalar(1)));
+    forget_next();
     tool_.wait_with(*line);
     return {};
   }
@@ -75,17 +79,18 @@ class Jog {
   [[nodiscard]] ToolJog<M>& tool() { return tool_; }
   [[nodiscard]] const ToolJog<M>& tool() const { return tool_; }
   /// Where it goes, while it goes to positions.
-  [[nodiscard]] std::optional<Vector> target() const { return moves_ ? target_ : std::nullopt; }
+  [[nodiscard]] std::optional<Vector> target() const { return moves_ || next_ ? target_ : std::nullopt; }
   /// Begins to come to rest with so many times the limits of acceleration and jerk, where it does not brake
   /// as hard already.
   void to_rest(const M& machine, Scalar share) {
     tool_.to_rest(share);
+    forget_next();
     if (!moves_ || share <= brakes_) return;
     const Axes stronger = axes_of(with_forces(machine, share));
-    if (follow(reach_velocity(move_.state(), typename States::Row{}, stronger))) brakes_ = share;
+    if (const auto rest = reach_velocity(move_.state(), typename States::Row{}, stronger)) follow(*rest, share);
   }
 
-  [[nodiscard]] bool moves() const { return moves_ || tool_.moves() || tool_.waits(); }
+  [[nodiscard]] bool moves() const { return moves_ || next_ || tool_.moves() || tool_.waits(); }
 
   /// The axes `seconds` from now, only while they move. Jerks are those from then on.
   [[nodiscard]] AxisMotion<Vector> at(Scalar seconds) const {
@@ -101,7 +106,11 @@ class Jog {
 
   /// Moves on; whether the axes have come to rest.
   bool advance(Scalar seconds) {
-    if (!moves_ && !tool_.moves()) tool_.begin_next();
+    if (!moves_ && !tool_.moves()) {
+      tool_.begin_next();
+      if (next_) follow(*next_, Scalar(0));
+      next_.reset();
+    }
     if (tool_.drives()) {
       tool_.advance(seconds);
       return !moves();
@@ -162,27 +171,50 @@ class Jog {
   }
   static Vector vector(const typename States::Row& row) { return Eigen::Map<const Vector>(row.data()); }
 
-  [[nodiscard]] States now(const Vector& place) const {
+  [[nodiscard]] static typename States::Row end_of(const Moved& move) {
+    return move.at(move.duration()).position;
+  }
+
+  // Whether they come to rest with more than their limits.
+  [[nodiscard]] bool brakes_hard() const {
+    return (moves_ && brakes_ > Scalar(1)) || (tool_.moves() && tool_.brakes() > Scalar(1));
+  }
+  // From where they go on when something is asked for.
+  [[nodiscard]] States start(const Vector& place) const {
+    if (brakes_hard()) return {.position = moves_ ? end_of(move_) : row(tool_.end())};
     if (tool_.moves()) {
       const AxisMotion<Vector> axes = tool_.at(Scalar(0));
       return {row(axes.position), row(axes.velocity), row(axes.acceleration)};
     }
     return moves_ ? move_.state() : States{.position = row(place)};
   }
-
-  Expected<void> follow(const Expected<Moved>& move) {
+  // By a move from there.
+  Expected<void> go_on(const Expected<Moved>& move) {
     if (!move) return tl::unexpected(move.error());
-    move_ = *move;
+    forget_next();
+    if (brakes_hard()) {
+      tool_.forget_next();
+      next_ = *move;
+    } else {
+      follow(*move, Scalar(0));
+    }
+    return {};
+  }
+  void follow(const Moved& move, Scalar brakes) {
+    move_ = move;
     moves_ = true;
     tool_.clear();
+    brakes_ = brakes;
+  }
+  void forget_next() {
+    next_.reset();
     target_.reset();
-    brakes_ = Scalar(0);
-    return {};
   }
 
   [[no_unique_address]] ToolJog<M> tool_;
   Moved move_{};
   bool moves_ = false;
+  std::optional<Moved> next_;  // behind a rest
   std::optional<Vector> target_;
   Scalar brakes_{};  // share of the limits with which it comes to rest; 0: it does not
 };

@@ -44,6 +44,9 @@ class ToolJog {
   [[nodiscard]] static AxisMotion<Vector> at(S) { return {}; }
   static void advance(S) {}
   static void begin_next() {}
+  static void forget_next() {}
+  [[nodiscard]] static constexpr S brakes() { return S(0); }
+  [[nodiscard]] static Vector end() { return Vector::Zero(); }
   static void to_rest(S) {}
   static void clear() {}
 };
@@ -127,6 +130,11 @@ class ToolJog<M> {
     next_.reset();
     brakes_ = S(0);
   }
+  void forget_next() { next_.reset(); }
+  /// With so many times the limits it comes to rest; 0: it does not.
+  [[nodiscard]] S brakes() const { return brakes_; }
+  /// The axes where it comes to rest, while it drives.
+  [[nodiscard]] Vector end() const { return now_->path.position_at(now_->move.end().position); }
   /// Where it goes to, while it does.
   [[nodiscard]] std::optional<Coordinates> target() const {
     if (next_) return next_->path.programmed().end();
