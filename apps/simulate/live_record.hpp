@@ -53,7 +53,7 @@ class LiveRecord {
 
  private:
   using Piece = typename Trajectory::Piece;
-  using Part = typename Driver::Driven;
+  using Part = typename Driver::TickPart;
   using Chain = typename Driver::Clock::Chain;
 
   static constexpr double same_time = 1e-12, longest_fit = 5e-4;  // s

@@ -275,12 +275,17 @@ class ExecutorCore {
 
   void tell_tool_of_axes() { last_.tool = jog_.tool().tool(machine_, last_.position, tool_); }
 
+  // Whether the program does not go on by itself.
+  [[nodiscard]] bool waits_to_be_resumed() const {
+    return drive([](const auto& driver) { return driver.held() || driver.stopped(); });
+  }
+
   Expected<void> begin_jog();
   // Whether a program is there whose first blocks ticks, or `plan`, have yet to cut.
   [[nodiscard]] bool begins() const {
     if (level_ != nullptr) return level_->begins();
     return ended_.load(std::memory_order_acquire) && feed_.ready() < end_.load() && !feed_.failed() &&
-           !motion_executor_.held() && !motion_executor_.stopped();
+           !waits_to_be_resumed();
   }
   Expected<void> jogged(const Expected<void>& done, bool returns);
   void end_jog(Scalar share);
@@ -288,7 +293,7 @@ class ExecutorCore {
   // The axes are to go to a path that is not there yet: no block moves, or those that do are held back.
   void wait_for_path(Scalar period, std::int64_t ready) {
     if (level_ != nullptr) return;
-    words_.tell(feed_, ready - 1, Scalar(0), last_.words);
+    if (!waits_to_be_resumed()) words_.tell(feed_, ready - 1, Scalar(0), last_.words);
     waited_ += period;
     if (waited_ >= longest_wait_) feed_.let_go();
   }
@@ -493,13 +498,10 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
   if (level_ != nullptr) return tick_of_level(period, tell);
   if (waits_to_begin(period)) return last_;
   const detail::BasicMotionSetPoint<Scalar> now = tick_of_program(period, tell);
-  std::int64_t reached = -1;
-  if (now.block >= 0) {
-    const Cell& cell = motion_executor_[now.block];
-    reached = cell.block;
-    evaluate(cell, now);
-  }
-  if (motion_executor_.finished()) reached = std::max(reached, ready - 1);
+  if (now.block >= 0) evaluate(motion_executor_[now.block], now);
+  const std::int64_t begun = motion_executor_.begun();
+  std::int64_t reached = begun < 0 ? -1 : motion_executor_[begun].block;
+  if (motion_executor_.finished() && !waits_to_be_resumed()) reached = std::max(reached, ready - 1);
   words_.end_tick(feed_, reached, motion_executor_.stands(), period, last_.words);
   release();
   return last_;

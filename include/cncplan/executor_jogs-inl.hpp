@@ -71,9 +71,8 @@ bool ExecutorCore<M, B>::find_path() {
 
 template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::tick_of_jog(Scalar period, const Tell* tell) -> SetPoint {
-  const bool goes_on =
-      returns_ && drive([](const auto& driver) { return !driver.held() && !driver.stopped(); });
-  if (goes_on && !(jog_.moves() && goes_back_) && !return_to_path()) returns_ = false;
+  if (returns_ && !waits_to_be_resumed() && !(jog_.moves() && goes_back_) && !return_to_path())
+    returns_ = false;
   if (jog_.moves()) {
     const bool rests = jog_.advance(period);
     const AxisMotion<Vector> axes = jog_.at(Scalar(0));

@@ -49,7 +49,7 @@ class Jog {
     const auto together = std::isfinite(speed.tool) ? Synchronization::phase : Synchronization::time;
     if (auto ok =
             go_on(move_to(from, row(positions), slowed(machine, speed, positions - vector(from.position)),
-                           {.synchronization = together}));
+                          {.synchronization = together}));
         !ok)
       return ok;
     target_ = positions;
@@ -87,7 +87,8 @@ class Jog {
     forget_next();
     if (!moves_ || share <= brakes_) return;
     const Axes stronger = axes_of(with_forces(machine, share));
-    if (const auto rest = reach_velocity(move_.state(), typename States::Row{}, stronger)) follow(*rest, share);
+    if (const auto rest = reach_velocity(move_.state(), typename States::Row{}, stronger))
+      follow(*rest, share);
   }
 
   [[nodiscard]] bool moves() const { return moves_ || next_ || tool_.moves() || tool_.waits(); }

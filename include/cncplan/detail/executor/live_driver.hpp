@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "cncplan/core/detail/fixed_list.hpp"
+#include "cncplan/detail/executor/driven_parts.hpp"
 #include "cncplan/detail/executor/level_driver.hpp"
 #include "cncplan/detail/executor/part_planner.hpp"
 #include "cncplan/detail/executor/trajectory_clock.hpp"
@@ -36,7 +37,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   using Clock = TrajectoryClock<M, B>;
 
   /// A part of a tick, s from its start.
-  struct Driven {
+  struct TickPart {
     S start{}, duration{};
     typename Clock::Ramp ramp;
     S elapsed{};  ///< of the ramp, where the part begins
@@ -95,12 +96,14 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S worst_hold() const override { return planner_.longest_hold(); }
   [[nodiscard]] bool stopped() const override { return stopped_ && clock_.rests(); }
   [[nodiscard]] bool stands() const override { return clock_.rests(); }
-  [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0); }
+  [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0) && !at_program_stop(); }
   [[nodiscard]] bool rests() const override {
     return clock_.rests() && !dwells() &&
            (held_ || stopped_ || no_speed() || nothing_behind() || nothing_ahead());
   }
-  [[nodiscard]] bool finished() const override { return clock_.rests() && !dwells() && nothing_ahead(); }
+  [[nodiscard]] bool finished() const override {
+    return clock_.rests() && !dwells() && !at_program_stop() && nothing_ahead();
+  }
   [[nodiscard]] bool asked_to_rest() const override {
     return held_ || stopped_ || no_speed() || backwards_ != clock_.heads_back();
   }
@@ -149,14 +152,14 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] AxisMotion<Vector> axes_at(S seconds) const override {
     std::size_t i = 0;
     while (i + 1 < parts_.size() && seconds > parts_[i].start + parts_[i].duration) ++i;
-    const Driven& part = parts_[i];
+    const TickPart& part = parts_[i];
     const S within = std::clamp(seconds - part.start, S(0), part.duration);
     const Point point = clock_.chain().at(part.clock_at(clock_.chain(), within));
     return {point.position, point.velocity, point.acceleration, point.jerk};
   }
 
   /// What the last tick was made of, rests left out, and what its clock ran along.
-  [[nodiscard]] const FixedList<Driven, Base::most_parts>& driven() const { return parts_; }
+  [[nodiscard]] const FixedList<TickPart, Base::most_parts>& driven() const { return parts_; }
   [[nodiscard]] const typename Clock::Chain& chain() const { return clock_.chain(); }
   [[nodiscard]] BasicState<S> clock() const { return clock_.state(); }
 
@@ -165,18 +168,18 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!begins_at) return false;
     begins_at_ = *begins_at;
     clock_ = Clock(machine_);
-    oldest_ = seen_ = told_part_ = 0;
-    told_ = 0;
-    tail_ahead_ = tells_tail_ = stopped_ = program_holds_ = backwards_ = rests_before_ = false;
+    driven_ = DrivenParts<Planner>(planner_);
+    tail_ahead_ = stopped_ = program_holds_ = backwards_ = rests_before_ = false;
     rested_ = quiet_ = S(0);
     feed_rate_ = S(1);
     pushed_before_ = 0;
-    passed_ = slower_from_ = -infinity;
+    passed_ = slower_from_ = turned_ = stop_passed_ = -infinity;
     return true;
   }
 
  private:
   using Clocked = typename Planner::Clocked;
+  using Driven = typename DrivenParts<Planner>::Driven;
 
   static constexpr S infinity = std::numeric_limits<S>::infinity();
   static constexpr std::int64_t parts_behind = 3;
@@ -184,19 +187,13 @@ class LiveDriver final : public LevelDriver<M, B> {
   static constexpr S rounding = S(1e-6);
   static constexpr S time_to_plan = S(0.5);  // s of motion that is left when blocks go on without others
 
-  // A part that is in the chain.
-  struct Seen {
-    S start{}, tail_start{};  // s
-    std::size_t motions{};    // of the chain
-    bool has_tail{};          // that is driven
-  };
-
   template <class... Args>
   LiveDriver(const M& machine, const Options& options, std::pmr::memory_resource* memory,
              const Args&... planner)
       : machine_(machine),
         memory_(memory),
         planner_(machine, planner..., memory),
+        driven_(planner_),
         clock_(machine),
         longest_wait_(options.longest_wait),
         background_(options.background) {}
@@ -204,16 +201,9 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   [[nodiscard]] static S cut(S share, S most) { return share > S(0) ? std::min(share, most) : S(0); }
 
-  [[nodiscard]] Seen& seen(std::int64_t number) {
-    return known_[static_cast<std::size_t>(number % Planner::most_parts)];
-  }
-  [[nodiscard]] const Seen& seen(std::int64_t number) const {
-    return known_[static_cast<std::size_t>(number % Planner::most_parts)];
-  }
-
   // s, in the tick.
   [[nodiscard]] S last_part_ends() const {
-    const Driven& last = parts_[parts_.size() - 1];
+    const TickPart& last = parts_[parts_.size() - 1];
     return last.start + last.duration;
   }
 
@@ -234,49 +224,46 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   // Whether the way that there is ends where it stands, and all words of it are told.
   [[nodiscard]] bool nothing_ahead() const {
-    if (seen_ == 0) return !planner_.begun();
-    if (backwards_ || !all_told() || !(clock_.chain().empty() || clock_.at_end())) return false;
-    const PartLink link = planner_.part(seen_ - 1).link.load(std::memory_order_acquire);
+    if (driven_.end() == 0) return !planner_.begun();
+    if (backwards_ || !driven_.all_told() || !(clock_.chain().empty() || clock_.at_end())) return false;
+    const PartLink link = planner_.part(driven_.end() - 1).link.load(std::memory_order_acquire);
     return link == PartLink::rest || link == PartLink::tail;
   }
 
   // Parts that are planned go into the chain; the tail that was to be driven for want of them goes out of it.
   void take_parts() {
-    if (seen_ == 0 && planner_.begun()) take_part();
-    while (seen_ > 0) {
-      const PartLink link = planner_.part(seen_ - 1).link.load(std::memory_order_acquire);
+    if (driven_.end() == 0 && planner_.begun()) take_part();
+    while (driven_.end() > 0) {
+      const PartLink link = planner_.part(driven_.end() - 1).link.load(std::memory_order_acquire);
       if (link != PartLink::next && link != PartLink::tail_next) return;
       if (tail_ahead_) {
         clock_.chain().pop_back();
-        --seen(seen_ - 1).motions;
+        --driven_.last().motions;
         tail_ahead_ = false;
       }
       take_part();
     }
   }
   void take_part() {
-    const auto& part = planner_.part(seen_);
-    Seen& now = seen(seen_++);
-    now = {end_of_chain(), S(0), 0, false};
+    const auto& part = planner_.part(driven_.end());
+    Driven& now = driven_.take(end_of_chain());
     add(now, *part.motion);
     now.tail_start = end_of_chain();
     if (part.tail) add(now, *part.tail);
     tail_ahead_ = part.tail.has_value();
     cut_ = now.tail_start;
-    if (seen_ == 1) begin();
+    if (driven_.end() == 1) begin();
     clock_.look_ahead();
   }
   // The first part is there.
   void begin() {
     clock_.stand_at(begins_at_);
-    const auto passed = [&](const auto& word) { return word.time < begins_at_ - same_time; };
-    const auto& words = planner_.part(0).motion->words;
-    told_ = static_cast<std::size_t>(std::ranges::partition_point(words, passed) - words.begin());
+    driven_.begin_words_at(begins_at_ - same_time);
   }
   // s, where what is planned ends, a tail that is not driven left out.
   [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : end_of_chain(); }
   [[nodiscard]] S end_of_chain() const { return clock_.chain().empty() ? S(0) : clock_.chain().end_time(); }
-  void add(Seen& now, const Clocked& motion) {
+  void add(Driven& now, const Clocked& motion) {
     if (motion.trajectory.phases().empty()) return;
     clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes);
     ++now.motions;
@@ -285,13 +272,13 @@ class LiveDriver final : public LevelDriver<M, B> {
   // The tail is driven, if no part has come in its place.
   bool take_tail() {
     PartLink open = PartLink::open;
-    if (!planner_.part(seen_ - 1).link.compare_exchange_strong(open, PartLink::tail,
-                                                               std::memory_order_acq_rel)) {
+    if (!planner_.part(driven_.end() - 1)
+             .link.compare_exchange_strong(open, PartLink::tail, std::memory_order_acq_rel)) {
       take_parts();
       return false;
     }
     tail_ahead_ = false;
-    seen(seen_ - 1).has_tail = true;
+    driven_.last().has_tail = true;
     return true;
   }
 
@@ -335,7 +322,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     return planner_.shares().share_of(clock_.chain().number_at(time), oldest_block());
   }
   [[nodiscard]] std::int64_t oldest_block() const {
-    return static_cast<std::int64_t>(planner_.part(oldest_).motion->trajectory.first_block());
+    return static_cast<std::int64_t>(planner_.part(driven_.oldest()).motion->trajectory.first_block());
   }
 
   // Rests, or one part of the tick; whether more may happen in it.
@@ -347,6 +334,8 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (tail_ahead_ && !clock_.heads_back() &&
         clock_.state().position + std::max(clock_.state().velocity, S(1)) * left >= cut_)
       take_tail();
+    if (backwards_) turned_ = std::max(turned_, clock_.state().position);
+    if (clock_.heads_back()) stop_passed_ = -infinity;
     if (clock_.standing()) {
       rests_before_ = false;
     } else {
@@ -375,6 +364,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   bool may_leave(S in_tick) {
     if (!tell_words(in_tick)) return false;
+    stop_again();
+    if (at_program_stop()) return false;
     if (!held_ && pauses())
       if (const auto pause = next_pause(); pause && std::abs(*pause - clock_.state().position) <= same_time)
         hold_at(*pause);
@@ -454,82 +445,64 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Calls visit(time, start of a block) for those from a time on, until it says that it is enough.
   template <class Visit>
   void for_begins(S from, Visit&& visit) const {
-    const auto in = [&](const Clocked& motion, S start) {
-      auto begin = std::lower_bound(motion.begins.begin(), motion.begins.end(), from - start,
-                                    [](const auto& one, S time) { return one.time < time; });
-      for (; begin != motion.begins.end(); ++begin)
-        if (visit(start + begin->time, *begin)) return true;
-      return false;
-    };
-    for (std::int64_t i = oldest_; i < seen_; ++i) {
-      const auto& part = planner_.part(i);
-      if (in(*part.motion, seen(i).start)) return;
-      if ((seen(i).has_tail || (tail_ahead_ && i + 1 == seen_)) && in(*part.tail, seen(i).tail_start)) return;
-    }
+    driven_.each_from(from, &Clocked::begins, tail_ahead_, visit);
   }
 
-  // Whether there is a word that is to be told next; if so, when it is reached.
-  [[nodiscard]] const typename Clocked::Word* next_word(S& time) {
-    while (told_part_ < seen_) {
-      const auto& part = planner_.part(told_part_);
-      const Seen& now = seen(told_part_);
-      const auto& words = tells_tail_ ? part.tail->words : part.motion->words;
-      if (told_ < words.size()) {
-        time = (tells_tail_ ? now.tail_start : now.start) + words[told_].time;
-        return &words[told_];
-      }
-      if (!tells_tail_ && now.has_tail) {
-        tells_tail_ = true;
-        told_ = 0;
-      } else if (told_part_ + 1 < seen_) {
-        ++told_part_;
-        told_ = 0;
-        tells_tail_ = false;
-      } else {
-        return nullptr;
-      }
-    }
-    return nullptr;
-  }
-  [[nodiscard]] bool all_told() const {
-    if (seen_ == 0) return true;
-    const auto& part = planner_.part(told_part_);
-    return told_part_ + 1 == seen_ && tells_tail_ == seen(told_part_).has_tail &&
-           told_ == (tells_tail_ ? part.tail->words : part.motion->words).size();
-  }
   // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
-  // no room for more of them: they come with the next one.
+  // no room for more of them: they come with the next one. At a rest that was asked for those that stand
+  // there wait.
   bool tell_words(S in_tick) {
     const S shown = clock_.state().position;
-    S time{};
-    for (const auto* next = next_word(time); next != nullptr && time <= shown; next = next_word(time)) {
-      const S at = std::clamp(in_tick - clock_.since(time), S(0), in_tick);
+    const auto due = [&](S time) {
+      const bool waits = clock_.rests() && (held_ || stopped_);
+      return waits ? time < shown - same_time : time <= shown;
+    };
+    for (auto next = driven_.next_word(); next && due(next->time); next = driven_.next_word()) {
+      const S at = std::clamp(in_tick - clock_.since(next->time), S(0), in_tick);
       if (!words_.push_back({next->word, at})) return false;
-      ++told_;
-      const gcode::Word& word = next->word;
-      if (word.letter != 'M' || !((program_stop_ && (word.number == 0 || word.number == 60)) ||
-                                  (optional_stop_ && word.number == 1)))
-        continue;
-      held_ = program_holds_ = true;
+      driven_.pass_word();
+      if (stops(next->word)) stop_here();
     }
     return true;
+  }
+
+  [[nodiscard]] bool stops(const gcode::Word& word) const {
+    return word.letter == 'M' && ((program_stop_ && (word.number == 0 || word.number == 60)) ||
+                                  (optional_stop_ && word.number == 1));
+  }
+  void stop_here() {
+    held_ = program_holds_ = true;
+    stop_passed_ = clock_.next_rest();
+  }
+  // Behind a way back, a stop of the program that has been told stops again, once.
+  void stop_again() {
+    const S shown = clock_.state().position, from = clock_.next_rest();
+    if (backwards_ || shown > turned_ + same_time || stop_passed_ == from) return;
+    driven_.each_from(from - same_time, &Clocked::words, false, [&](S time, const auto& word) {
+      const bool here = time <= shown + same_time;
+      if (here && stops(word.word)) stop_here();
+      return !here || held_;
+    });
   }
 
   // Lets parts go that are far behind.
   void release() {
     if (clock_.heads_back() || backwards_) return;
     const S shown = clock_.state().position;
-    std::int64_t now = oldest_;
-    while (now + 1 < seen_ && seen(now + 1).start <= shown) ++now;
-    while (now - oldest_ > parts_behind && told_part_ > oldest_) {
-      for (; seen(oldest_).motions > 0; --seen(oldest_).motions) clock_.chain().pop_front();
-      planner_.release(++oldest_);
+    std::int64_t now = driven_.oldest();
+    while (now + 1 < driven_.end() && driven_[now + 1].start <= shown) ++now;
+    while (now - driven_.oldest() > parts_behind && driven_.oldest_is_told()) {
+      for (; driven_[driven_.oldest()].motions > 0; --driven_[driven_.oldest()].motions)
+        clock_.chain().pop_front();
+      driven_.forget_oldest();
+      planner_.release(driven_.oldest());
     }
   }
 
   M machine_;
   std::pmr::memory_resource* memory_;
   Planner planner_;
+  DrivenParts<Planner> driven_;  // that are in the chain
   Clock clock_;
   S longest_wait_;
   bool background_;
@@ -542,18 +515,13 @@ class LiveDriver final : public LevelDriver<M, B> {
   S passed_ = -infinity;       // when the block begins before which it last paused
   S slower_from_ = -infinity;  // when the block begins for which the rate comes down
   bool rests_before_ = false;  // that one: nothing else comes down in time
-  // Parts: the oldest that is kept, and behind the last one that was taken into the chain.
-  std::int64_t oldest_ = 0, seen_ = 0;
-  S begins_at_{};  // s of the first one, at which it stands first
-  std::array<Seen, static_cast<std::size_t>(Planner::most_parts)> known_{};
-  bool tail_ahead_{};  // the chain ends with a tail that is not driven yet
-  S cut_{};            // where it begins
-  // The next word.
-  std::int64_t told_part_ = 0;
-  std::size_t told_ = 0;
-  bool tells_tail_{};
+  S turned_ = -infinity;       // the furthest from which it was to run back
+  S stop_passed_ = -infinity;  // where the rest begins at which the program stopped last
+  S begins_at_{};              // s of the first part, at which it stands first
+  bool tail_ahead_{};          // the chain ends with a tail that is not driven yet
+  S cut_{};                    // where it begins
   BasicReachedWords<S> words_;
-  FixedList<Driven, Base::most_parts> parts_;
+  FixedList<TickPart, Base::most_parts> parts_;
   S rested_{}, quiet_{};  // s
   S feed_rate_ = S(1);    // where the plan is for a higher feed
   std::int64_t pushed_before_ = 0;
@@ -562,7 +530,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 template <MachineModel M, BlockModel B, class Planner>
 void LiveDriver<M, B, Planner>::look(S period) {
   take_parts();
-  planner_.left(seen_, (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
+  planner_.left(driven_.end(), (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
   let_go_where_none_come(period);
   if (background_) return;
   planner_.plan();

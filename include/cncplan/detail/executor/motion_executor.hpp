@@ -183,7 +183,14 @@ class BasicMotionExecutor {
 
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && !(waits() > S(0)) && path_.direction > 0 && at_.block >= path_.ring.pushed();
+    return idle_ && !(waits() > S(0)) && !at_program_stop() && path_.direction > 0 &&
+           at_.block >= path_.ring.pushed();
+  }
+  /// The last block that is kept and has begun. Where it rests as asked, the next one has not.
+  [[nodiscard]] std::int64_t begun() {
+    const bool waits_here = idle_ && (path_.asked.held || path_.asked.stopped) && at_.along == S(0);
+    const std::int64_t block = waits_here && path_.direction > 0 ? at_.block - 1 : set_point().block;
+    return path_.ring.holds(block) ? block : -1;
   }
   /// Whether it rests and will not go on by itself.
   [[nodiscard]] bool rests() const {

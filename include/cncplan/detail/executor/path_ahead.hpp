@@ -99,10 +99,11 @@ class BasicPathAhead {
   [[nodiscard]] bool holds_behind(std::int64_t block) const {
     return (asked.single_step && ends_step(block)) || program_holds_behind(block);
   }
-  /// Whether the program itself holds it there.
+  /// Whether the program itself holds it there, which it does forwards.
   [[nodiscard]] bool program_holds_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return (asked.optional_stops && b.optional_stop) || (asked.program_stops && b.program_stop);
+    return direction > 0 &&
+           ((asked.optional_stops && b.optional_stop) || (asked.program_stops && b.program_stop));
   }
 
   /// Whether a pause at its line is to be made before a block, which lies behind one of the given line.

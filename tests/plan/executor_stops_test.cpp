@@ -1,0 +1,151 @@
+// Stops of the program: what is told before them, what waits behind them, and what is held there, at every
+// level and for a plan.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cncplan/executor_levels.hpp"
+#include "cncplan/gcode/word.hpp"
+#include "cncplan/plan_program.hpp"
+#include "cncplan/trajectory_executor.hpp"
+#include "support/catch.hpp"
+#include "support/executor_check.hpp"
+
+using namespace cncplan;
+
+namespace {
+
+using Runner = Executor<Machine<3>, 64>;
+using Lines = std::vector<std::string>;
+
+constexpr double period = 1e-3;  // s
+
+const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+
+// Calls run(executor) with an executor of each level, and with one of a plan.
+template <class Run>
+void at_every_door(const Lines& lines, Run&& run) {
+  for (const SmoothLevel level :
+       {SmoothLevel::exact, SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(to_text(level));
+    Runner executor(mill, LevelExecutorOptions{.level = level});
+    for (const auto& block : test::blocks_of(lines, mill)) REQUIRE(executor.push(block));
+    executor.end_of_program();
+    run(executor);
+  }
+  std::string text;
+  for (const auto& line : lines) text += line + "\n";
+  const auto program = read_text(text, mill);
+  REQUIRE_FALSE(program.failed());
+  auto trajectory = plan_blocks(program.blocks(), mill, {.level = SmoothLevel::good});
+  REQUIRE(trajectory);
+  if (trajectory->phases().empty()) return;
+  trajectory->set_words(timed_words(program, *trajectory));
+  INFO("a plan");
+  TrajectoryExecutor executor(*trajectory, mill, {.longest_hold = 10});
+  run(executor);
+}
+
+// What it tells and how long it dwells, with a bar where it stopped and is resumed, and where it ended.
+template <class E>
+std::string told(E& executor, double seconds = 20) {
+  std::string log;
+  double stopped = 0, dwells = 0;
+  for (int tick = 0; tick < seconds / period; ++tick) {
+    const auto point = executor.tick(period);
+    const ExecutorState state = executor.state();
+    if (state != ExecutorState::dwelling && dwells > 0.2) log += "dwell ";
+    dwells = state == ExecutorState::dwelling ? dwells + period : 0;
+    for (const auto& word : point.words)
+      log += word.letter + std::to_string(static_cast<int>(word.number)) + " ";
+    if (state == ExecutorState::finished) return log + "end";
+    stopped = state == ExecutorState::stopped ? stopped + period : 0;
+    if (stopped > 0.3) log += "| ", executor.resume(), stopped = 0;
+  }
+  return log + to_text(executor.state()).data();
+}
+template <class E>
+void run(E& executor, double seconds) {
+  for (int tick = 0; tick < seconds / period; ++tick) executor.tick(period);
+}
+
+}  // namespace
+
+TEST_CASE("stops: what follows a stop of the program waits until it is resumed", "[executor]") {
+  const auto check = [](const Lines& lines, const std::string& expected) {
+    std::string program;
+    for (const auto& line : lines) program += line + " / ";
+    CAPTURE(program);
+    at_every_door(lines, [&](auto& executor) {
+      executor.optional_stop(true);
+      CHECK(told(executor) == expected);
+    });
+  };
+  check({"G1 X5 F1200", "M0", "X9"}, "M0 | end");
+  check({"G1 X5 F1200", "M5", "M0", "M3 S200", "M8", "Y5"}, "M5 M0 | S200 M3 M8 end");
+  check({"G1 X5 F1200", "M5", "M1", "M3 S200", "M8", "Y5"}, "M5 M1 | S200 M3 M8 end");
+  check({"G1 X5 F1200", "M5", "M60", "M3 S200", "M8", "Y5"}, "M5 M60 | S200 M3 M8 end");
+  check({"G1 X5 F1200", "M0", "T2 M6", "M0", "X0"}, "M0 | T2 M6 M0 | end");
+  check({"G1 X5 F1200", "M0", "M0", "X0"}, "M0 | M0 | end");
+  check({"G1 X5 F1200", "M0", "M1", "M8", "X0"}, "M0 | M1 | M8 end");
+  check({"G1 X5 F1200", "M0", "G4 P0.5", "X0"}, "M0 | dwell end");
+  check({"G1 X5 F1200", "G4 P0.5", "M0", "X0"}, "dwell M0 | end");
+  check({"G1 X5 F1200", "M0", "G4 P0.5", "M8", "M0", "G4 P0.3", "X0"}, "M0 | dwell M8 M0 | dwell end");
+  check({"G1 X5 F1200", "M0"}, "M0 | end");
+  check({"G1 X5 F1200", "M60"}, "M60 | end");
+  check({"G1 X5 F1200", "M0", "M9", "M5"}, "M0 | M9 M5 end");
+  check({"G1 X5 F1200", "M0", "M9", "M30"}, "M0 | M9 M30 end");
+  check({"M3 S100", "M0", "M8", "G1 X5 F1200", "X9"}, "S100 M3 M0 | M8 end");
+  check({"M0", "M3 S100"}, "M0 | S100 M3 end");
+}
+
+TEST_CASE("stops: nothing is told at rest that lies behind a hold or a stop", "[executor]") {
+  const Lines lines{"M3 S200", "G1 X5 F1200", "M8", "Y5"};
+  at_every_door(lines, [](auto& executor) {
+    SECTION("a hold before the first tick") {
+      executor.feed_hold();
+      CHECK(told(executor, 0.3) == "held");
+      executor.resume();
+      CHECK(told(executor) == "S200 M3 M8 end");
+    }
+    SECTION("a stop before the first tick") {
+      executor.stop();
+      CHECK(told(executor) == "end");
+    }
+    SECTION("single blocks") {
+      executor.single_step(true);
+      CHECK(told(executor, 2) == "S200 M3 held");
+      executor.resume();
+      CHECK(told(executor, 2) == "M8 end");
+    }
+    SECTION("a quick stop on the way") {
+      run(executor, 0.2);
+      executor.quick_stop();
+      CHECK(told(executor, 1) == "held");
+      executor.resume();
+      CHECK(told(executor) == "M8 end");
+    }
+  });
+}
+
+TEST_CASE("stops: the way back leads through them, and forwards they stop again", "[executor]") {
+  at_every_door({"G1 X5 F1200", "M0", "X20", "Y9"}, [](auto& executor) {
+    run(executor, 2);
+    REQUIRE(executor.state() == ExecutorState::stopped);
+    executor.resume();
+    run(executor, 0.5);
+    executor.reverse(true);
+    run(executor, 4);
+    CHECK(executor.tick(period).position.norm() < 1e-6);
+    CHECK(executor.state() == ExecutorState::held);
+    executor.reverse(false);
+    run(executor, 3);
+    CHECK(executor.tick(period).position.isApprox(Vector3(5, 0, 0)));
+    CHECK(executor.state() == ExecutorState::stopped);
+    executor.resume();
+    run(executor, 6);
+    CHECK(executor.tick(period).position.isApprox(Vector3(20, 9, 0)));
+    CHECK(executor.state() == ExecutorState::finished);
+  });
+}
