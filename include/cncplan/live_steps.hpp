@@ -39,7 +39,7 @@ class LiveStepsCore {
   }
 
   /// Moves on by `period` seconds. Edges of the tick before that were not asked for come late, at the start
-  /// of the next motion.
+  /// of this one.
   SetPoint tick(Scalar period);
 
   /// The next edge of the tick, in order of time; its time counts as that of set points.
@@ -84,6 +84,9 @@ class LiveStepsCore {
   }
 
   void open(const typename C::Part& part);
+  [[nodiscard]] bool has_pending() const {
+    return std::ranges::any_of(motors_, [](const Motor& motor) { return motor.pending.has_value(); });
+  }
 
   C* executor_;
   std::array<Motor, BasicMotors<Scalar>::capacity* static_cast<std::size_t>(C::MachineType::axis_count)>
@@ -91,6 +94,8 @@ class LiveStepsCore {
   std::size_t motor_count_ = 0;
   FixedList<typename C::Part, most_parts> parts_;
   std::size_t part_ = 0;
+  bool full_ = false;  // there was no room for all parts
+  typename SetPoint::Vector place_ = SetPoint::Vector::Zero();  // where they ended
   Scalar start_{};  // s, of the tick
   typename C::Part open_part_;
   std::optional<Traced> traced_;
@@ -99,13 +104,16 @@ class LiveStepsCore {
 
 template <class C>
 auto LiveStepsCore<C>::tick(Scalar period) -> SetPoint {
-  const Scalar start = executor_->time();
+  const bool lags = full_ || part_ < parts_.size() || has_pending();
+  start_ = executor_->time();
   parts_.clear();
   part_ = 0;
+  full_ = false;
+  if (lags) parts_.push_back(typename C::Part(place_));
   for (Motor& motor : motors()) close(motor);
-  const SetPoint point =
-      executor_->tick(period, [this](const typename C::Part& part) { parts_.push_back(part); });
-  start_ = start;
+  const SetPoint point = executor_->tick(
+      period, [this](const typename C::Part& part) { full_ = !parts_.push_back(part) || full_; });
+  place_ = point.position;
   return point;
 }
 

@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "cncplan/executor_levels.hpp"
 #include "cncplan/plan_blocks.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
@@ -172,4 +174,34 @@ TEST_CASE("a jog steps too", "[live]") {
     while (const auto edge = steps.next()) net[edge->motor] += edge->direction;
   }
   CHECK(net == std::array{320, -400, -160, 200});
+}
+
+TEST_CASE("edges that a long tick has no room for come in the next one, at rest too", "[live]") {
+  const auto machine = stepped();
+  std::vector<std::string> lines{"G1 F1200"};
+  for (int i = 1; i <= 90; ++i) lines.push_back("X" + std::to_string(0.2 * i) + " Y" + std::to_string(i % 2));
+  const auto blocks = test::blocks_of(lines, machine);
+  for (const SmoothLevel level :
+       {SmoothLevel::exact, SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(to_text(level));
+    Executor<Machine<3>, 128> executor(machine, LevelExecutorOptions{.level = level});
+    for (const auto& block : blocks) REQUIRE(executor.push(block));
+    executor.end_of_program();
+    LiveSteps steps(executor);
+    std::array<int, 4> net{};
+    double last = 0;
+    bool ordered = true;
+    for (int tick = 0; tick < 1000; ++tick) {
+      steps.tick(tick == 0 ? 60 : 0.1);
+      while (const auto edge = steps.next()) {
+        ordered = ordered && edge->time >= last;
+        last = edge->time;
+        net[edge->motor] += edge->direction;
+      }
+    }
+    CHECK(executor.finished());
+    CHECK(ordered);
+    CHECK(net == std::array{18 * 160, 0, 0, 0});
+    for (std::size_t motor = 0; motor < 4; ++motor) CHECK(steps.count(motor) == net[motor]);
+  }
 }

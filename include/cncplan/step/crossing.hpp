@@ -132,7 +132,8 @@ class StepCursor {
     if (!(piece_end_ > parameter_)) piece_end_ = parameter_end_;
     origin_ = target_;
     target_ = steps_at(piece_end_);
-    direction_ = target_ < origin_ ? -1 : 1;
+    // An axis that stands steps to where it stands, from wherever its count was left.
+    direction_ = target_ < (target_ == origin_ ? static_cast<Scalar>(count_) : origin_) ? -1 : 1;
     // An extremum within rounding of a boundary touches it. At the path's end nothing is rounded away.
     constexpr Scalar rounding = 8 * std::numeric_limits<Scalar>::epsilon();
     const Scalar slack = goes_on_ || piece_end_ < parameter_end_

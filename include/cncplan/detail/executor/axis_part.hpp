@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <optional>
 
 #include "cncplan/block.hpp"
 #include "cncplan/core/path_point.hpp"
@@ -13,7 +14,8 @@
 
 namespace cncplan::detail {
 
-/// What moves the axes over a part of a tick: constant jerk along the path of one block, or a jog. Its
+/// What moves the axes over a part of a tick: constant jerk along the path of one block, or a jog; or where
+/// they rest. Its
 /// parameter, and its length, are seconds from its start. What it points to belongs to the executor, which
 /// changes it at the next tick or request.
 template <MachineModel M, BlockModel B>
@@ -36,6 +38,9 @@ class AxisPart {
       : level_(&level),
         phase_{part.start, part.duration, Scalar(0), Scalar(0), Scalar(0), Scalar(0)},
         from_(part.start) {}
+  /// At rest, at the start of the tick: counts that lag behind come there.
+  explicit AxisPart(const Vector& position)
+      : rest_(position), phase_{Scalar(0), Scalar(1), Scalar(0), Scalar(0), Scalar(0), Scalar(0)} {}
 
   /// Seconds from the start of the tick.
   [[nodiscard]] Scalar start() const { return phase_.time; }
@@ -48,6 +53,7 @@ class AxisPart {
 
  private:
   [[nodiscard]] AxisMotion<Vector> at(Scalar t) const {
+    if (rest_) return {*rest_, Vector::Zero(), Vector::Zero(), Vector::Zero()};
     if (jog_ != nullptr) return jog_->at(t - from_);
     if (level_ != nullptr) return level_->axes_at(from_ + t);
     const auto sense = static_cast<Scalar>(direction_);
@@ -60,6 +66,7 @@ class AxisPart {
   }
 
   Driven path_;
+  std::optional<Vector> rest_;
   const Jog<M>* jog_ = nullptr;
   const LevelDriver<M, B>* level_ = nullptr;
   BasicPhase<Scalar> phase_{};
