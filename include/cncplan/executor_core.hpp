@@ -285,7 +285,7 @@ class ExecutorCore {
   [[nodiscard]] bool begins() const {
     if (level_ != nullptr) return level_->begins();
     return ended_.load(std::memory_order_acquire) && feed_.ready() < end_.load() && !feed_.failed() &&
-           !waits_to_be_resumed();
+           !motion_executor_.asked_to_rest();
   }
   Expected<void> jogged(const Expected<void>& done, bool returns);
   void end_jog(Scalar share);

@@ -94,9 +94,9 @@ class LiveStepsCore {
   std::size_t motor_count_ = 0;
   FixedList<typename C::Part, most_parts> parts_;
   std::size_t part_ = 0;
-  bool full_ = false;  // there was no room for all parts
+  bool full_ = false;                                           // there was no room for all parts
   typename SetPoint::Vector place_ = SetPoint::Vector::Zero();  // where they ended
-  Scalar start_{};  // s, of the tick
+  Scalar start_{};                                              // s, of the tick
   typename C::Part open_part_;
   std::optional<Traced> traced_;
   bool counted_ = false;  // the motors know where they are

@@ -24,11 +24,13 @@ const std::vector<SmoothLevel> levels{SmoothLevel::exact, SmoothLevel::fast, Smo
 // Of X, Y and Z without limits of their own.
 const Machine<3> bare{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 
-void load(Runner& executor, const std::vector<std::string>& lines, const Machine<3>& machine) {
+template <class E>
+void load(E& executor, const std::vector<std::string>& lines, const Machine<3>& machine) {
   for (const auto& block : test::blocks_of(lines, machine)) REQUIRE(executor.push(block));
   executor.end_of_program();
 }
-SetPoint<3> run(Runner& executor, double seconds) {
+template <class E>
+SetPoint<3> run(E& executor, double seconds) {
   SetPoint<3> now;
   for (int tick = 0; tick < seconds / period; ++tick) now = executor.tick(period);
   return now;
@@ -102,6 +104,32 @@ TEST_CASE("a program that ran back to its start is held there, and goes on forwa
     executor.resume();
     CHECK(run(executor, 8).position.isApprox(Vector3(0, 20, 0)));
     CHECK(executor.state() == ExecutorState::finished);
+  }
+}
+
+TEST_CASE("axes are jogged wherever the program rests as asked, however much of it is to come",
+          "[executor]") {
+  std::vector<std::string> lines{"F1200"};
+  const bool dwells = GENERATE(false, true);
+  if (dwells) lines.emplace_back("G4 P0.2");
+  for (int i = 1; i <= 50; ++i) lines.push_back("G1 X" + std::to_string(i) + " Y" + std::to_string(i % 2));
+  for (const SmoothLevel level : levels) {
+    for (const int how : {0, 1, 2}) {
+      CAPTURE(to_text(level), how, dwells);
+      Executor<Machine<3>, 32> executor(bare, LevelExecutorOptions{.tolerance = 0.05, .level = level});
+      load(executor, lines, bare);
+      if (how > 0) run(executor, 0.5);
+      how == 2 ? executor.reverse(true) : executor.feed_override(0);
+      const auto rest = run(executor, 3);
+      REQUIRE(executor.rests());
+      CHECK(executor.state() == ExecutorState::held);
+      REQUIRE(executor.jog_by({0, 0, 5}));
+      CHECK(run(executor, 2).position.isApprox(rest.position + Vector3(0, 0, 5)));
+      how == 2 ? executor.reverse(false) : executor.feed_override(1);
+      executor.resume();
+      CHECK(run(executor, 20).position.isApprox(Vector3(50, 0, 0)));
+      CHECK(executor.state() == ExecutorState::finished);
+    }
   }
 }
 

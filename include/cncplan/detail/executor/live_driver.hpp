@@ -220,7 +220,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] bool comes_down(S now) const { return !backwards_ && now < slower_from_; }
   // Whether it is to run back, and stands where the way that is kept begins.
   [[nodiscard]] bool nothing_behind() const {
-    return backwards_ && !clock_.chain().empty() && !(clock_.state().position > clock_.chain().start_time(0));
+    return backwards_ && clock_.standing() && !clock_.chain().empty() &&
+           !clock_.chain().rest_before(clock_.next_rest());
   }
   // Whether the way that there is ends where it stands, and all words of it are told.
   [[nodiscard]] bool nothing_ahead() const {
