@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "cncplan/live_steps.hpp"
+#include "cncplan/plan_program.hpp"
 #include "plan/at_level.hpp"
 #include "plan/level_runner.hpp"
 #include "plan/live_run.hpp"
@@ -61,6 +62,25 @@ TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
   const auto best = runner({.level = SmoothLevel::best, .reserve = 0, .hold_factor = 0});
   const auto whole_best = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::best, within));
   CHECK(run_to_end(*best, blocks) == Approx(whole_best->duration()).margin(5 * period));
+}
+
+TEST_CASE("executor levels: a part behind a cut that comes up to its feed is no slower for it",
+          "[executor-levels]") {
+  Machine<3> machine = mill;
+  machine.limits = {.velocity = 30, .acceleration = 3000, .jerk = 10000};
+  machine.axes[2].acceleration = 300;
+  std::string text = "G0 Z5\nF600\nG1 Y4\nG91\n";
+  for (int i = 0; i < 3; ++i) text += "G1 X1\nX0.2 Z0.3\n";
+  const auto program =
+      read_text(text + "G90\nX-1 Y0 Z1\nG0 X10\nG1 X-7 Z-25\nG0 Z1\n", machine, {.tolerance = 0.01});
+  REQUIRE_FALSE(program.failed());
+  const auto whole = plan_blocks(program.blocks(), machine,
+                                 {.tolerance = 0.01, .level = SmoothLevel::good, .hold_factor = 1.5});
+  REQUIRE(whole);
+  Executor<Machine<3>, 64> executor(machine,
+                                    LevelExecutorOptions{.tolerance = 0.01, .level = SmoothLevel::good});
+  const MillBlocks blocks(program.blocks().begin(), program.blocks().end());
+  CHECK(run_to_end(executor, blocks) < 1.01 * whole->duration());
 }
 
 TEST_CASE("executor levels: a long run in parts goes through the cuts, within limits and tolerance",
