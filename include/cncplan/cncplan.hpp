@@ -86,6 +86,7 @@
 #include "cncplan/detail/executor/clock_ramp.hpp"
 #include "cncplan/detail/executor/clocked_trajectory.hpp"
 #include "cncplan/detail/executor/drive.hpp"
+#include "cncplan/detail/executor/driven_parts.hpp"
 #include "cncplan/detail/executor/elapsed.hpp"
 #include "cncplan/detail/executor/feed_shares.hpp"
 #include "cncplan/detail/executor/given_plan.hpp"
