@@ -84,6 +84,11 @@ class LiveStepsCore {
   }
 
   void open(const typename C::Part& part);
+  void count_from(const typename SetPoint::Vector& place) {
+    for (Motor& motor : motors())
+      motor.count = step::count_at(place[motor.axis] * motor.drive.steps_per_unit);
+    counted_ = true;
+  }
   [[nodiscard]] bool has_pending() const {
     return std::ranges::any_of(motors_, [](const Motor& motor) { return motor.pending.has_value(); });
   }
@@ -113,6 +118,12 @@ auto LiveStepsCore<C>::tick(Scalar period) -> SetPoint {
   for (Motor& motor : motors()) close(motor);
   const SetPoint point = executor_->tick(
       period, [this](const typename C::Part& part) { full_ = !parts_.push_back(part) || full_; });
+  if (!parts_.empty()) {
+    if (!counted_) count_from(parts_[0].position(Scalar(0)));
+    const typename C::Part& last = parts_[parts_.size() - 1];
+    const auto lacks = last.position(last.length()) - point.position;  // where the executor had no room
+    full_ = full_ || lacks.cwiseAbs().maxCoeff() > Scalar(2e-6);
+  }
   place_ = point.position;
   return point;
 }
@@ -138,17 +149,14 @@ void LiveStepsCore<C>::open(const typename C::Part& part) {
   open_part_ = part;
   traced_.emplace(open_part_, pieces);
   const Shift clock{start_ + part.start()};
-  const auto place = part.position(Scalar(0));
   for (Motor& motor : motors()) {
     close(motor);
-    if (!counted_) motor.count = step::count_at(place[motor.axis] * motor.drive.steps_per_unit);
     motor.source.emplace(
         step::StepCursor<Traced, Shift>(*traced_, clock, motor.axis, motor.drive.steps_per_unit, motor.count,
                                         true, {motor.slack.direction, step::hysteresis(motor.drive)}),
         step::backlash_steps(motor.drive), clock.start, motor.slack);
     motor.pending = motor.source->next();
   }
-  counted_ = true;
 }
 
 }  // namespace detail

@@ -205,3 +205,30 @@ TEST_CASE("edges that a long tick has no room for come in the next one, at rest 
     for (std::size_t motor = 0; motor < 4; ++motor) CHECK(steps.count(motor) == net[motor]);
   }
 }
+
+TEST_CASE("a tick over many rests, and edges that nobody asked for at first, lose no step", "[live]") {
+  const auto machine = stepped();
+  std::vector<std::string> lines{"G1 F1200"};
+  for (int i = 1; i <= 20; ++i) {
+    lines.push_back("X" + std::to_string(0.5 * i));
+    lines.emplace_back("G4 P0.01");
+  }
+  const auto blocks = test::blocks_of(lines, machine);
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best})
+    for (const int unasked : {0, 1, 50}) {
+      CAPTURE(to_text(level), unasked);
+      Executor<Machine<3>, 128> executor(machine, LevelExecutorOptions{.level = level});
+      for (const auto& block : blocks) REQUIRE(executor.push(block));
+      executor.end_of_program();
+      LiveSteps steps(executor);
+      int net = 0;
+      for (int tick = 0; tick < 1000; ++tick) {
+        steps.tick(unasked == 0 && tick == 0 ? 60 : tick < unasked ? 0.005 : 0.1);
+        if (tick < unasked) continue;
+        while (const auto edge = steps.next()) net += edge->direction;
+      }
+      CHECK(executor.finished());
+      CHECK(net == 10 * 160);
+      CHECK(steps.count(0) == 10 * 160);
+    }
+}
