@@ -341,6 +341,70 @@ TEST_CASE("executor levels: a rapid behind a feed begins at its own share, and a
       }
 }
 
+TEST_CASE("executor levels: what rests before a slower block goes on, however short the way there was",
+          "[executor-levels]") {
+  for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best})
+    for (const char* way : {"0.5", "1", "1.99", "2", "2.02", "2.05", "3"})
+      for (const double share : {0.085, 0.1, 0.25, 0.3, 0.4, 0.6})
+        for (const double tick : {0.001, 0.01}) {
+          CAPTURE(level, way, share, tick);
+          const MillBlocks blocks = blocks_of("F1800\nG1 X" + std::string(way) + "\nG0 X8\n");
+          const auto executor = runner({.level = level});
+          executor->rapid_override(share);
+          std::size_t fed = 0;
+          double time = 0;
+          for (; time < 20 && !executor->finished(); time += tick) {
+            feed(*executor, blocks, fed);
+            executor->tick(tick);
+          }
+          CHECK(executor->finished());
+          CHECK(time < 8 / (30 * share) + 1.5);
+        }
+}
+
+TEST_CASE("executor levels: the way back ends at rest where what is kept begins", "[executor-levels]") {
+  std::string text = "F1800\n";
+  for (int i = 1; i <= 600; ++i)
+    text += "G1 X" + std::to_string(0.05 * i) + " Y" + std::to_string(i % 2 == 0 ? 3 : -3) + "\n";
+  const MillBlocks blocks = blocks_of(text);
+  for (const double at : {5.0, 12.0, 40.0, 60.0}) {
+    CAPTURE(at);
+    const auto executor = runner();
+    const Machine<3> machine = with_axes();
+    std::size_t fed = 0;
+    double time = 0;
+    for (; time < at; time += period) {
+      feed(*executor, blocks, fed);
+      executor->tick(period);
+    }
+    REQUIRE_FALSE(executor->finished());
+    executor->reverse(true);
+    Vector3 before = executor->tick(period).position, change = Vector3::Zero();
+    double fastest = 0, hardest = 0, off = 0;
+    for (int tick = 0; tick < 40000 && executor->state() != ExecutorState::held; ++tick) {
+      const auto now = executor->tick(period);
+      const Vector3 velocity = (now.position - before) / period;
+      fastest = std::max(fastest, velocity.norm());
+      if (tick > 1) hardest = std::max(hardest, (velocity - change).norm() / period);
+      off = std::max(off, std::abs(now.position.y()) - 3);
+      before = now.position;
+      change = velocity;
+    }
+    CHECK(executor->state() == ExecutorState::held);
+    CHECK(fastest <= machine.limits.velocity * (1 + 1e-6));
+    CHECK(hardest <= machine.limits.acceleration * (1 + 1e-3));
+    CHECK(off < 0.02);
+    executor->reverse(false);
+    executor->resume();
+    for (double more = 0; more < 200 && !executor->finished(); more += period) {
+      feed(*executor, blocks, fed);
+      before = executor->tick(period).position;
+    }
+    CHECK(executor->finished());
+    CHECK(before.isApprox(Vector3(30, 3, 0)));
+  }
+}
+
 TEST_CASE("executor levels: what stands before a rapid without speed goes on once it has one",
           "[executor-levels]") {
   const MillBlocks blocks = blocks_of("F1200\nG1 X40\nG0 X80\nG1 X120\n");

@@ -119,6 +119,12 @@ TEST_CASE("stops: nothing is told at rest that lies behind a hold or a stop", "[
       executor.resume();
       CHECK(told(executor, 2) == "M8 end");
     }
+    SECTION("a pause at a line") {
+      executor.pause_at(4);
+      CHECK(told(executor, 2) == "S200 M3 held");
+      executor.resume();
+      CHECK(told(executor, 2) == "M8 end");
+    }
     SECTION("a quick stop on the way") {
       run(executor, 0.2);
       executor.quick_stop();
@@ -129,8 +135,74 @@ TEST_CASE("stops: nothing is told at rest that lies behind a hold or a stop", "[
   });
 }
 
+TEST_CASE("stops: at a rest of the program words and dwells wait, too", "[executor]") {
+  const auto at_rest = [](const Lines& lines, auto&& ask, const std::string& held, const std::string& then) {
+    std::string program;
+    for (const auto& line : lines) program += line + " / ";
+    CAPTURE(program);
+    at_every_door(lines, [&](auto& executor) {
+      ask(executor);
+      CHECK(told(executor, 3) == held);
+      executor.resume();
+      CHECK(told(executor) == then);
+    });
+  };
+  const auto hold = [](auto& executor) { executor.feed_hold(); };
+  const auto stop = [](auto& executor) { executor.stop(); };
+  const auto step = [](auto& executor) { executor.single_step(true); };
+  at_rest({"M3 S200", "G4 P0.5", "G1 X5 F1200"}, hold, "held", "S200 M3 dwell end");
+  at_rest({"M3 S200", "G4 P0.5", "G1 X5 F1200"}, stop, "end", "end");
+  at_rest({"G4 P0.5", "G1 X5 F1200"}, hold, "held", "dwell end");
+  at_rest({"G1 X5 F1200", "G61.1", "M8", "X0"}, step, "held", "M8 end");
+  // A hold that comes where the motion comes to a rest anyway.
+  for (const int ticks : {300, 320, 330, 335, 338}) {
+    CAPTURE(ticks);
+    const auto late = [&](auto& executor) {
+      run(executor, ticks * period);
+      REQUIRE(executor.state() == ExecutorState::moving);
+      executor.feed_hold();
+    };
+    at_rest({"G1 X5 F1200", "M3 S200", "G4 P0.5", "X0"}, late, "held", "S200 M3 dwell end");
+    const auto late_stop = [&](auto& executor) {
+      run(executor, ticks * period);
+      executor.stop();
+    };
+    at_rest({"G1 X5 F1200", "M3 S200", "G4 P0.5", "X0"}, late_stop, "end", "end");
+  }
+}
+
+TEST_CASE("stops: a stop ends a dwell, and a hold lets one that has begun go on", "[executor]") {
+  at_every_door({"G1 X5 F1200", "G4 P2", "M8", "X0"}, [](auto& executor) {
+    run(executor, 1);
+    REQUIRE(executor.state() == ExecutorState::dwelling);
+    SECTION("hold") {
+      executor.feed_hold();
+      CHECK(told(executor, 4) == "dwell held");
+      executor.resume();
+      CHECK(told(executor) == "M8 end");
+    }
+    SECTION("stop") {
+      executor.stop();
+      run(executor, 0.01);
+      CHECK(executor.state() == ExecutorState::finished);
+      CHECK(executor.jog_by({0, 1, 0}));
+      run(executor, 2);
+      CHECK(executor.tick(period).position.isApprox(Vector3(5, 1, 0)));
+    }
+  });
+}
+
 TEST_CASE("stops: the way back leads through them, and forwards they stop again", "[executor]") {
-  at_every_door({"G1 X5 F1200", "M0", "X20", "Y9"}, [](auto& executor) {
+  at_every_door({"G1 X5 F1200", "M0", "M8", "X20", "Y9"}, [](auto& executor) {
+    run(executor, 2);
+    REQUIRE(executor.state() == ExecutorState::stopped);
+    executor.reverse(true);
+    executor.resume();
+    CHECK(told(executor, 2) == "held");  // nothing is told on the way back
+    CHECK(executor.tick(period).position.norm() < 1e-6);
+    executor.reverse(false);
+    executor.resume();
+    CHECK(told(executor, 0.2) == "moving");
     run(executor, 2);
     REQUIRE(executor.state() == ExecutorState::stopped);
     executor.resume();

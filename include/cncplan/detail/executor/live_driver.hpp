@@ -86,7 +86,10 @@ class LiveDriver final : public LevelDriver<M, B> {
     raised_ = raised_ || feed_share_ > S(1);
   }
   void rapid_override(S share) override { rapid_share_ = cut(share, S(1)); }
-  void backwards(bool wanted) override { backwards_ = wanted; }
+  void backwards(bool wanted) override {
+    backwards_ = wanted;
+    no_way_back_ = no_way_back_ && wanted;
+  }
   void single_step(bool wanted) override { single_step_ = wanted; }
   void optional_stop(bool wanted) override { optional_stop_ = wanted; }
   void program_stop(bool wanted) override { program_stop_ = wanted; }
@@ -96,7 +99,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S worst_hold() const override { return planner_.longest_hold(); }
   [[nodiscard]] bool stopped() const override { return stopped_ && clock_.rests(); }
   [[nodiscard]] bool stands() const override { return clock_.rests(); }
-  [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0) && !at_program_stop(); }
+  [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0) && !dwell_waits(); }
   [[nodiscard]] bool rests() const override {
     return clock_.rests() && !dwells() &&
            (held_ || stopped_ || no_speed() || nothing_behind() || nothing_ahead());
@@ -169,7 +172,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     begins_at_ = *begins_at;
     clock_ = Clock(machine_);
     driven_ = DrivenParts<Planner>(planner_);
-    tail_ahead_ = stopped_ = program_holds_ = backwards_ = rests_before_ = false;
+    tail_ahead_ = stopped_ = program_holds_ = backwards_ = rests_before_ = no_way_back_ = false;
     rested_ = quiet_ = S(0);
     feed_rate_ = S(1);
     pushed_before_ = 0;
@@ -185,7 +188,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   static constexpr std::int64_t parts_behind = 3;
   static constexpr S same_time = S(1e-9);  // s
   static constexpr S rounding = S(1e-6);
-  static constexpr S time_to_plan = S(0.5);  // s of motion that is left when blocks go on without others
+  static constexpr S way_to_brake = S(0.05);  // s of the plan that a rest on the way back lies from its start
+  static constexpr S time_to_plan = S(0.5);   // s of motion that is left when blocks go on without others
 
   template <class... Args>
   LiveDriver(const M& machine, const Options& options, std::pmr::memory_resource* memory,
@@ -201,12 +205,6 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   [[nodiscard]] static S cut(S share, S most) { return share > S(0) ? std::min(share, most) : S(0); }
 
-  // s, in the tick.
-  [[nodiscard]] S last_part_ends() const {
-    const TickPart& last = parts_[parts_.size() - 1];
-    return last.start + last.duration;
-  }
-
   // Whether a feed or a rapid of no speed is asked for where it is.
   [[nodiscard]] bool no_speed() const {
     if (clock_.chain().empty()) return !(feed_share_ > S(0));
@@ -220,8 +218,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] bool comes_down(S now) const { return !backwards_ && now < slower_from_; }
   // Whether it is to run back, and stands where the way that is kept begins.
   [[nodiscard]] bool nothing_behind() const {
-    return backwards_ && clock_.standing() && !clock_.chain().empty() &&
-           !clock_.chain().rest_before(clock_.next_rest());
+    if (!backwards_ || clock_.chain().empty()) return false;
+    return no_way_back_ ? clock_.rests()
+                        : clock_.standing() && !clock_.chain().rest_before(clock_.next_rest());
   }
   // Whether the way that there is ends where it stands, and all words of it are told.
   [[nodiscard]] bool nothing_ahead() const {
@@ -293,7 +292,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   // The rate: what is asked for, by what is planned.
   [[nodiscard]] S wanted() {
-    if (held_ || stopped_) return S(0);
+    if (held_ || stopped_ || no_way_back_) return S(0);
     S share = feed_share_;
     if (!clock_.chain().empty()) {
       const S now = clock_.state().position;
@@ -337,9 +336,9 @@ class LiveDriver final : public LevelDriver<M, B> {
       take_tail();
     if (backwards_) turned_ = std::max(turned_, clock_.state().position);
     if (clock_.heads_back()) stop_passed_ = -infinity;
-    if (clock_.standing()) {
-      rests_before_ = false;
-    } else {
+    if (clock_.rests()) rests_before_ = false;
+    if (!clock_.standing()) {
+      brake_at_start(period);
       brake_for_pause(period);
       slow_for_next(period);
     }
@@ -348,12 +347,15 @@ class LiveDriver final : public LevelDriver<M, B> {
     const bool goes_on = clock_.step(
         left, [this] { return wanted(); }, [&] { return may_leave(period - left); },
         [this](S end, bool faster) { return faster ? may_go_faster(end) : may_change(end); });
+    pause_here();
     tell_words(period - left);
     const S used = before - left;
     if (!stood && used > S(0) &&
-        !(clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration()))
+        !(clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration())) {
       parts_.push_back({period - before, used, clock_.ramp(),
                         clock_.standing() ? clock_.elapsed() : clock_.elapsed() - used});
+      moved_until_ = period - left;
+    }
     return goes_on;
   }
 
@@ -364,19 +366,34 @@ class LiveDriver final : public LevelDriver<M, B> {
     return !(tail_ahead_ && end > cut_) && planned_share(end) == planned_share(clock_.state().position);
   }
   bool may_leave(S in_tick) {
+    pause_here();
     if (!tell_words(in_tick)) return false;
     stop_again();
-    if (at_program_stop()) return false;
-    if (!held_ && pauses())
-      if (const auto pause = next_pause(); pause && std::abs(*pause - clock_.state().position) <= same_time)
-        hold_at(*pause);
-    return true;
+    return !dwell_waits();
+  }
+  // A dwell waits for a resume where it has not begun, or the program stops in it.
+  [[nodiscard]] bool dwell_waits() const {
+    const bool begins = clock_.standing() && clock_.state().position == clock_.next_rest();
+    return stopped_ || at_program_stop() || (held_ && begins);
   }
 
   [[nodiscard]] bool pauses() const { return (single_step_ || pause_line_ != 0) && !backwards_; }
   void hold_at(S time) {
     passed_ = time;
     held_ = true;
+  }
+  // At a rest before a block at which it is to pause; of single blocks a dwell is one.
+  void pause_here() {
+    if (held_ || stopped_ || !pauses() || !clock_.standing()) return;
+    const S until = clock_.state().position + (single_step_ ? clock_.dwell() : S(0)) + same_time;
+    if (const auto pause = next_pause(); pause && *pause <= until) hold_at(*pause);
+  }
+  // Back it goes no farther than what is kept: where that has no rest, it brakes before its start.
+  void brake_at_start(S period) {
+    if (!clock_.heads_back() || clock_.chain().rest_before(clock_.state().position)) return;
+    const S start = clock_.chain().start_time(0) + way_to_brake;
+    const auto brake = clock_.brake_in(period);
+    no_way_back_ = no_way_back_ || (brake ? *brake : clock_.state_after(S(1.5) * period).position) <= start;
   }
   // Brakes so that the axes come to rest at the start of a block, or before it: where a brake that begins a
   // tick later would end behind it. Where the search finds none, the last planned one has to do.
@@ -450,12 +467,12 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
 
   // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
-  // no room for more of them: they come with the next one. At a rest that was asked for those that stand
-  // there wait.
+  // no room for more of them: they come with the next one. At a rest that was asked for, or on the way back,
+  // those that stand there wait.
   bool tell_words(S in_tick) {
     const S shown = clock_.state().position;
     const auto due = [&](S time) {
-      const bool waits = clock_.rests() && (held_ || stopped_);
+      const bool waits = backwards_ || (clock_.rests() && (held_ || stopped_));
       return waits ? time < shown - same_time : time <= shown;
     };
     for (auto next = driven_.next_word(); next && due(next->time); next = driven_.next_word()) {
@@ -516,6 +533,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   S passed_ = -infinity;       // when the block begins before which it last paused
   S slower_from_ = -infinity;  // when the block begins for which the rate comes down
   bool rests_before_ = false;  // that one: nothing else comes down in time
+  bool no_way_back_ = false;   // what is kept begins here, without a rest
   S turned_ = -infinity;       // the furthest from which it was to run back
   S stop_passed_ = -infinity;  // where the rest begins at which the program stopped last
   S begins_at_{};              // s of the first part, at which it stands first
@@ -523,6 +541,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   S cut_{};                    // where it begins
   BasicReachedWords<S> words_;
   FixedList<TickPart, Base::most_parts> parts_;
+  S moved_until_{};       // s of the tick that has parts
   S rested_{}, quiet_{};  // s
   S feed_rate_ = S(1);    // where the plan is for a higher feed
   std::int64_t pushed_before_ = 0;
@@ -545,7 +564,7 @@ void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
   S left = period;
   while (left > S(0) && step(left, period)) {
   }
-  rested_ = !rests() ? S(0) : parts_.empty() ? rested_ + period : period - last_part_ends();
+  rested_ = !rests() ? S(0) : parts_.empty() ? rested_ + period : period - moved_until_;
   tell_words(period - left);
   if (!clock_.chain().empty()) {
     const S time = point.time;
