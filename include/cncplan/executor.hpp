@@ -67,7 +67,8 @@ class ExecutorRoom {
 /// - a hold comes once a change of the rate is proven: soon, with the `reserve` of the options;
 /// - `single_step` and `pause_at` rest before the next block, on the curve that is driven, as near as a brake
 ///   is proven or planned; behind its start where limits do not allow it sooner;
-/// - `reverse` goes back to the first rest of the parts that are kept, three behind this one;
+/// - `reverse` goes back to the first rest of the parts that are kept, three behind this one, or to their
+///   start where there is no rest;
 /// - `restart` begins where the first block of the line begins, and the axes go there first;
 /// - without `background` the work of a whole part is done in a `push`, `end_of_program` or `tick`: with it,
 ///   only in `push` and `plan`, and a tick asks for no memory.
