@@ -48,16 +48,10 @@ void drive(const BasicPathAhead<S>& path, BasicPlace<S>& start, BasicRunningProf
   const auto too_short = [&](const BasicPlace<S>& at) {
     return ring.holds(at.block) && ring.length(at.block) - at.along <= shortest;
   };
-  // No part lies beyond a rest to which the profile comes.
-  const auto leaves = [&](std::int64_t block) {
-    return ring.holds(block + path.direction) &&
-           !(ring.holds(block) && (path.stops_behind(block) || path.rests_behind(block)));
-  };
   while (seconds > S(0)) {
     const BasicState<S> now = running.state();
-    BasicPlace<S> at = locate(path, start, running, now.position);
-    if (const BasicPlace<S> near = path.snapped(at); near.block == at.block || leaves(at.block)) at = near;
-    while (leaves(at.block) && too_short(at)) at = {at.block + path.direction, S(0)};
+    BasicPlace<S> at = path.snapped(locate(path, start, running, now.position));
+    while (ring.holds(at.block + path.direction) && too_short(at)) at = {at.block + path.direction, S(0)};
     const S edge = running.to_edge();
     BasicMotionPart<S> part{{passed, edge > S(0) ? std::min(seconds, edge) : seconds, S(0), now.velocity,
                              now.acceleration, now.jerk},
