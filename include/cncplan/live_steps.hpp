@@ -121,8 +121,8 @@ auto LiveStepsCore<C>::tick(Scalar period) -> SetPoint {
   if (!parts_.empty()) {
     if (!counted_) count_from(parts_[0].position(Scalar(0)));
     const typename C::Part& last = parts_[parts_.size() - 1];
-    const auto lacks = last.position(last.length()) - point.position;  // where the executor had no room
-    full_ = full_ || lacks.cwiseAbs().maxCoeff() > Scalar(2e-6);
+    const Scalar left = (last.position(last.length()) - point.position).cwiseAbs().maxCoeff();
+    full_ = full_ || left > Scalar(2e-6);  // the executor had no room for all of them
   }
   place_ = point.position;
   return point;

@@ -20,6 +20,7 @@ TEST_CASE("b of a cell goes from tangent to tangent, bent by its skew") {
                  << ", " << b.middle << ", " << b.end);
     CHECK(b.at(0, shape) == Approx(b.start));
     CHECK(b.at(1, shape) == Approx(b.end));
+    for (int k = 0; k <= 100; ++k) REQUIRE(b.at(k / 100.0, shape) <= b.bound() * (1 + 1e-12));
     CHECK(shape.to_middle() + shape.from_middle() == Approx(shape.length));
     CHECK(b.start + 2 * b.acceleration(0, shape) * shape.to_middle() == Approx(b.middle));
     CHECK(b.end - 2 * b.acceleration(1, shape) * shape.from_middle() == Approx(b.middle));

@@ -21,6 +21,8 @@ class FixedList {
     items_[size_++] = item;
     return true;
   }
+  /// Only where it is not empty.
+  constexpr void pop_back() { --size_; }
   constexpr void clear() { size_ = 0; }
 
   [[nodiscard]] constexpr std::size_t size() const { return size_; }

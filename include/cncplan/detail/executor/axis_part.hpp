@@ -14,8 +14,7 @@
 
 namespace cncplan::detail {
 
-/// What moves the axes over a part of a tick: constant jerk along the path of one block, or a jog; or where
-/// they rest. Its
+/// What the axes do over a part of a tick: constant jerk along the path of one block, a jog, or a rest. Its
 /// parameter, and its length, are seconds from its start. What it points to belongs to the executor, which
 /// changes it at the next tick or request.
 template <MachineModel M, BlockModel B>
@@ -38,7 +37,7 @@ class AxisPart {
       : level_(&level),
         phase_{part.start, part.duration, Scalar(0), Scalar(0), Scalar(0), Scalar(0)},
         from_(part.start) {}
-  /// At rest, at the start of the tick: counts that lag behind come there.
+  /// At rest for a second from the start of the tick, for steps that were left over.
   explicit AxisPart(const Vector& position)
       : rest_(position), phase_{Scalar(0), Scalar(1), Scalar(0), Scalar(0), Scalar(0), Scalar(0)} {}
 

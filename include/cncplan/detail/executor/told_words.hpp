@@ -34,6 +34,7 @@ class ToldWords {
   template <class Feed>
   [[nodiscard]] bool begin_tick(const Feed& feed) {
     last_ = {};
+    before_ = blocks_;
     const std::int64_t ready = feed.ready();
     wordless_ = std::max(wordless_, blocks_);
     while (wordless_ < ready && feed[wordless_].word.letter == '\0') ++wordless_;
@@ -46,9 +47,12 @@ class ToldWords {
     if (part.time - last_.end < S(1e-6) * period) tell(feed, last_.block, last_.start, words);
     last_ = {block, part.time, part.time + part.duration};
   }
-  /// The tick ends in a block, at rest or in motion.
+  /// The tick ends in a block, at rest or in motion. What a part behind a rest has told, by rounding, is told
+  /// anew once the motion comes there.
   template <class Feed>
   void end_tick(const Feed& feed, std::int64_t block, bool stands, S period, Words& words) {
+    while (stands && blocks_ > std::max(block + 1, before_))
+      if (feed[--blocks_].word.letter != '\0') words.pop_back();
     tell(feed, std::min(last_.block, block), last_.start, words);
     tell(feed, block, stands && last_.end > S(0) ? last_.end : period, words);
   }
@@ -60,8 +64,8 @@ class ToldWords {
     S start{}, end{};
   };
 
-  std::int64_t blocks_ = 0;
-  std::int64_t wordless_ = 0;  // blocks that have been told, or have no word to tell
+  std::int64_t blocks_ = 0, before_ = 0;  // before the tick
+  std::int64_t wordless_ = 0;             // blocks that have been told, or have no word to tell
   Part last_{};
 };
 

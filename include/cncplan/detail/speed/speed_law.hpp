@@ -58,6 +58,8 @@ struct BasicCellSpeed {
     const S x = share * shape.length;
     return start + x * (first + x * bend * (S(0.5) - shape.skew * (S(0.5) - share / S(3))));
   }
+  /// No b in the cell is above this: b'' has one sign, so b lies below its chord or below both tangents.
+  [[nodiscard]] constexpr S bound() const { return std::max({start, middle, end}); }
   [[nodiscard]] constexpr S acceleration(S share, const BasicCellShape<S>& shape) const {
     const auto [first, bend] = derivatives(shape);
     return (first + share * shape.length * bend * (S(1) - shape.skew * (S(1) - share))) / S(2);

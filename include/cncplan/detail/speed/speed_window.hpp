@@ -164,11 +164,11 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
     for (std::size_t cell = cell0; cell < cell1; ++cell) {
       const BasicCellSpeed<S> b = speed_in(cell, numbers);
       const BasicUtilisation<S> sampled = sampled_utilisation(problem.cells[cell], *problem.limits, b);
-      const auto [slowest, fastest] = std::minmax({b.start, b.middle, b.end});
-      const S between_places =
-          std::sqrt(S(1) + (S(1) - slowest / fastest) / S(8));  // at the peak of a parabola
-      const bool far_from_limits = sampled.force() < S(0.8) &&
-                                   sampled.velocity * between_places < S(0.99) * problem.scales[cell].speed;
+      // The speed may be higher between the places than at any of them.
+      const S at_places = std::max({b.start, b.at(S(0.5), problem.cells[cell].shape()), b.end});
+      const S velocity = sampled.velocity * std::sqrt(b.bound() / at_places);
+      const bool far_from_limits =
+          sampled.force() < S(0.8) && velocity < S(0.99) * problem.scales[cell].speed;
       if (far_from_limits) continue;
       BasicUtilisation<S> utilisation;
       emit_cell(b, problem.cells[cell].shape(), [&](const BasicPhase<S>& phase) {
