@@ -159,7 +159,7 @@ class ExecutorCore {
   }
 
   // Jogs, while no program moves the axes: it is held, stopped or over, or there is none. A program goes on
-  // once the axes are back on its path.
+  // once the axes are back on its path. What is asked for during a quick stop of a jog begins at rest.
 
   /// The axes come to velocities, which they keep until another request or the end of their travel. Each
   /// keeps its limits. Those of the tool do not act, but where an axis of it has none: then it has its share
@@ -406,8 +406,8 @@ ExecutorState ExecutorCore<M, B>::state() const {
     if (!driver.stands()) return driver.asked_to_rest() ? ExecutorState::holding : ExecutorState::moving;
     if (driver.dwells()) return ExecutorState::dwelling;
     if (driver.at_program_stop()) return ExecutorState::stopped;
-    if (driver.asked_to_rest()) return ExecutorState::held;
-    return has_run_ && !driver.rests() ? ExecutorState::moving : ExecutorState::waiting;
+    if (!driver.rests()) return has_run_ ? ExecutorState::moving : ExecutorState::waiting;
+    return driver.asked_to_rest() ? ExecutorState::held : ExecutorState::waiting;
   });
 }
 

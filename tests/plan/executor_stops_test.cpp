@@ -221,3 +221,18 @@ TEST_CASE("stops: the way back leads through them, and forwards they stop again"
     CHECK(executor.state() == ExecutorState::finished);
   });
 }
+
+TEST_CASE("stops: turning round is no hold", "[executor]") {
+  at_every_door({"G1 X20 F1200", "Y9"}, [](auto& executor) {
+    run(executor, 0.5);
+    bool held = false;
+    for (const bool back : {true, false, true, false}) {
+      executor.reverse(back);
+      for (int tick = 0; tick < 200; ++tick) {
+        executor.tick(period);
+        held = held || executor.state() == ExecutorState::held;
+      }
+    }
+    CHECK_FALSE(held);
+  });
+}

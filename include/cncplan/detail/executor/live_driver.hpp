@@ -108,7 +108,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     return clock_.rests() && !dwells() && !at_program_stop() && nothing_ahead();
   }
   [[nodiscard]] bool asked_to_rest() const override {
-    return held_ || stopped_ || no_speed() || backwards_ != clock_.heads_back();
+    return held_ || stopped_ || no_speed() || no_way_back_ || backwards_ != clock_.heads_back();
   }
   [[nodiscard]] bool at_program_stop() const override { return clock_.rests() && program_holds_ && held_; }
   [[nodiscard]] S until_change() const override {
