@@ -165,8 +165,8 @@ BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<
       const BasicCellSpeed<S> b = speed_in(cell, numbers);
       const BasicUtilisation<S> sampled = sampled_utilisation(problem.cells[cell], *problem.limits, b);
       // The speed may be higher between the places than at any of them.
-      const S at_places = std::max({b.start, b.at(S(0.5), problem.cells[cell].shape()), b.end});
-      const S velocity = sampled.velocity * std::sqrt(b.bound() / at_places);
+      const S at_samples = std::max({b.start, b.at(S(0.5), problem.cells[cell].shape()), b.end});
+      const S velocity = sampled.velocity * std::sqrt(b.bound() / at_samples);
       const bool far_from_limits =
           sampled.force() < S(0.8) && velocity < S(0.99) * problem.scales[cell].speed;
       if (far_from_limits) continue;
