@@ -118,9 +118,10 @@ class ExecutorCore {
     drive([&](auto& driver) { driver.resume(); });
     if (away_) returns_ = true;
   }
-  /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is what is no number. Values outside are cut.
+  /// Share of the programmed feed, 0 to `most_override`, 2 by default; 0 is a hold, and so is what is no
+  /// number. Values outside are cut.
   void feed_override(Scalar share) {
-    drive([&](auto& driver) { driver.feed_override(share); });
+    drive([&](auto& driver) { driver.feed_override(std::min(share, most_override_)); });
   }
   /// Share of the rapid rate, 0 to 1.
   void rapid_override(Scalar share) {
@@ -330,7 +331,7 @@ class ExecutorCore {
   std::int64_t capacity_;
   Scalar quick_stop_share_;
   bool background_;
-  Scalar longest_wait_;
+  Scalar longest_wait_, most_override_;
   detail::CellFeed<M, B> feed_;
   detail::BasicMotionExecutor<Scalar> motion_executor_;
   detail::BasicElapsed<Scalar> time_;
@@ -364,9 +365,10 @@ ExecutorCore<M, B>::ExecutorCore(const detail::ExecutorMemory<M, B>& memory, con
       quick_stop_share_(detail::brake_share(options.quick_stop_share)),
       background_(options.background),
       longest_wait_(options.longest_wait),
+      most_override_(options.most_override),
       feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
             {options.tolerance, options.rotary_tolerance, options.exact_between_rapids_and_feeds},
-            memory.feed),
+            options.most_override, memory.feed),
       motion_executor_(memory.motion_executor, capacity_),
       jog_(machine) {
   motion_executor_.program_stop(true);

@@ -29,7 +29,8 @@ struct ExecutorLevels {
             .quick_stop_share = options.quick_stop_share,
             .background = options.background,
             .reserve = options.reserve,
-            .hold_factor = options.hold_factor};
+            .hold_factor = options.hold_factor,
+            .most_override = options.most_override};
   }
 
   /// Nothing where the level is `fast` at most.

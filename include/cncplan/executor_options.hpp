@@ -1,6 +1,7 @@
 // How an executor is to run programs.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 
 #include "cncplan/core/error.hpp"
@@ -42,6 +43,9 @@ struct BasicExecutorOptions {
   /// `good` and `best` are slower where a hold would come later. Not behind a map, where no
   /// bound is planned.
   S hold_factor = S(1.5);
+  /// >= 1: the highest override of the feed. At the level `fast` one above 1 leaves as much acceleration as
+  /// paths do at the highest.
+  S most_override = S(2);
 };
 
 /// Nothing, or the first number that is out of its domain.
@@ -51,6 +55,9 @@ template <std::floating_point S, class Level>
   if (!(options.longest_wait >= S(0)))
     return refusal(options.longest_wait < S(0) ? ErrorCode::negative : ErrorCode::not_finite, "longest wait",
                    options.longest_wait);
+  if (!std::isfinite(options.most_override) || options.most_override < S(1))
+    return refusal(options.most_override < S(1) ? ErrorCode::below_limit : ErrorCode::not_finite,
+                   "highest override", options.most_override, S(1));
   return detail::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
                                   options.tolerance > S(0));
 }

@@ -19,6 +19,7 @@ struct BasicTrajectoryExecutorOptions {
   /// How many times the least that a brake takes it may take, > 1; behind a map infinity alone
   S hold_factor = std::numeric_limits<S>::infinity();
   S quick_stop_share = S(1);  ///< as in `BasicExecutorOptions`
+  S most_override = S(2);     ///< as in `BasicExecutorOptions`
 };
 
 using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
@@ -53,7 +54,9 @@ class TrajectoryExecutor : private detail::ExecutorRoom<M, B, 2>, public Executo
   /// of higher limits.
   TrajectoryExecutor(const Trajectory<M, B>& trajectory, const M& machine, const Options& options = {},
                      std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : ExecutorCore<M, B>(this->memory(), machine, {.quick_stop_share = options.quick_stop_share}),
+      : ExecutorCore<M, B>(
+            this->memory(), machine,
+            {.quick_stop_share = options.quick_stop_share, .most_override = options.most_override}),
         driver_(detail::ExecutorLevels<M, B>::drive(trajectory, machine,
                                                     {options.hold_factor, options.longest_hold}, memory)) {
     this->drive_by(*driver_);

@@ -27,8 +27,8 @@ class Executor:
     level : str
         "exact", "fast", "good" or "best", as of `plan_file`. At "good" and "best" parts of the program are planned
         within `push`, `tick` and `end_of_program`, which take some tens of milliseconds then; an override above 1
-        is that of blocks that are pushed while it holds, a lower one slows the whole motion; `reverse` goes back to
-        the first rest that is kept; `restart` begins where the line begins.
+        acts at once where limits leave room, and some seconds ahead at corners too; a lower one slows the whole motion;
+        `reverse` goes back to the first rest that is kept; `restart` begins where the line begins.
     longest_wait : float
         s at rest for which blocks are held back for the ones that follow them.
     quick_stop_share : float
@@ -38,6 +38,8 @@ class Executor:
     hold_factor : float
         > 1, or 0: how many times the least that a brake takes a hold may take at "good" and "best". Plans are
         slower where it would take longer; 0 asks for no such plan.
+    most_override : float
+        >= 1: the highest override of the feed.
 
     Examples
     --------
@@ -53,11 +55,11 @@ class Executor:
     def __init__(self, machine: Machine, tolerance: float = 0.01, level: str = "fast", *,
                  rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
                  start: Sequence[float] | None = None, longest_wait: float = 0.05, quick_stop_share: float = 1.0,
-                 reserve: float = 0.02, hold_factor: float = 1.5) -> None:
+                 reserve: float = 0.02, hold_factor: float = 1.5, most_override: float = 2.0) -> None:
         options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
         self._core = _core.Executor(core_of(machine), options, not_negative(longest_wait, "longest_wait"),
                                     finite(quick_stop_share, "quick_stop_share"), finite(reserve, "reserve"),
-                                    finite(hold_factor, "hold_factor"))
+                                    finite(hold_factor, "hold_factor"), finite(most_override, "most_override"))
         self.machine = machine
         self.level = level  #: what was asked for
 
@@ -142,7 +144,7 @@ class Executor:
         self._core.resume()
 
     def feed_override(self, share: float) -> None:
-        """Share of the programmed feed, 0 to 2; values outside are cut, 0 is a hold."""
+        """Share of the programmed feed, 0 to `most_override`; values outside are cut, 0 is a hold."""
         self._core.feed_override(finite(share, "share"))
 
     def rapid_override(self, share: float) -> None:

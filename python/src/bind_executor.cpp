@@ -16,7 +16,7 @@ void bind_executor(py::module_& module) {
   };
   py::class_<AnyExecutor>(module, "Executor")
       .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
-                       double quick_stop_share, double reserve, double hold_factor) {
+                       double quick_stop_share, double reserve, double hold_factor, double most_override) {
         if (machine.has_map())
           raise(Error{ErrorCode::not_supported, "executor of a machine behind a map", 0, 0});
         const ExecutorSettings settings{options,
@@ -27,7 +27,8 @@ void bind_executor(py::module_& module) {
                                          .longest_wait = longest_wait,
                                          .quick_stop_share = quick_stop_share,
                                          .reserve = reserve,
-                                         .hold_factor = hold_factor}};
+                                         .hold_factor = hold_factor,
+                                         .most_override = most_override}};
         return make_executor(machine, settings);
       }))
       .def("push_line", [](E& e, const std::string& line) { return e.push_line(line); })

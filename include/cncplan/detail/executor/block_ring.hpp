@@ -28,8 +28,8 @@ struct BasicMotionBlock {
   int line{};            ///< of the program, for pauses
   bool goes_on{};        ///< the next one is of the same block of the program: no single step ends here
   bool program_stop{};   ///< the motion stops behind it where that is switched on (M0)
-  /// Limits up to twice the feed: velocity not below, acceleration and jerk not above those of
-  /// `segment_limits`. A velocity of 0: those of `segment_limits`.
+  /// Limits up to the highest override of the feed: velocity not below, acceleration and jerk not above those
+  /// of `segment_limits`. A velocity of 0: those of `segment_limits`.
   BasicLimits<S> above{S(0), S(0), S(0)};
   std::int64_t block{};  ///< number of the block of the program that it is a cell of
   S from{};              ///< mm from the start of that block to its own

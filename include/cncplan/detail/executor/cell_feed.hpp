@@ -74,10 +74,10 @@ class CellFeed {
   };
 
   CellFeed(const M& machine, const Rules& rules, const SmoothingRules<Scalar>& smoothing,
-           const Memory& memory)
+           Scalar most_override, const Memory& memory)
       : machine_(machine),
         tool_(tool_axes(machine)),
-        maker_(machine, rules, true),
+        maker_(machine, rules, most_override),
         merger_(machine_, smoothing, merged_lines_for(memory.room)),
         smoothing_(smoothing, machine_, memory.smoothing),
         room_(static_cast<std::int64_t>(memory.room)),

@@ -17,8 +17,6 @@ namespace cncplan::detail {
 template <std::floating_point S>
 class BasicFeedShares {
  public:
-  static constexpr S most_share = S(2);
-
   /// The thread that drives: what is asked for.
   void ask(S share) { asked_.store(share > S(1) ? share : S(1), std::memory_order_relaxed); }
   [[nodiscard]] S asked() const { return asked_.load(std::memory_order_relaxed); }

@@ -81,7 +81,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!clock_.rests()) clock_.brake_with(std::max(share, S(1)));
   }
   void feed_override(S share) override {
-    feed_share_ = cut(share, BasicFeedShares<S>::most_share);
+    feed_share_ = cut(share, infinity);
     planner_.shares().ask(feed_share_);
     raised_ = raised_ || feed_share_ > S(1);
   }

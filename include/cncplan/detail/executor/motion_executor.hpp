@@ -85,8 +85,11 @@ class BasicMotionExecutor {
     pending_ = true;
   }
 
-  /// Share of the programmed feed, 0 to 2; 0 is a hold, and so is NaN. Values outside are cut.
-  void feed_override(S share) { ask(path_.asked.feed_share, share_up_to(S(2), share)); }
+  /// Share of the programmed feed; 0 is a hold, and so is what is no number. Limits hold up to the share for
+  /// which blocks have limits above their feed.
+  void feed_override(S share) {
+    ask(path_.asked.feed_share, share_up_to(std::numeric_limits<S>::max(), share));
+  }
   /// Share of the rapid rate, 0 to 1, as for the feed.
   void rapid_override(S share) { ask(path_.asked.rapid_share, share_up_to(S(1), share)); }
 

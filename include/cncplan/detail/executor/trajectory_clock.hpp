@@ -101,9 +101,9 @@ class TrajectoryClock {
   }
 
   /// One step: dwells, leaves a rest, or drives on to the next one, at most for `left` seconds; whether more
-  /// may happen in what is left of them. `wanted()` is the rate that is asked for, -1 to 2, `may_leave()` is
-  /// asked at rests, and `may_change(end, faster)` before a change of the rate begins that ends where the
-  /// clock shows that; `faster`: it takes the rate above 1.
+  /// may happen in what is left of them. `wanted()` is the rate that is asked for, not below -1,
+  /// `may_leave()` is asked at rests, and `may_change(end, faster)` before a change of the rate begins that
+  /// ends where the clock shows that; `faster`: it takes the rate above 1.
   template <class Wanted, class MayLeave, class MayChange>
   bool step(S& left, Wanted&& wanted, MayLeave&& may_leave, MayChange&& may_change) {
     return standing_ ? leave(left, wanted, may_leave) : move(left, wanted(), may_change);
@@ -479,7 +479,6 @@ class TrajectoryClock {
   [[nodiscard]] BasicAxisLimits<S> fastest_change(S shown) const {
     const auto point = chain_.at({shown, S(1), S(0), S(0)});
     BasicAxisLimits<S> limits;
-    limits.velocity_up = limits.velocity_down = S(2);
     S acceleration = limits.acceleration_up, jerk = limits.jerk;
     const auto lower = [&](S speed, const BasicLimits<S>& own) {
       speed = std::max(speed, S(1e-3) * std::min(own.velocity, machine_.limits.velocity)) / S(2);

@@ -136,7 +136,7 @@ class CutByLimits {
 template <std::floating_point S>
 struct BasicCell {
   BasicPartLimits<S> part;
-  BasicLimits<S> above;  ///< limits at twice the block's feed, where the maker is asked for them
+  BasicLimits<S> above;  ///< limits at the highest override of the feed, where that is above 1
   S entry{};             ///< mm/s, the highest speed; infinite between cells of one motion
   S rest{};  ///< s, which motors with backlash need there where the motion stops, beyond the block's pause
 };
@@ -154,13 +154,13 @@ class CellMaker {
   using Driven = Smoothed<typename B::Path>;
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
 
-  /// `above`: whether the limits above the feed are wanted.
-  CellMaker(const M& machine, const JunctionRules<Scalar, Policy>& rules, bool above = false)
+  /// `most_override`: how many times its feed a block may be run with, >= 1.
+  CellMaker(const M& machine, const JunctionRules<Scalar, Policy>& rules, Scalar most_override = Scalar(1))
       : machine_(machine),
         rules_(rules),
         tool_(tool_axes(machine)),
         travel_(travel(machine)),
-        above_(above),
+        most_override_(most_override),
         reversals_(machine),
         cut_(machine) {
     for (const auto& axis : machine.axes) axes_limited_ = axes_limited_ || has_limits(axis);
@@ -197,7 +197,7 @@ class CellMaker {
       return true;
     } else {
       cell_.part.to = ahead_.to;
-      if (above_) cell_.above = lowest(cell_.above, ahead_above_);
+      if (goes_above()) cell_.above = lowest(cell_.above, ahead_above_);
     }
     has_ahead_ = false;
     const bool made = ++parts_ == most_parts || done();
@@ -312,7 +312,7 @@ class CellMaker {
     cell.part.to = ahead_.to;
     cell.part.limits = ahead_.limits;
     cell.part.ramps_inside = ahead_.ramps_inside;
-    if (above_) cell.above = ahead_above_;
+    if (goes_above()) cell.above = ahead_above_;
     cell.entry = std::exchange(entry_, infinity);
     cell.rest = Scalar(0);
     for (; reversal_count_ > 0; --reversal_count_) {
@@ -337,7 +337,7 @@ class CellMaker {
     if (auto ok = validate(part.limits); !ok) return tl::unexpected(ok.error());
     const bool begins = entry_ < infinity || part.ramps_inside || ahead_.ramps_inside;
     const Scalar length = part.to - part.from;
-    if (above_) ahead_above_ = level_above_.next(limits_above(part), length, begins);
+    if (goes_above()) ahead_above_ = level_above_.next(limits_above(part), length, begins);
     ahead_.from = part.from;
     ahead_.to = part.to;
     ahead_.limits = level_.next(part.limits, length, begins);
@@ -347,13 +347,14 @@ class CellMaker {
     return {};
   }
 
-  // What holds where a block with a feed of its own may go at twice of it; the part's own limits where the
-  // cut knows no others.
+  [[nodiscard]] bool goes_above() const { return most_override_ > Scalar(1); }
+  // What holds up to the highest override of a block's own feed; the part's own limits where the cut knows no
+  // others.
   [[nodiscard]] BasicLimits<Scalar> limits_above(const BasicPartLimits<Scalar>& part) const {
-    const Scalar twice = detail::requested_speed(*block_, machine_, counted_, Scalar(2));
-    if (block_->rapid || !(twice > wanted_)) return part.limits;
-    if constexpr (requires { cut_.limits(driven_, part.from, part.to, twice); })
-      return cut_.limits(driven_, part.from, part.to, twice);
+    const Scalar most = detail::requested_speed(*block_, machine_, counted_, most_override_);
+    if (block_->rapid || !(most > wanted_)) return part.limits;
+    if constexpr (requires { cut_.limits(driven_, part.from, part.to, most); })
+      return cut_.limits(driven_, part.from, part.to, most);
     else
       return part.limits;
   }
@@ -373,7 +374,7 @@ class CellMaker {
   JunctionRules<Scalar, Policy> rules_;
   std::array<int, 3> tool_;
   BasicBox<Scalar, M::axis_count> travel_;
-  bool above_;
+  Scalar most_override_;
   bool axes_limited_ = false;  // any of them
   Reversals<M> reversals_;
   std::array<BasicReversal<Scalar>, static_cast<std::size_t>(M::axis_count)>
