@@ -63,7 +63,7 @@ class ExecutorRoom {
 /// driven if no other part comes in time. What differs:
 ///
 /// - an override below 1 slows all of the motion, its ramps too; one above 1 acts at once where what is
-///   planned leaves room for it, and on the parts that are planned from then on, some seconds ahead;
+///   planned leaves room for it, and on the parts that are planned from then on, `horizon` ahead at most;
 /// - a hold comes once a change of the rate is proven: soon, with the `reserve` of the options;
 /// - `single_step` and `pause_at` rest before the next block, on the curve that is driven, as near as a brake
 ///   is proven or planned; behind its start where limits do not allow it sooner;

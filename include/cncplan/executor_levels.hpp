@@ -30,7 +30,8 @@ struct ExecutorLevels {
             .background = options.background,
             .reserve = options.reserve,
             .hold_factor = options.hold_factor,
-            .most_override = options.most_override};
+            .most_override = options.most_override,
+            .horizon = options.horizon};
   }
 
   /// Nothing where the level is `fast` at most.
@@ -57,7 +58,7 @@ LevelDriver<M, B>* ExecutorLevels<M, B>::make(const M& machine, const Options& o
   // Under a map a proof takes too long for brakes to be planned as blocks come.
   plan.hold_factor = MappedModel<M> ? 0.0 : static_cast<double>(options.hold_factor);
   return LiveDriver<M, B>::make(machine, {options.longest_wait, options.background}, memory, plan,
-                                most_blocks);
+                                most_blocks, options.horizon);
 }
 
 template <MachineModel M, BlockModel B>

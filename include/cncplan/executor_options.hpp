@@ -46,6 +46,10 @@ struct BasicExecutorOptions {
   /// >= 1: the highest override of the feed. At the level `fast` one above 1 leaves as much acceleration as
   /// paths do at the highest.
   S most_override = S(2);
+  /// s of motion, > 0: how far plans at the levels `good` and `best` are ahead, whole blocks at least. A feed
+  /// above the one that they were made for has its full effect behind it. The shorter, the more work, and the
+  /// longer the program takes.
+  S horizon = S(5);
 };
 
 /// Nothing, or the first number that is out of its domain.
@@ -58,6 +62,9 @@ template <std::floating_point S, class Level>
   if (!std::isfinite(options.most_override) || options.most_override < S(1))
     return refusal(options.most_override < S(1) ? ErrorCode::below_limit : ErrorCode::not_finite,
                    "highest override", options.most_override, S(1));
+  if (!std::isfinite(options.horizon) || !(options.horizon > S(0)))
+    return refusal(options.horizon <= S(0) ? ErrorCode::not_positive : ErrorCode::not_finite, "horizon",
+                   options.horizon);
   return detail::valid_tolerances(options.tolerance, options.rotary_tolerance, options.junction_deviation,
                                   options.tolerance > S(0));
 }

@@ -83,9 +83,9 @@ class SmoothStream {
 
   /// Whether the next block makes it plan first.
   [[nodiscard]] bool full() const { return planner_.full(); }
-  /// Plans are to look ahead over about so many seconds of motion, not over all blocks that are held: parts
-  /// are shorter then where blocks are long.
-  void plan_ahead(Scalar seconds) { planner_.plan_ahead(seconds); }
+  /// Plans are to look ahead over about so many seconds of motion, not over all blocks that are held, and
+  /// parts that go on to take about `part` seconds at most, where blocks are not longer.
+  void plan_ahead(Scalar seconds, Scalar part) { planner_.plan_ahead(seconds, part); }
   /// Whether blocks that are held are enough for a part that looks so far ahead.
   [[nodiscard]] bool has_part() const { return planner_.has_part(); }
   /// Whether all that was pushed is planned.

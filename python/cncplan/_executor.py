@@ -27,7 +27,7 @@ class Executor:
     level : str
         "exact", "fast", "good" or "best", as of `plan_file`. At "good" and "best" parts of the program are planned
         within `push`, `tick` and `end_of_program`, which take some tens of milliseconds then; an override above 1
-        acts at once where limits leave room, and some seconds ahead at corners too; a lower one slows the whole motion;
+        acts at once where limits leave room, and `horizon` ahead at corners too; a lower one slows the whole motion;
         `reverse` goes back to the first rest that is kept; `restart` begins where the line begins.
     longest_wait : float
         s at rest for which blocks are held back for the ones that follow them.
@@ -40,6 +40,9 @@ class Executor:
         slower where it would take longer; 0 asks for no such plan.
     most_override : float
         >= 1: the highest override of the feed.
+    horizon : float
+        > 0: s of motion that plans at "good" and "best" are ahead. The shorter, the sooner a higher feed acts at
+        corners, and the longer the program takes.
 
     Examples
     --------
@@ -55,11 +58,13 @@ class Executor:
     def __init__(self, machine: Machine, tolerance: float = 0.01, level: str = "fast", *,
                  rotary_tolerance: float = 0.05, junction_deviation: float = 0.01,
                  start: Sequence[float] | None = None, longest_wait: float = 0.05, quick_stop_share: float = 1.0,
-                 reserve: float = 0.02, hold_factor: float = 1.5, most_override: float = 2.0) -> None:
+                 reserve: float = 0.02, hold_factor: float = 1.5, most_override: float = 2.0,
+                 horizon: float = 5.0) -> None:
         options = options_of(machine, tolerance, rotary_tolerance, junction_deviation, start, level)
         self._core = _core.Executor(core_of(machine), options, not_negative(longest_wait, "longest_wait"),
                                     finite(quick_stop_share, "quick_stop_share"), finite(reserve, "reserve"),
-                                    finite(hold_factor, "hold_factor"), finite(most_override, "most_override"))
+                                    finite(hold_factor, "hold_factor"), finite(most_override, "most_override"),
+                                    finite(horizon, "horizon"))
         self.machine = machine
         self.level = level  #: what was asked for
 

@@ -16,7 +16,8 @@ void bind_executor(py::module_& module) {
   };
   py::class_<AnyExecutor>(module, "Executor")
       .def(py::init([](const AnyMachine& machine, const PlanOptions& options, double longest_wait,
-                       double quick_stop_share, double reserve, double hold_factor, double most_override) {
+                       double quick_stop_share, double reserve, double hold_factor, double most_override,
+                       double horizon) {
         if (machine.has_map())
           raise(Error{ErrorCode::not_supported, "executor of a machine behind a map", 0, 0});
         const ExecutorSettings settings{options,
@@ -28,7 +29,8 @@ void bind_executor(py::module_& module) {
                                          .quick_stop_share = quick_stop_share,
                                          .reserve = reserve,
                                          .hold_factor = hold_factor,
-                                         .most_override = most_override}};
+                                         .most_override = most_override,
+                                         .horizon = horizon}};
         return make_executor(machine, settings);
       }))
       .def("push_line", [](E& e, const std::string& line) { return e.push_line(line); })

@@ -1,5 +1,6 @@
-// How high an override of the feed may be, at every level of smoothing.
+// How high an override of the feed may be, and how soon it acts, at every level of smoothing.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "plan/level_runner.hpp"
 #include "plan/rows_program.hpp"
 #include "support/catch.hpp"
+#include "support/random.hpp"
 
 using namespace cncplan;
 using namespace cncplan::test;
@@ -78,9 +80,60 @@ TEST_CASE("executor overrides: options out of their domain are refused", "[execu
     refuses({.level = level, .most_override = 0.9}, "highest override", ErrorCode::below_limit);
     refuses({.level = level, .most_override = no_number}, "highest override", ErrorCode::not_finite);
     refuses({.level = level, .most_override = infinity}, "highest override", ErrorCode::not_finite);
+    refuses({.level = level, .horizon = 0}, "horizon", ErrorCode::not_positive);
+    refuses({.level = level, .horizon = -1}, "horizon", ErrorCode::not_positive);
+    refuses({.level = level, .horizon = no_number}, "horizon", ErrorCode::not_finite);
+    refuses({.level = level, .horizon = infinity}, "horizon", ErrorCode::not_finite);
   }
   const auto planned = plan_blocks(blocks_of("F600\nG1 X10\n"), mill, {.level = SmoothLevel::good});
   REQUIRE(planned);
   const TrajectoryExecutor<Machine<3>, MillBlock> executor(*planned, mill, {.most_override = 0.5});
   CHECK(executor.error());
+}
+
+TEST_CASE("executor overrides: a higher feed is driven soon through bends, and limits are kept",
+          "[executor-overrides]") {
+  // Bends whose limits leave much room at the feed, but for a clock that only runs faster.
+  const Machine<3> machine = fast_machine();
+  std::string text = "F600\n";
+  for (int i = 1; i < 900; ++i)
+    text += "G1 X" + std::to_string(0.3 * i) + " Y" + std::to_string(2 * std::sin(0.12 * i)) + "\n";
+  const MillBlocks blocks = blocks_of(text, machine);
+  Random random;
+  const int asked = static_cast<int>(random.integer(1500, 4000));
+  CAPTURE(asked);
+  // s from the request until the speed over some time is that which is asked for.
+  const auto until_effect = [&](SmoothLevel level, double horizon) {
+    const auto executor = std::make_unique<Executor<Machine<3>, 300>>(
+        machine, LevelExecutorOptions{.level = level, .horizon = horizon});
+    std::size_t fed = 0;
+    std::array<Vector3, 4> p;
+    p.fill(Vector3::Zero());
+    double jerk = 0, acceleration = 0;
+    int effect = 0, fast = 0;
+    int tick = 0;
+    for (; tick < 60'000 && !executor->finished(); ++tick) {
+      feed(*executor, blocks, fed);
+      if (tick == asked) executor->feed_override(2);
+      p = {executor->tick(period).position, p[0], p[1], p[2]};
+      acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).cwiseAbs().maxCoeff());
+      jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).cwiseAbs().maxCoeff());
+      fast = (p[0] - p[1]).norm() > 20 * 0.97 * period ? fast + 1 : 0;
+      if (effect == 0 && fast >= 200) effect = tick - fast - asked;
+    }
+    CHECK(executor->finished());
+    CHECK_FALSE(executor->error());
+    CHECK(acceleration <= 1000 * period * period * (1 + 1e-5));
+    CHECK(jerk <= 1e4 * period * period * period * (1 + 1e-4));
+    CHECK((p[0] - blocks.back().path.position_at(blocks.back().path.length())).norm() < 1e-9);
+    CHECK(effect > 0);
+    return effect * period;
+  };
+  for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best})
+    for (const double horizon : {0.3, 1.0, 5.0}) {
+      CAPTURE(level, horizon);
+      const double effect = until_effect(level, horizon);
+      INFO("s until it has its effect " << effect);
+      CHECK(effect <= horizon + 0.3);
+    }
 }

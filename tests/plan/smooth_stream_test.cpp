@@ -117,7 +117,7 @@ TEST_CASE("stream: plans that look ahead over seconds make short parts, and take
     const auto whole = plan_blocks(blocks, mill, at_level(level, within));
     REQUIRE(whole);
     Stream stream(mill, at_level(level, within), 300);
-    stream.plan_ahead(4);
+    stream.plan_ahead(4, 4);
     JoinedParts<MillBlock, Machine<3>> parts;
     for (const MillBlock& block : blocks) {
       REQUIRE(stream.push(block));

@@ -288,7 +288,7 @@ def test_errors(mill):
     with pytest.raises(cncplan.Error):
         executor.jog([1, 2])
     for wrong in ({"tolerance": -1}, {"level": "better"}, {"reserve": 1}, {"reserve": -0.1}, {"hold_factor": 1},
-                  {"longest_wait": -1}, {"most_override": 0.5}):
+                  {"longest_wait": -1}, {"most_override": 0.5}, {"horizon": 0}):
         with pytest.raises(cncplan.Error):
             cncplan.Executor(mill, **wrong)
 
@@ -296,7 +296,7 @@ def test_errors(mill):
 @pytest.mark.parametrize("level", ["exact", "fast", "good", "best"])
 @pytest.mark.parametrize("most", [1.0, 2.0, 2.5])
 def test_an_override_is_cut_at_the_highest(mill, level, most):
-    executor = cncplan.Executor(mill, level=level, most_override=most)
+    executor = cncplan.Executor(mill, level=level, most_override=most, horizon=1.0)
     executor.push("F600 G1 X40")
     executor.end_of_program()
     executor.feed_override(7)

@@ -1,6 +1,7 @@
 // Plans parts of a trajectory for a clock that runs, each with its way to rest (set-up).
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -31,12 +32,14 @@ class PartPlanner {
   };
 
   static constexpr std::int64_t most_parts = 8;
-  static constexpr S time_ahead = S(1);    // s of motion behind which no more is planned yet
-  static constexpr S time_in_plan = S(4);  // s of motion, about, that a plan looks ahead
+  // Of the horizon: what is driven while the next part is planned, and the longest part.
+  static constexpr S left_share = S(0.2), part_share = S(0.8);
+  static constexpr S time_behind = S(1);  // s of motion, about, that a plan looks ahead beyond a short part
 
-  PartPlanner(const M& machine, const PlanOptions& options, std::size_t most_blocks,
+  /// `horizon`: s of motion that are planned, at most, behind which no more is planned yet.
+  PartPlanner(const M& machine, const PlanOptions& options, std::size_t most_blocks, S horizon,
               std::pmr::memory_resource* memory)
-      : machine_(machine), options_(options), most_blocks_(most_blocks), memory_(memory) {
+      : machine_(machine), options_(options), most_blocks_(most_blocks), horizon_(horizon), memory_(memory) {
     begin();
   }
 
@@ -139,7 +142,8 @@ class PartPlanner {
   void begin() {
     stream_.emplace(machine_, options_, most_blocks_, memory_);
     stream_->keep_cuts();
-    stream_->plan_ahead(time_in_plan);
+    const S part = part_share * horizon_;
+    stream_->plan_ahead(std::max(part, S(0.75) * part + time_behind), part);
     shares_.clear();
     made_ = 0;
     looked_at_ = -1;
@@ -168,7 +172,7 @@ class PartPlanner {
   [[nodiscard]] bool room() const {
     return made_ - released_.load(std::memory_order_acquire) < most_parts &&
            made_ == taken_.load(std::memory_order_acquire) &&
-           left_.load(std::memory_order_relaxed) < time_ahead;
+           left_.load(std::memory_order_relaxed) < left_share * horizon_;
   }
 
   // If the last part's tail is driven, plans go on from its end.
@@ -267,6 +271,7 @@ class PartPlanner {
   M machine_;
   PlanOptions options_;
   std::size_t most_blocks_;
+  S horizon_;  // s
   std::pmr::memory_resource* memory_;
   std::optional<SmoothStream<M, B>> stream_;
   std::array<Part, static_cast<std::size_t>(most_parts)> parts_{};

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <memory_resource>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "cncplan/detail/block_checks.hpp"
@@ -111,6 +113,20 @@ class RunFinder {
       if (part < end && moving >= least + least / 2 && !(time < S(1.5) * seconds)) return part;
     }
     return end;
+  }
+  /// Between which of its moving blocks a run is to be cut behind a first part of some seconds at most,
+  /// rather late: in the later half of that, or of all where it is longer. `moving`: their numbers; those
+  /// before `first` are planned.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> where_to_cut(std::span<const std::size_t> moving,
+                                                                 std::size_t first, S longest) const {
+    constexpr std::size_t least = 4;
+    const std::size_t last = moving.size() * 19 / 20;
+    std::size_t begin = 0;
+    while (begin < moving.size() && moving[begin] < first) ++begin;
+    std::size_t end = begin;
+    for (S time{}; end < last && (end < begin + least || time < longest); ++end)
+      time += time_of(moving[end], moving[end] + 1);
+    return {end < last ? (begin + end) / 2 : moving.size() / 2, end};
   }
   /// Whether blocks from one on are enough for such a part, or for runs that take as long. `goes_on`: a run
   /// that is cut goes on in the first.

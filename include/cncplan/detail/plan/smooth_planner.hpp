@@ -69,8 +69,12 @@ class SmoothPlanner {
   [[nodiscard]] bool full() const { return blocks_.size() >= most_; }
   /// Whether all that was pushed is planned.
   [[nodiscard]] bool empty() const { return !cut_ && planned_ == blocks_.size(); }
-  /// A plan looks ahead over about so many seconds at the feeds, not over all blocks.
-  void plan_ahead(S seconds) { ahead_ = seconds; }
+  /// A plan looks ahead over about so many seconds at the feeds, not over all blocks; a part of a run takes
+  /// so many, or is a block.
+  void plan_ahead(S seconds, S part) {
+    ahead_ = seconds;
+    longest_part_ = part;
+  }
   /// Whether there are blocks for a part that does.
   [[nodiscard]] bool has_part() const { return runs_.has_part(planned_, cut_.has_value(), ahead_); }
 
@@ -310,8 +314,8 @@ class SmoothPlanner {
   bool add_part(std::size_t end) try {
     const Given given = run_blocks(cut_ ? 0 : planned_, end);
     Run run = given.blocks.run(work_, cut_, memory_);
-    const std::size_t count = given.blocks.size();
-    for (const auto& [cell, cut] : run.cuts(count / 2, count * 19 / 20)) {
+    const auto [from, to] = runs_.where_to_cut(given.sources, planned_, longest_part_);
+    for (const auto& [cell, cut] : run.cuts(from, to)) {
       // From there the machine can come to rest along what is known.
       std::size_t moving = cut.place.block - std::min(cut.place.block, most_context);
       while (given.sources[cut.place.block] - given.sources[moving] > most_ / 4) ++moving;
@@ -526,7 +530,7 @@ class SmoothPlanner {
   BasicSmoothOptions<S> work_;
   BasicMotionLimits<S, n> limits_;
   std::size_t most_;
-  S ahead_ = std::numeric_limits<S>::infinity();  // s
+  S ahead_ = std::numeric_limits<S>::infinity(), longest_part_ = ahead_;  // s
   std::pmr::memory_resource* memory_;
   std::pmr::vector<B> blocks_{memory_};
   RunFinder<M, B> runs_{machine_, options_, blocks_};
