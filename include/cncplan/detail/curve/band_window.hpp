@@ -133,41 +133,90 @@ void find_step(std::span<std::array<Eigen::Matrix<S, N, N>, 4>> rows, std::span<
   std::fill(step.begin(), step.end(), VectorN<S, N>::Zero());
 }
 
-/// Moves the points [first, last), at least three from each end of the curve, to where the sum of
-/// jerk_weight |jerk_scale (q''' - third)|^2 is least within the tube. The curve is in the tube when it
-/// comes and when it goes. At most as many points move as the memory holds.
+/// The control points of a curve that move together, [first, last) of all: as many of them as the memory
+/// holds.
 template <std::floating_point S, int N>
-BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, N>> points, std::size_t first,
-                    std::size_t last, const BasicBandOptions<S>& options,
-                    const BasicBandMemory<S, N>& memory) {
+class BandWindow {
+ public:
   using Vector = VectorN<S, N>;
-  constexpr S none = std::numeric_limits<S>::infinity();
-  const std::size_t count = std::min({last - first, memory.rows.size(), memory.trial.size() - 6});
-  const std::size_t cell0 = first - 3, cell1 = std::min(first + count, problem.cell_count());
-  const std::size_t low = cell0, high = std::min(cell1 + 3, points.size());
-  const auto rows = memory.rows.first(count);
-  const auto gradient = memory.gradient.first(count), step = memory.step.first(count);
-  const auto trial = memory.trial.first(high - low);
-  const Vector jerk_sq = problem.jerk_scale.cwiseAbs2();
+
+  BandWindow(const BasicBandProblem<S, N>& problem, std::span<Vector> points, std::size_t first,
+             std::size_t last, const BasicBandMemory<S, N>& memory)
+      : problem_(problem),
+        points_(points),
+        first_(first),
+        count_(std::min({last - first, memory.rows.size(), memory.trial.size() - 6})),
+        cell0_(first - 3),
+        cell1_(std::min(first + count_, problem.cell_count())),
+        own_(points.subspan(cell0_, std::min(cell1_ + 3, points.size()) - cell0_)),
+        rows_(memory.rows.first(count_)),
+        gradient_(memory.gradient.first(count_)),
+        step_(memory.step.first(count_)),
+        trial_(memory.trial.first(own_.size())),
+        jerk_sq_(problem.jerk_scale.cwiseAbs2()) {}
+
+  [[nodiscard]] BandResult smoothen(const BasicBandOptions<S>& options) {
+    BandResult result;
+    if (count_ == 0) return result;
+    cost_ = cost_of(own_);
+    if (!(cost_.barrier < none)) return result;
+    const auto terms =
+        static_cast<S>(problem_.cells[cell1_].first_sample - problem_.cells[cell0_].first_sample);
+    weight_ = S(0.3) * cost_.energy / terms + std::numeric_limits<S>::min();
+    S raised{};
+    for (; result.rounds < options.rounds; ++result.rounds) {
+      find_step<S, N>(rows_, gradient_, step_, raised, [this] { derive(); });
+      S decrease = S(0);
+      for (std::size_t i = 0; i < count_; ++i) decrease -= gradient_[i].dot(step_[i]);
+      if (go_along(decrease) && decrease > weight_ * terms * S(0.05)) continue;
+      if (weight_ * terms < options.gap * cost_.energy) {
+        result.converged = true;
+        break;
+      }
+      weight_ *= S(0.2);
+    }
+    return result;
+  }
+
+ private:
+  using Cell = BasicBandCell<S, N>;
+  using Sample = BasicBandSample<S, N>;
+  using Matrix = Eigen::Matrix<S, N, N>;
+
+  static constexpr S none = std::numeric_limits<S>::infinity();
+
   struct Cost {
     S energy{}, barrier{};
   };
-  const auto cost_of = [&](std::span<const Vector> at) {  // control points from number `low` on
+
+  [[nodiscard]] std::span<const Sample> samples_of(std::size_t cell) const {
+    const std::size_t from = problem_.cells[cell].first_sample;
+    return problem_.samples.subspan(from, problem_.cells[cell + 1].first_sample - from);
+  }
+  // From what it is to come near to, with the four control points of the cell.
+  [[nodiscard]] static Vector third_off(const Cell& cell, const Vector* four) {
+    Vector third = -cell.third;
+    for (std::size_t q = 0; q < 4; ++q) third += cell.weights[3][q] * four[q];
+    return third;
+  }
+  [[nodiscard]] static Vector position_off(const Sample& sample, const Vector* four) {
+    Vector off = -sample.target;
+    for (std::size_t q = 0; q < 4; ++q) off += sample.weights[q] * four[q];
+    return off;
+  }
+
+  // With the control points that the cells of the window hang on.
+  [[nodiscard]] Cost cost_of(std::span<const Vector> points) const {
     Cost cost;
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto& here = problem.cells[cell];
-      const Vector* four = &at[cell - low];
-      Vector third = -here.third;
-      for (std::size_t q = 0; q < 4; ++q) third += here.weights[3][q] * four[q];
-      cost.energy += here.jerk_weight * third.cwiseAbs2().dot(jerk_sq);
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell) {
+      const Cell& here = problem_.cells[cell];
+      const Vector* four = &points[cell - cell0_];
+      cost.energy += here.jerk_weight * third_off(here, four).cwiseAbs2().dot(jerk_sq_);
       S room = S(1);
-      for (std::size_t i = here.first_sample; i < problem.cells[cell + 1].first_sample; ++i) {
-        const auto& sample = problem.samples[i];
-        Vector off = -sample.target;
-        for (std::size_t q = 0; q < 4; ++q) off += sample.weights[q] * four[q];
-        const S share = off.cwiseProduct(sample.scale).squaredNorm();
-        if (!(share < S(1))) return Cost{none, none};
-        cost.energy += problem.centring * sample.length * share;
+      for (const Sample& sample : samples_of(cell)) {
+        const S share = position_off(sample, four).cwiseProduct(sample.scale).squaredNorm();
+        if (!(share < S(1))) return {none, none};
+        cost.energy += problem_.centring * sample.length * share;
         room *= S(1) - share;
         if (room < S(1e-30)) {
           cost.barrier -= std::log(room);
@@ -177,83 +226,89 @@ BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, 
       cost.barrier -= std::log(room);
     }
     return cost;
-  };
-  BandResult result;
-  if (count == 0) return result;
-  Cost cost = cost_of(std::span<const Vector>(points).subspan(low, high - low));
-  if (!(cost.barrier < none)) return result;
-  const auto terms = static_cast<S>(problem.cells[cell1].first_sample - problem.cells[cell0].first_sample);
-  S weight = S(0.3) * cost.energy / terms + std::numeric_limits<S>::min();
-  const auto derive = [&] {
-    for (std::size_t i = 0; i < count; ++i) {
-      gradient[i].setZero();
-      for (auto& block : rows[i]) block.setZero();
+  }
+
+  // Gradient and Hessian of the cost where the points are.
+  void derive() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      gradient_[i].setZero();
+      for (auto& block : rows_[i]) block.setZero();
     }
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto& here = problem.cells[cell];
-      const Vector* four = &points[cell];
-      const auto moves = [&](std::size_t q) { return cell + q - first < count; };
-      Vector third = -here.third;
-      for (std::size_t q = 0; q < 4; ++q) third += here.weights[3][q] * four[q];
-      const Vector pull = (S(2) * here.jerk_weight) * third.cwiseProduct(jerk_sq);
-      const Vector stiff = (S(2) * here.jerk_weight) * jerk_sq;
-      for (std::size_t q = 0; q < 4; ++q) {
-        if (!moves(q)) continue;
-        const std::size_t at = cell + q - first;
-        gradient[at] += here.weights[3][q] * pull;
-        for (std::size_t p = 0; p <= q; ++p)
-          if (moves(p)) rows[at][q - p].diagonal() += (here.weights[3][q] * here.weights[3][p]) * stiff;
-      }
-      for (std::size_t i = here.first_sample; i < problem.cells[cell + 1].first_sample; ++i) {
-        const auto& sample = problem.samples[i];
-        Vector off = -sample.target;
-        for (std::size_t q = 0; q < 4; ++q) off += sample.weights[q] * four[q];
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell) {
+      const Cell& here = problem_.cells[cell];
+      const Vector* four = &points_[cell];
+      const S stiffness = S(2) * here.jerk_weight;
+      const Vector pull = stiffness * third_off(here, four).cwiseProduct(jerk_sq_);
+      const Vector stiff = stiffness * jerk_sq_;
+      add(
+          cell, here.weights[3], [&](S weight) { return Vector(weight * pull); },
+          [&](Matrix& block, S product) { block.diagonal() += product * stiff; });
+      for (const Sample& sample : samples_of(cell)) {
+        const Vector off = position_off(sample, four);
         const Vector scale_sq = sample.scale.cwiseAbs2();
         const Vector scaled = off.cwiseProduct(scale_sq);
         const S left = S(1) - off.dot(scaled);
-        const S once = S(2) * (weight / left + problem.centring * sample.length);
-        const S twice = S(4) * weight / (left * left);
-        Eigen::Matrix<S, N, N> bend = (twice * scaled) * scaled.transpose();
+        const S once = S(2) * (weight_ / left + problem_.centring * sample.length);
+        const S twice = S(4) * weight_ / (left * left);
+        Matrix bend = (twice * scaled) * scaled.transpose();
         bend.diagonal() += once * scale_sq;
-        for (std::size_t q = 0; q < 4; ++q) {
-          if (!moves(q)) continue;
-          const std::size_t at = cell + q - first;
-          gradient[at] += (once * sample.weights[q]) * scaled;
-          for (std::size_t p = 0; p <= q; ++p)
-            if (moves(p)) rows[at][q - p] += (sample.weights[q] * sample.weights[p]) * bend;
-        }
+        add(
+            cell, sample.weights, [&](S weight) { return Vector((once * weight) * scaled); },
+            [&](Matrix& block, S product) { block += product * bend; });
       }
     }
-  };
-  S raised{};
-  for (; result.rounds < options.rounds; ++result.rounds) {
-    find_step<S, N>(rows, gradient, step, raised, derive);
-    S decrease = S(0);
-    for (std::size_t i = 0; i < count; ++i) decrease -= gradient[i].dot(step[i]);
-    const S before = cost.energy + weight * cost.barrier;
-    S share = S(1);
-    bool moved = false;
-    for (int halving = 0; halving < 30 && !moved; ++halving, share *= S(0.5)) {
-      for (std::size_t i = low; i < high; ++i) {
-        trial[i - low] = points[i];
-        if (i >= first && i - first < count) trial[i - low] += share * step[i - first];
-      }
-      const Cost next = cost_of(std::span<const Vector>(trial));
-      if (!(next.energy + weight * next.barrier < before - S(1e-4) * share * decrease)) continue;
-      moved = true;
-      cost = next;
-    }
-    if (moved)
-      std::copy_n(trial.begin() + static_cast<std::ptrdiff_t>(first - low), count,
-                  points.begin() + static_cast<std::ptrdiff_t>(first));
-    if (moved && decrease > weight * terms * S(0.05)) continue;
-    if (weight * terms < options.gap * cost.energy) {
-      result.converged = true;
-      break;
-    }
-    weight *= S(0.2);
   }
-  return result;
+  // A term that hangs on the four control points of a cell by weights: pull(weight) is its gradient, and
+  // bend(block, product of two weights) adds its Hessian.
+  template <class Pull, class Bend>
+  void add(std::size_t cell, const std::array<S, 4>& weights, Pull&& pull, Bend&& bend) {
+    const auto moves = [&](std::size_t q) { return cell + q - first_ < count_; };
+    for (std::size_t q = 0; q < 4; ++q) {
+      if (!moves(q)) continue;
+      const std::size_t at = cell + q - first_;
+      gradient_[at] += pull(weights[q]);
+      for (std::size_t p = 0; p <= q; ++p)
+        if (moves(p)) bend(rows_[at][q - p], weights[q] * weights[p]);
+    }
+  }
+
+  // As much of the step as lowers the cost enough; whether there is such.
+  bool go_along(S decrease) {
+    const S before = cost_.energy + weight_ * cost_.barrier;
+    const std::size_t fixed = first_ - cell0_;
+    S share = S(1);
+    for (int halving = 0; halving < 30; ++halving, share *= S(0.5)) {
+      std::ranges::copy(own_, trial_.begin());
+      for (std::size_t i = 0; i < count_; ++i) trial_[fixed + i] += share * step_[i];
+      const Cost next = cost_of(trial_);
+      if (!(next.energy + weight_ * next.barrier < before - S(1e-4) * share * decrease)) continue;
+      cost_ = next;
+      std::ranges::copy(trial_.subspan(fixed, count_), own_.subspan(fixed).begin());
+      return true;
+    }
+    return false;
+  }
+
+  const BasicBandProblem<S, N>& problem_;
+  std::span<Vector> points_;
+  std::size_t first_, count_;  // of the points
+  std::size_t cell0_, cell1_;  // cells [cell0, cell1) hang on those that move
+  std::span<Vector> own_;      // the points that they hang on
+  std::span<std::array<Matrix, 4>> rows_;
+  std::span<Vector> gradient_, step_, trial_;
+  Vector jerk_sq_;
+  Cost cost_{};
+  S weight_{};
+};
+
+/// Moves the points [first, last), at least three from each end of the curve, to where the sum of
+/// jerk_weight |jerk_scale (q''' - third)|^2 is least within the tube. The curve is in the tube when it
+/// comes and when it goes. At most as many points move as the memory holds.
+template <std::floating_point S, int N>
+BandResult smoothen(const BasicBandProblem<S, N>& problem, std::span<VectorN<S, N>> points, std::size_t first,
+                    std::size_t last, const BasicBandOptions<S>& options,
+                    const BasicBandMemory<S, N>& memory) {
+  return BandWindow<S, N>(problem, points, first, last, memory).smoothen(options);
 }
 
 }  // namespace cncplan::detail

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "cncplan/detail/speed/speed_barrier.hpp"
@@ -90,6 +91,228 @@ void solve_banded(std::span<S> diagonal, std::span<S> below, std::span<S> second
   }
 }
 
+/// The coefficients of a law that move together, [first, last) of all.
+template <std::floating_point S, int N>
+class SpeedWindow {
+ public:
+  SpeedWindow(const BasicSpeedProblem<S, N>& problem, std::span<S> law, std::size_t first, std::size_t last,
+              const BasicWindowMemory<S>& memory)
+      : problem_(problem),
+        law_(law),
+        memory_(memory),
+        limits_(limit_count(*problem.limits)),
+        first_(first),
+        count_(std::min(last - first, memory.capacity(limits_) - 4)),
+        cell0_(first >= 2 ? first - 2 : 0),
+        cell1_(std::min(first + count_, problem.cells.size())),
+        own_(law.subspan(cell0_, std::min(cell1_ + 2, law.size()) - cell0_)),
+        terms_(static_cast<S>(3 * (1 + 2 * limits_) * (cell1_ - cell0_))) {
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell) {
+      const auto places = law_places(shape(cell - 1), shape(cell), shape(cell + 1));
+      for (std::size_t i = 0; i < 3; ++i) memory_.speeds[3 * (cell - cell0_) + i].place = places[i];
+      set(cell);
+    }
+    keep();
+  }
+
+  [[nodiscard]] BasicWindowResult<S> optimise(const BasicSpeedOptions<S>& options) {
+    cost_ = cost_of(own_);
+    BasicWindowResult<S> result{cost_.time, 0, false};
+    if (!(cost_.barrier < none) || count_ == 0) return result;
+    weight_ = S(0.5) * cost_.time / terms_;
+    for (; result.rounds < options.rounds; ++result.rounds) {
+      const S decrease = find_step();
+      if (go_along(decrease) && decrease > weight_ * terms_ * S(0.05)) continue;
+      const bool prove = options.proven && weight_ * terms_ < S(0.3) * cost_.time;
+      if (prove && !settle()) continue;
+      if (weight_ * terms_ < options.gap * cost_.time) {
+        result.converged = true;
+        break;
+      }
+      weight_ *= S(0.2);
+    }
+    if (!result.converged && options.proven) {
+      take(between(S(0)));
+      cost_ = cost_of(own_);
+    }
+    result.time = cost_.time;
+    return result;
+  }
+
+ private:
+  static constexpr S none = std::numeric_limits<S>::infinity();
+
+  // What the law uses of the limits of a cell, at three places and in its phases.
+  struct Use {
+    BasicUtilisation<S> sampled, phases;
+  };
+
+  [[nodiscard]] BasicCellShares<S> shares_of(std::size_t cell) const {
+    const std::size_t i = cell - cell0_;
+    return {memory_.speeds.subspan(3 * i, 3), memory_.forces.subspan(3 * limits_ * i, 3 * limits_)};
+  }
+  void set(std::size_t cell) {
+    set_shares(problem_.cells[cell], *problem_.limits, problem_.scales[cell], shares_of(cell));
+  }
+  [[nodiscard]] BasicCellShape<S> shape(std::size_t cell) const {  // -1 wraps
+    return cell < problem_.cells.size() ? problem_.cells[cell].shape() : BasicCellShape<S>{};
+  }
+  // b in a cell. `numbers`: those that the cells of the window read, as in all that follows.
+  [[nodiscard]] BasicCellSpeed<S> speed_in(std::size_t cell, std::span<const S> numbers) const {
+    return cell_speed(numbers, cell - cell0_, shape(cell - 1), shape(cell), shape(cell + 1));
+  }
+  [[nodiscard]] BasicLawCost<S> cost_of(std::span<const S> numbers) const {
+    S time{};
+    BasicBarrier<S> barrier;
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell)
+      if (!add_cost(shares_of(cell), &numbers[cell - cell0_], time, barrier)) return {none, none};
+    return {time, barrier.sum()};
+  }
+
+  // Those that move, among such numbers.
+  [[nodiscard]] std::span<S> moving(std::span<S> numbers) const {
+    return numbers.subspan(first_ - cell0_, count_);
+  }
+  void take(std::span<S> numbers) { std::ranges::copy(moving(numbers), law_.subspan(first_).begin()); }
+  void keep() { std::ranges::copy(law_.subspan(first_, count_), kept_.begin()); }
+  // Between the law that is kept and the present one.
+  std::span<S> between(S share) {
+    std::ranges::copy(own_, trial_.begin());
+    const auto numbers = moving(trial_);
+    for (std::size_t i = 0; i < count_; ++i) numbers[i] = kept_[i] + share * (numbers[i] - kept_[i]);
+    return trial_;
+  }
+
+  // Newton's step for the present law, and the decrease that it promises.
+  S find_step() {
+    for (const auto& list : {gradient_, diagonal_, below_, second_, step_}) std::ranges::fill(list, S(0));
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell) {
+      const auto model = cell_model(shares_of(cell), &own_[cell - cell0_], weight_, spread_);
+      const auto& [k00, k01, k02, k11, k12, k22] = model.hessian;
+      const std::array<S, 3> on{k00, k11, k22};
+      const std::array<S, 2> next{k01, k12};
+      for (std::size_t q = 0; q < 3; ++q) {
+        const std::size_t at = cell + q - first_;  // wraps below first, and is then not below count
+        if (!(at < count_)) continue;
+        gradient_[at] += model.gradient[q];
+        diagonal_[at] += on[q];
+        if (q < 2 && at + 1 < count_) below_[at] += next[q];
+        if (q < 1 && at + 2 < count_) second_[at] += k02;
+      }
+    }
+    const auto step = moving(step_);
+    for (std::size_t i = 0; i < count_; ++i) step[i] = -gradient_[i];
+    solve_banded(diagonal_, below_, second_, step);
+    S decrease = S(0);
+    for (std::size_t i = 0; i < count_; ++i) decrease -= gradient_[i] * step[i];
+    return decrease;
+  }
+
+  // As much of the step as lowers the cost enough; whether there is such.
+  bool go_along(S decrease) {
+    constexpr S far = S(1e4);  // of the multipliers from what the barrier would have
+    const S before = cost_.time + weight_ * cost_.barrier;
+    S share = S(1);
+    for (int halving = 0; halving < 20; ++halving, share *= S(0.5)) {
+      for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] = own_[i] + share * step_[i];
+      const BasicLawCost<S> next = cost_of(trial_);
+      if (!(next.barrier < none)) continue;
+      if (!(next.time + weight_ * next.barrier < before - S(1e-4) * share * decrease)) continue;
+      cost_ = next;
+      for (std::size_t cell = cell0_; cell < cell1_; ++cell)
+        move_multipliers(shares_of(cell), &step_[cell - cell0_], weight_, share);
+      take(trial_);
+      spread_ = far;
+      return true;
+    }
+    return false;
+  }
+
+  // Nothing where a cell is far from its limits.
+  [[nodiscard]] std::optional<Use> use_of(std::size_t cell, std::span<const S> numbers) const {
+    const auto& here = problem_.cells[cell];
+    const BasicCellSpeed<S> b = speed_in(cell, numbers);
+    Use use{sampled_utilisation(here, *problem_.limits, b), {}};
+    // The speed may be higher between the places than at any of them.
+    const S at_samples = std::max({b.start, b.at(S(0.5), here.shape()), b.end});
+    const S velocity = use.sampled.velocity * std::sqrt(b.bound() / at_samples);
+    if (use.sampled.force() < S(0.8) && velocity < S(0.99) * problem_.scales[cell].speed) return std::nullopt;
+    emit_cell(b, here.shape(), [&](const BasicPhase<S>& phase) {
+      use.phases.include(utilisation_of(phase, here, *problem_.limits));
+    });
+    return use;
+  }
+  [[nodiscard]] bool keeps_limits(std::span<const S> numbers) const {
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell)
+      if (const auto use = use_of(cell, numbers); use && !(use->phases.slow_down() <= S(1))) return false;
+    return true;
+  }
+  // Phases use a little more of the limits than the law does at three places: that comes off the limits of
+  // their cell before the law comes to them, so that it keeps what is left as a rule. The law that is kept
+  // keeps it in any case. Whether the present one keeps the limits.
+  bool lower_scales() {
+    constexpr S margin = S(1e-4);
+    const auto scaled = [](S at_places, S in_phases, S of_kept, S less) {
+      return std::max(std::min(at_places / in_phases, S(1)) * (S(1) - less), of_kept * (S(1) + less));
+    };
+    const std::span<const S> before = between(S(0));
+    bool proven = true;
+    for (std::size_t cell = cell0_; cell < cell1_; ++cell) {
+      const auto use = use_of(cell, own_);
+      if (!use) continue;
+      const auto& [sampled, phases] = *use;
+      proven = proven && phases.slow_down() <= S(1);
+      const auto old = sampled_utilisation(problem_.cells[cell], *problem_.limits, speed_in(cell, before));
+      BasicLimitScale<S>& scale = problem_.scales[cell];
+      const BasicLimitScale<S> most = failed_ ? scale : BasicLimitScale<S>{S(1), problem_.cells[cell].scale};
+      scale = {std::min(most.speed, scaled(sampled.velocity, phases.velocity, old.velocity, margin / S(10))),
+               std::min(most.force, scaled(sampled.force(), phases.force(), old.force(), margin))};
+      set(cell);
+    }
+    return proven;
+  }
+  // Lowers the scales to what the phases take, and keeps the present law where it is proven. Else goes back
+  // towards the one that is kept; false then, twice in a row at most: once more to the optimum under the new
+  // scales.
+  bool settle() {
+    const bool proven = lower_scales();
+    cost_ = cost_of(own_);
+    bool settled = proven && cost_.barrier < none;
+    if (!settled) {
+      S back = S(0.9);
+      for (int halving = 0; halving < 12; ++halving, back *= S(0.8)) {
+        cost_ = cost_of(between(back));
+        if (cost_.barrier < none && keeps_limits(trial_)) break;
+        if (halving == 11) cost_ = cost_of(between(S(0)));
+      }
+      take(trial_);
+      spread_ = S(1);
+      failed_ = true;
+      settled = ++failures_ > 2;
+    }
+    keep();
+    if (settled) failures_ = 0;
+    return settled;
+  }
+
+  const BasicSpeedProblem<S, N>& problem_;
+  std::span<S> law_;
+  const BasicWindowMemory<S>& memory_;
+  std::size_t limits_;
+  std::size_t first_, count_;  // of the coefficients; two on each side are read beside those that move
+  std::size_t cell0_, cell1_;  // cells [cell0, cell1) read what moves
+  std::span<S> own_;           // the coefficients that they read
+  S terms_;                    // of the barrier
+  std::span<S> gradient_ = memory_.room(0, count_), diagonal_ = memory_.room(1, count_),
+               below_ = memory_.room(2, count_), second_ = memory_.room(3, count_),
+               kept_ = memory_.room(4, count_), trial_ = memory_.room(5, own_.size()),
+               step_ = memory_.room(6, own_.size());
+  BasicLawCost<S> cost_{};
+  S weight_{}, spread_ = S(1);
+  int failures_ = 0;  // of the present weight
+  bool failed_ = false;
+};
+
 /// Finds the fastest law between coefficients that stay: `law` are the coefficients of all cells, of which
 /// [first, last) move. The law keeps the limits, lowered to the scales, strictly at the start, the middle and
 /// the end of each cell when it comes and when it goes. Where its phases do not, the scale of the cell is
@@ -101,193 +324,7 @@ template <std::floating_point S, int N>
 BasicWindowResult<S> optimise(const BasicSpeedProblem<S, N>& problem, std::span<S> law, std::size_t first,
                               std::size_t last, const BasicSpeedOptions<S>& options,
                               const BasicWindowMemory<S>& memory) {
-  constexpr S none = std::numeric_limits<S>::infinity();
-  const std::size_t limits = limit_count(*problem.limits);
-  // Two coefficients on each side are read beside those that move.
-  const std::size_t count = std::min(last - first, memory.capacity(limits) - 4);
-  const auto gradient = memory.room(0, count), diagonal = memory.room(1, count),
-             below = memory.room(2, count), second = memory.room(3, count), kept = memory.room(4, count);
-  const std::size_t cells = problem.cells.size();
-  const std::size_t cell0 = first >= 2 ? first - 2 : 0;
-  const std::size_t cell1 = std::min(first + count, cells);  // cells [cell0, cell1) read what moves
-  const std::size_t low = cell0, high = std::min(cell1 + 2, law.size());
-  const auto trial = memory.room(5, high - low), step = memory.room(6, high - low);
-  const auto shares_of = [&](std::size_t cell) {
-    const std::size_t i = cell - cell0;
-    return BasicCellShares<S>{memory.speeds.subspan(3 * i, 3),
-                              memory.forces.subspan(3 * limits * i, 3 * limits)};
-  };
-  const auto set = [&](std::size_t cell) {
-    set_shares(problem.cells[cell], *problem.limits, problem.scales[cell], shares_of(cell));
-  };
-  const auto shape = [&](std::size_t cell) {
-    return cell < cells ? problem.cells[cell].shape() : BasicCellShape<S>{};  // -1 wraps
-  };
-  // b in a cell from the coefficients from number `low` on.
-  const auto speed_in = [&](std::size_t cell, std::span<const S> numbers) {
-    return cell_speed(numbers, cell - cell0, shape(cell - 1), shape(cell), shape(cell + 1));
-  };
-  const std::span<const S> own = std::span<const S>(law).subspan(low, high - low);
-  const auto cost_of = [&](std::span<const S> numbers) {
-    S time{};
-    BasicBarrier<S> barrier;
-    for (std::size_t cell = cell0; cell < cell1; ++cell)
-      if (!add_cost(shares_of(cell), &numbers[cell - cell0], time, barrier))
-        return BasicLawCost<S>{none, none};
-    return BasicLawCost<S>{time, barrier.sum()};
-  };
-  const auto take = [&](std::span<const S> numbers) {
-    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(first - low), count,
-                law.begin() + static_cast<std::ptrdiff_t>(first));
-  };
-  const auto keep = [&] {
-    std::copy_n(law.begin() + static_cast<std::ptrdiff_t>(first), count, kept.begin());
-  };
-  // Between the law that is kept and the present one.
-  const auto between = [&](S share) {
-    std::copy(own.begin(), own.end(), trial.begin());
-    for (std::size_t i = 0; i < count; ++i) {
-      S& number = trial[first - low + i];
-      number = kept[i] + share * (number - kept[i]);
-    }
-    return std::span<const S>(trial);
-  };
-  constexpr S margin = S(1e-4);
-  int failures = 0;  // of the present weight
-  bool failed = false;
-  // By proof. Phases use a little more of the limits than the law does at three places: that comes off the
-  // limits of their cell before the law comes to them, so that it keeps what is left as a rule. The law that
-  // is kept keeps it in any case.
-  const auto prove = [&](std::span<const S> numbers, bool scale_too) {
-    bool proven = true;
-    const std::span<const S> before = scale_too ? between(S(0)) : numbers;
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const BasicCellSpeed<S> b = speed_in(cell, numbers);
-      const BasicUtilisation<S> sampled = sampled_utilisation(problem.cells[cell], *problem.limits, b);
-      // The speed may be higher between the places than at any of them.
-      const S at_samples = std::max({b.start, b.at(S(0.5), problem.cells[cell].shape()), b.end});
-      const S velocity = sampled.velocity * std::sqrt(b.bound() / at_samples);
-      const bool far_from_limits =
-          sampled.force() < S(0.8) && velocity < S(0.99) * problem.scales[cell].speed;
-      if (far_from_limits) continue;
-      BasicUtilisation<S> utilisation;
-      emit_cell(b, problem.cells[cell].shape(), [&](const BasicPhase<S>& phase) {
-        utilisation.include(utilisation_of(phase, problem.cells[cell], *problem.limits));
-      });
-      proven = proven && utilisation.slow_down() <= S(1);
-      if (!scale_too && !proven) return false;
-      if (!scale_too) continue;
-      const BasicUtilisation<S> old =
-          sampled_utilisation(problem.cells[cell], *problem.limits, speed_in(cell, before));
-      const auto scaled = [](S at_places, S in_phases, S of_kept, S less) {
-        return std::max(std::min(at_places / in_phases, S(1)) * (S(1) - less), of_kept * (S(1) + less));
-      };
-      BasicLimitScale<S>& scale = problem.scales[cell];
-      const BasicLimitScale<S> most = failed ? scale : BasicLimitScale<S>{S(1), problem.cells[cell].scale};
-      scale = {
-          std::min(most.speed, scaled(sampled.velocity, utilisation.velocity, old.velocity, margin / S(10))),
-          std::min(most.force, scaled(sampled.force(), utilisation.force(), old.force(), margin))};
-      set(cell);
-    }
-    return proven;
-  };
-
-  for (std::size_t cell = cell0; cell < cell1; ++cell) {
-    const auto places = law_places(shape(cell - 1), shape(cell), shape(cell + 1));
-    for (std::size_t i = 0; i < 3; ++i) memory.speeds[3 * (cell - cell0) + i].place = places[i];
-    set(cell);
-  }
-  keep();
-  BasicLawCost<S> cost = cost_of(own);
-  BasicWindowResult<S> result{cost.time, 0, false};
-  if (!(cost.barrier < none) || count == 0) return result;
-  const auto terms = static_cast<S>(3 * (1 + 2 * limits) * (cell1 - cell0));
-  S weight = S(0.5) * cost.time / terms;
-  constexpr S far = S(1e4);  // of the multipliers from what the barrier would have
-  S spread = S(1);
-  for (; result.rounds < options.rounds; ++result.rounds) {
-    std::fill(gradient.begin(), gradient.end(), S(0));
-    std::fill(diagonal.begin(), diagonal.end(), S(0));
-    std::fill(below.begin(), below.end(), S(0));
-    std::fill(second.begin(), second.end(), S(0));
-    for (std::size_t cell = cell0; cell < cell1; ++cell) {
-      const auto model = cell_model(shares_of(cell), &own[cell - cell0], weight, spread);
-      const auto& [k00, k01, k02, k11, k12, k22] = model.hessian;
-      const std::array<S, 3> on{k00, k11, k22};
-      const std::array<S, 2> next{k01, k12};
-      for (std::size_t q = 0; q < 3; ++q) {
-        const std::size_t at = cell + q - first;  // wraps below first, and is then not below count
-        if (!(at < count)) continue;
-        gradient[at] += model.gradient[q];
-        diagonal[at] += on[q];
-        if (q < 2 && at + 1 < count) below[at] += next[q];
-        if (q < 1 && at + 2 < count) second[at] += k02;
-      }
-    }
-    std::fill(step.begin(), step.end(), S(0));
-    const auto moving = step.subspan(first - low, count);
-    for (std::size_t i = 0; i < count; ++i) moving[i] = -gradient[i];
-    solve_banded(diagonal, below, second, moving);
-    S decrease = S(0);
-    for (std::size_t i = 0; i < count; ++i) decrease -= gradient[i] * moving[i];
-    const S before = cost.time + weight * cost.barrier;
-    S share = S(1);
-    bool moved = false;
-    for (int halving = 0; halving < 20; ++halving, share *= S(0.5)) {
-      for (std::size_t i = 0; i < trial.size(); ++i) trial[i] = own[i] + share * step[i];
-      const BasicLawCost<S> next = cost_of(trial);
-      if (!(next.barrier < none)) continue;
-      if (!(next.time + weight * next.barrier < before - S(1e-4) * share * decrease)) continue;
-      moved = true;
-      cost = next;
-      break;
-    }
-    if (moved) {
-      for (std::size_t cell = cell0; cell < cell1; ++cell)
-        move_multipliers(shares_of(cell), &step[cell - cell0], weight, share);
-      take(trial);
-      spread = far;
-      if (decrease > weight * terms * S(0.05)) continue;
-    }
-    if (!options.proven || !(weight * terms < S(0.3) * cost.time)) {
-      if (weight * terms < options.gap * cost.time) {
-        result.converged = true;
-        break;
-      }
-      weight *= S(0.2);
-      continue;
-    }
-    const bool proven = prove(own, true);
-    cost = cost_of(own);
-    bool go_on = proven && cost.barrier < none;
-    if (!go_on) {
-      // Back to where it is, towards the law that is kept; once more to the optimum under the new scales.
-      S back = S(0.9);
-      for (int halving = 0; halving < 12; ++halving, back *= S(0.8)) {
-        cost = cost_of(between(back));
-        if (cost.barrier < none && prove(trial, false)) break;
-        if (halving == 11) cost = cost_of(between(S(0)));
-      }
-      take(trial);
-      spread = S(1);
-      failed = true;
-      go_on = ++failures > 2;
-    }
-    keep();
-    if (!go_on) continue;
-    failures = 0;
-    if (weight * terms < options.gap * cost.time) {
-      result.converged = true;
-      break;
-    }
-    weight *= S(0.2);
-  }
-  if (!result.converged && options.proven) {
-    take(between(S(0)));
-    cost = cost_of(own);
-  }
-  result.time = cost.time;
-  return result;
+  return SpeedWindow<S, N>(problem, law, first, last, memory).optimise(options);
 }
 
 }  // namespace cncplan::detail
