@@ -136,6 +136,162 @@ void add_up(BasicSpeedPlan<S>& plan, std::span<const BasicSpeedCell<S, N>> cells
   plan.slow_down = std::max(S(1), plan.utilisation.slow_down());
 }
 
+/// Looks for the fastest law over cells between those in which motion leaves rest and comes to it.
+template <std::floating_point S, int N>
+class SpeedPlanner {
+ public:
+  SpeedPlanner(std::span<const BasicSpeedCell<S, N>> cells, const BasicMotionLimits<S, N>& limits,
+               const BasicPlanSpeedOptions<S>& options, const BasicPlanSpeedMemory<S>& memory,
+               const BasicSpeedEnds<S>& ends)
+      : cells_(cells),
+        limits_(limits),
+        options_(options),
+        memory_(memory),
+        given_(ends.given),
+        inner_(cells.size() - 2),
+        law_(memory.law.first(inner_ + 2)),
+        levels_(memory.levels.first(inner_)),
+        problem_{cells.subspan(1, inner_), memory.scales.subspan(1, inner_), &limits} {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      memory.scales[i] = {options.window.proven ? proven_scale(cells[i], limits) : S(1), cells[i].scale};
+    plan_.start =
+        ends.start > S(0) ? BasicRestCell<S>::at_speed(ends.start) : rest_cell(cells.front(), limits);
+    plan_.end =
+        ends.end > S(0) ? BasicRestCell<S>::at_speed(ends.end) : rest_cell(reversed(cells.back()), limits);
+    for (std::size_t i = given_; i < inner_; ++i) {
+      const S speed = feasible_speed(problem_.cells[i], limits, problem_.scales[i]);
+      levels_[i] = speed * speed;
+      length_ += problem_.cells[i].length;
+    }
+  }
+
+  [[nodiscard]] BasicSpeedPlan<S> plan(const Progress& progress) {
+    if (!start()) {
+      plan_.duration = std::numeric_limits<S>::infinity();
+      return plan_;
+    }
+    if (options_.fastest) move(progress);
+    add_up(plan_, cells_, std::span<const S>(law_), limits_, options_.window.proven);
+    return plan_;
+  }
+
+ private:
+  // Where a law does not keep the limits, lowered to the scales.
+  struct Excess {
+    S worst{};  // of them, the share that it takes
+    bool start_too_fast{}, end_too_fast{};
+  };
+
+  // A law that keeps the limits: where it does not yet, it becomes slower, in the end everywhere; false where
+  // that cannot be, as it is to begin or end at a speed.
+  bool start() {
+    const BasicSpeedProblem<S, N> sought{problem_.cells.subspan(given_), problem_.scales.subspan(given_),
+                                         &limits_};
+    // Of the cells without a law: what comes before them changes nothing.
+    const BasicLimits<S> along = tangential_limits(cells_.subspan(given_ > 0 ? 1 + given_ : 0), limits_);
+    S worst{};
+    for (int round = 0; round < 12; ++round) {
+      const auto [leaves, comes] =
+          feasible_law(sought, std::span<const S>(levels_).subspan(given_), plan_.start, plan_.end, along,
+                       memory_.plateaus, law_.subspan(given_));
+      const Excess excess = lower_levels(leaves, comes);
+      worst = excess.worst;
+      if (worst < S(1)) return true;
+      if (plan_.start.from_rest() && excess.start_too_fast)
+        plan_.start = {cells_.front().length, S(0.5) * plan_.start.jerk};
+      if (plan_.end.from_rest() && excess.end_too_fast)
+        plan_.end = {cells_.back().length, S(0.5) * plan_.end.jerk};
+    }
+    if (!plan_.start.from_rest() || !plan_.end.from_rest()) return false;
+    slow_down(worst * S(1.01));
+    return true;
+  }
+  // Lowers the levels near cells in which the law does not keep the limits. `leaves`, `comes`: mm in which it
+  // leaves rest and comes to it.
+  Excess lower_levels(S leaves, S comes) {
+    Excess excess;
+    S at = S(0);
+    for (std::size_t i = given_; i < inner_; ++i) {
+      const S before = at;
+      at += problem_.cells[i].length;
+      const BasicUtilisation<S> utilisation =
+          sampled_utilisation(problem_.cells[i], limits_, problem_.speed(std::span<const S>(law_), i));
+      const S slow = std::max(utilisation.velocity / problem_.scales[i].speed,
+                              std::max(std::sqrt(utilisation.acceleration), std::cbrt(utilisation.jerk)) /
+                                  problem_.scales[i].force);
+      excess.worst = std::max(excess.worst, slow);
+      if (slow < S(1)) continue;
+      // The ramp behind a departure goes on from what that has come to.
+      excess.start_too_fast = excess.start_too_fast || before <= S(2) * leaves;
+      excess.end_too_fast = excess.end_too_fast || at >= length_ - S(2) * comes;
+      for (std::size_t k = std::max(i, given_ + 2) - 2; k < std::min(i + 3, inner_); ++k)
+        levels_[k] *= S(0.8);
+    }
+    return excess;
+  }
+  void slow_down(S slower) {
+    for (S& b : law_) b /= slower * slower;
+    plan_.start = {cells_.front().length, plan_.start.jerk / (slower * slower * slower)};
+    plan_.end = {cells_.back().length, plan_.end.jerk / (slower * slower * slower)};
+    plan_.start_slow_down = slower;
+  }
+
+  // Whether a coefficient is slower than the feed.
+  [[nodiscard]] bool moves(std::size_t k) const {
+    const S feed = problem_.cells[k - 1].feed * problem_.scales[k - 1].speed;
+    return !(law_[k] > feed * feed * (S(1) - S(1e-4)));
+  }
+  // Windows move the coefficients that are slower than the feed.
+  void move(const Progress& progress) {
+    for (std::size_t k = 2; k < inner_; ++k) levels_[k - 1] = moves(k) ? S(1) : S(0);
+    for (std::size_t k = 2; k < inner_;) {
+      std::size_t end = k;
+      while (end < inner_ && levels_[end - 1] > S(0)) ++end;
+      if (end > k) move_stretch(k, end, progress);
+      k = std::max(end, k + 1);
+    }
+  }
+  // All coefficients of a stretch.
+  void move_stretch(std::size_t begin, std::size_t end, const Progress& progress) {
+    const std::size_t most =
+        std::min(options_.window_cells, memory_.window.capacity(limit_count(limits_)) - 4);
+    bool again = false;
+    for (std::size_t first = begin; first < end;) {
+      progress.reach(static_cast<double>(first) / static_cast<double>(inner_));
+      const std::size_t last = std::min(first + (again ? most - most / 4 : most), end);
+      const auto result = optimise(problem_, law_, first, last, options_.window, memory_.window);
+      plan_.rounds += result.rounds;
+      plan_.windows += 1;
+      // It keeps the law that it starts from, which can be slow: another window is tried, with other ends;
+      // then one that leaves the cells that came with a law, which may be next to the limits.
+      if (!result.converged && !again) {
+        again = true;
+        first -= std::min(first - begin, most / 8);
+        continue;
+      }
+      if (!result.converged && first < given_ + 2 && given_ + 2 < end) {
+        again = false;
+        first = begin = given_ + 2;
+        continue;
+      }
+      plan_.unconverged += result.converged ? 0 : 1;
+      again = false;
+      if (last == end) return;
+      first += most / 2;
+    }
+  }
+
+  std::span<const BasicSpeedCell<S, N>> cells_;
+  const BasicMotionLimits<S, N>& limits_;
+  const BasicPlanSpeedOptions<S>& options_;
+  const BasicPlanSpeedMemory<S>& memory_;
+  std::size_t given_, inner_;  // cells that have a law, and all but the first and the last
+  std::span<S> law_, levels_;
+  BasicSpeedProblem<S, N> problem_;
+  S length_{};  // mm, of the cells without a law
+  BasicSpeedPlan<S> plan_;
+};
+
 /// Plans the speed over cells of which the first and the last, short ones, are those in which motion leaves
 /// rest and comes to it; where it begins or ends at a speed, they have no length.
 template <std::floating_point S, int N>
@@ -145,106 +301,7 @@ template <std::floating_point S, int N>
                                            const BasicPlanSpeedMemory<S>& memory,
                                            const BasicSpeedEnds<S>& ends = {},
                                            const Progress& progress = {}) {
-  BasicSpeedPlan<S> plan;
-  const std::size_t inner = cells.size() - 2;
-  const auto law = memory.law.first(inner + 2);
-  const auto scales = memory.scales.first(cells.size());
-  const auto levels = memory.levels.first(inner);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    scales[i] = {options.window.proven ? proven_scale(cells[i], limits) : S(1), cells[i].scale};
-  const BasicSpeedProblem<S, N> problem{cells.subspan(1, inner), scales.subspan(1, inner), &limits};
-  const BasicSpeedProblem<S, N> sought{problem.cells.subspan(ends.given), problem.scales.subspan(ends.given),
-                                       &limits};
-  // Of the cells without a law: what comes before them changes nothing.
-  const BasicLimits<S> along = tangential_limits(cells.subspan(ends.given > 0 ? 1 + ends.given : 0), limits);
-  S length = S(0);
-  plan.start = ends.start > S(0) ? BasicRestCell<S>::at_speed(ends.start) : rest_cell(cells.front(), limits);
-  plan.end =
-      ends.end > S(0) ? BasicRestCell<S>::at_speed(ends.end) : rest_cell(reversed(cells.back()), limits);
-  for (std::size_t i = ends.given; i < inner; ++i) {
-    const S speed = feasible_speed(problem.cells[i], limits, problem.scales[i]);
-    levels[i] = speed * speed;
-    length += problem.cells[i].length;
-  }
-  // A start that keeps the limits: where it does not yet, it becomes slower, in the end everywhere.
-  for (int round = 0; round < 12; ++round) {
-    const auto [leaves, comes] =
-        feasible_law(sought, std::span<const S>(levels).subspan(ends.given), plan.start, plan.end, along,
-                     memory.plateaus, law.subspan(ends.given));
-    bool start_too_fast = false, end_too_fast = false;
-    S worst = S(0), at = S(0);
-    for (std::size_t i = ends.given; i < inner; ++i) {
-      const S before = at;
-      at += problem.cells[i].length;
-      const BasicUtilisation<S> utilisation =
-          sampled_utilisation(problem.cells[i], limits, problem.speed(std::span<const S>(law), i));
-      const S slow = std::max(utilisation.velocity / problem.scales[i].speed,
-                              std::max(std::sqrt(utilisation.acceleration), std::cbrt(utilisation.jerk)) /
-                                  problem.scales[i].force);
-      worst = std::max(worst, slow);
-      if (slow < S(1)) continue;
-      // The ramp behind a departure goes on from what that has come to.
-      start_too_fast = start_too_fast || before <= S(2) * leaves;
-      end_too_fast = end_too_fast || at >= length - S(2) * comes;
-      for (std::size_t k = std::max(i, ends.given + 2) - 2; k < std::min(i + 3, inner); ++k)
-        levels[k] *= S(0.8);
-    }
-    if (worst < S(1)) break;
-    if (plan.start.from_rest() && start_too_fast)
-      plan.start = {cells.front().length, S(0.5) * plan.start.jerk};
-    if (plan.end.from_rest() && end_too_fast) plan.end = {cells.back().length, S(0.5) * plan.end.jerk};
-    if (round < 11) continue;
-    if (!plan.start.from_rest() || !plan.end.from_rest()) {
-      plan.duration = std::numeric_limits<S>::infinity();
-      return plan;
-    }
-    const S slower = worst * S(1.01);
-    for (S& b : law) b /= slower * slower;
-    plan.start = {cells.front().length, plan.start.jerk / (slower * slower * slower)};
-    plan.end = {cells.back().length, plan.end.jerk / (slower * slower * slower)};
-    plan.start_slow_down = slower;
-  }
-  // Windows move the coefficients that are slower than the feed.
-  for (std::size_t k = 2; k < inner && options.fastest; ++k) {
-    const S feed = problem.cells[k - 1].feed * problem.scales[k - 1].speed;
-    levels[k - 1] = law[k] > feed * feed * (S(1) - S(1e-4)) ? S(0) : S(1);
-  }
-  const std::size_t most = std::min(options.window_cells, memory.window.capacity(limit_count(limits)) - 4);
-  for (std::size_t k = 2; k < inner && options.fastest;) {
-    if (!(levels[k - 1] > S(0))) {
-      ++k;
-      continue;
-    }
-    std::size_t end = k;
-    while (end < inner && levels[end - 1] > S(0)) ++end;
-    bool again = false;
-    for (std::size_t first = k; first < end;) {
-      progress.reach(static_cast<double>(first) / static_cast<double>(inner));
-      const std::size_t last = std::min(first + (again ? most - most / 4 : most), end);
-      const auto result = optimise(problem, law, first, last, options.window, memory.window);
-      plan.rounds += result.rounds;
-      plan.windows += 1;
-      // It keeps the law that it starts from, which can be slow: another window is tried, with other ends;
-      // then one that leaves the cells that came with a law, which may be next to the limits.
-      if (!result.converged && !again) {
-        again = true;
-        first -= std::min(first - k, most / 8);
-        continue;
-      }
-      if (!result.converged && first < ends.given + 2 && ends.given + 2 < end) {
-        again = false;
-        first = k = ends.given + 2;
-        continue;
-      }
-      plan.unconverged += result.converged ? 0 : 1;
-      again = false;
-      if (last == end) break;
-      first += most / 2;
-    }
-    k = end;
-  }
-  add_up(plan, cells, std::span<const S>(law), limits, options.window.proven);
-  return plan;
+  return SpeedPlanner<S, N>(cells, limits, options, memory, ends).plan(progress);
 }
 
 }  // namespace cncplan::detail
