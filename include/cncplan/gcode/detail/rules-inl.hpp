@@ -318,21 +318,163 @@ CNCPLAN_INLINE Check check_owners(const Block& block, const Modal& modal, const 
                                    name(block.first_in_text(words))});
 }
 
+/// Which codes of a line use its axis words, so that no motion can.
+struct AxisUsers {
+  bool homes, shifts, sets_length;
+
+  [[nodiscard]] static AxisUsers of(const Block& block, const Alphabet& alphabet) {
+    const Code code_of = block.code(Group::non_modal);
+    return {code_of == code(28) || code_of == code(30),
+            code_of == code(92) || code_of == code(52) || code_of == code(10) || dwells_by_x(block, alphabet),
+            block.code(Group::tool_length) == code(43.1)};
+  }
+  [[nodiscard]] bool any() const { return homes || shifts || sets_length; }
+};
+
+/// The axis words are for such a code: nothing else on the line can use them; G0 says no more than G28 does.
+CNCPLAN_INLINE Check check_axis_users(Block& block, const Alphabet& alphabet, const AxisUsers& users,
+                                      Letters axis_words) {
+  const Code requested = block.code(Group::motion), non_modal = block.code(Group::non_modal);
+  if (non_modal == code(4))
+    if (auto ok = not_negative(block, 'X'); !ok) return ok;
+  const bool by_non_modal = users.homes || users.shifts;
+  const Group user = by_non_modal ? Group::non_modal : Group::tool_length;
+  if (by_non_modal && users.sets_length)
+    return conflict(block.error(ErrorCode::conflicting_words, Group::tool_length), "G", non_modal / 10.0);
+  if (requested != no_code && requested != code(80) && !(users.homes && requested == code(0)))
+    return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G", block.code(user) / 10.0);
+  if (users.homes || axis_words != 0 || non_modal == code(10) || (block.letters() & alphabet.left_out) != 0)
+    return {};
+  const Letters unknown = block.letters() & ~alphabet.known();  // one was meant to be the axis
+  if (unknown != 0 && !block.passes_code())
+    if (auto ok = settle(block, unknown, alphabet); !ok) return ok;
+  return missing("axis", block.column(user));
+}
+
+/// The motion that a line runs whose axis words no other code uses.
+CNCPLAN_INLINE Expected<Code, Diagnostic> motion_of(const Block& block, const Modal& modal,
+                                                    Letters axis_words) {
+  if (block.code(Group::motion) != no_code) return modal.motion;
+  if (axis_words != 0 && modal.motion == no_code)
+    return missing("G0, G1, G2 or G3", block.first_column(axis_words));
+  if (const Word* passed = block.passed_g(); passed && axis_words != 0)
+    return tl::unexpected(
+        Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
+  const bool centers = (block.letters() & bits("IJK")) != 0;
+  const bool moves = axis_words != 0 || (centers && (is_arc(modal.motion) || is_nurbs(modal.motion) ||
+                                                     names_direction(block, modal, modal.motion)));
+  return moves ? modal.motion : no_code;
+}
+
+/// G53 is for lines of absolute coordinates.
+CNCPLAN_INLINE Check check_machine_coordinates(const Block& block, const Modal& modal, Code motion) {
+  if (block.code(Group::non_modal) != code(53)) return {};
+  if (motion == no_code) return tl::unexpected(block.error(ErrorCode::unused_word, Group::non_modal));
+  const auto machine = block.error(ErrorCode::conflicting_words, Group::non_modal);
+  if (is_arc(motion)) return conflict(machine, "G", motion / 10.0);
+  if (modal.incremental) return conflict(machine, "G", 91);
+  return {};
+}
+
+/// The words of a motion beside its end point, which no other code of the line may take. `used` loses the
+/// axes that it does not have. `begins`: the line above had another one.
+CNCPLAN_INLINE Expected<Letters, Diagnostic> words_of_motion(const Block& block, const Modal& modal,
+                                                             const Alphabet& alphabet, Code motion,
+                                                             bool begins, int column, Letters& used) {
+  const auto [first, second, third] = axes(modal.plane);
+  const auto after = [](const Check& ok, Letters taken) -> Expected<Letters, Diagnostic> {
+    if (!ok) return tl::unexpected(ok.error());
+    return taken;
+  };
+  if (is_arc(motion)) {
+    used |= bit(center_letter(third));
+    return after(check_arc(block, modal, alphabet, column),
+                 bit(center_letter(first)) | bit(center_letter(second)) | bits("PR"));
+  }
+  if (is_spline(motion) || is_nurbs(motion)) {
+    used &= ~alphabet.axes | bit("XYZ"[first]) | bit("XYZ"[second]);
+    return after(check_spline(block, modal, alphabet, motion, column), motion == code(5)     ? bits("IJPQ")
+                                                                       : motion == code(5.1) ? bits("IJ")
+                                                                       : motion == code(5.2) ? bits("PL")
+                                                                                             : bits("PQRK"));
+  }
+  if (motion == code(5.3)) used &= ~alphabet.axes;
+  if (is_cycle(motion)) {
+    used &= ~alphabet.axes | bits("XYZ");
+    return after(
+        check_cycle(block, modal, alphabet, begins, column),
+        bits("LR") | (dwells(motion) || is_tap(motion) ? bit('P') : 0) | (is_peck(motion) ? bit('Q') : 0));
+  }
+  if (is_synchronised(motion))
+    return after(check_synchronised(block, modal, alphabet, motion, column), motion == code(33) ? bit('K')
+                                                                             : motion == code(33.1)
+                                                                                 ? bits("KI")
+                                                                                 : bits("PIJKRQHEL"));
+  return names_direction(block, modal, motion) ? bits("IJK") : 0;
+}
+
+/// Numbers that are not to be negative, of words that something uses.
+CNCPLAN_INLINE Check check_signs(const Block& block, Code motion, Letters used) {
+  const bool signed_diameter = block.has(Group::compensation);
+  const Letters counted = used & block.letters();
+  for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
+    if ((counted & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) && motion != code(5) &&
+        block.code(Group::input_output) < code(67))  // M67, M68: any Q
+      if (auto ok = not_negative(block, letter); !ok) return ok;
+  if (auto ok = not_negative(block, 'N'); !ok) return ok;
+  if (block.code(Group::spindle_mode) == code(96) && block.has('D') && block.number('D') == 0.0)
+    return tl::unexpected(block.error(ErrorCode::not_positive, 'D'));
+  return {};
+}
+
+/// The words of a line: each is used by one code, or passed on, or an error.
+CNCPLAN_INLINE Check check_words(Block& block, const Modal& modal, const Alphabet& alphabet, Code motion,
+                                 const AxisUsers& users, Letters axis_words, bool begins) {
+  const int column = block.has(Group::motion)
+                         ? block.column(Group::motion)
+                         : block.first_column(axis_words | (block.letters() & bits("IJK")));
+  Letters used = bits("NST");
+  if (users.any() || motion != no_code) used |= alphabet.axes;
+  if (motion != no_code) used |= polar_words;
+  const bool turns = is_synchronised(motion) || is_tap(motion);
+  if ((block.has('S') && !dwells_by_s(block)) || block.has(Group::spindle) || turns) used |= bit('$');
+  if (turns && block.has('$') && block.number('$') != 0.0)  // the feed is made of spindle 0
+    return tl::unexpected(block.error(ErrorCode::not_supported, '$'));
+  if (auto ok = check_polar(block, modal, alphabet, motion); !ok) return ok;
+  // The time of a line is not that of each motion that it may give.
+  const bool curves = is_spline(motion) || is_nurbs(motion) || motion == code(5.3);
+  if (modal.feed_mode == FeedMode::inverse_time && (curves || is_cycle(motion) || is_synchronised(motion)))
+    return conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, column}, "G", 93);
+  const auto taken = words_of_motion(block, modal, alphabet, motion, begins, column, used);
+  if (!taken) return tl::unexpected(taken.error());
+  used |= *taken;
+  if (auto ok = take_words(block, alphabet, *taken, used); !ok) return ok;
+  if (block.code(Group::non_modal) == code(10))
+    if (auto ok = check_setting(block, alphabet); !ok) return ok;
+
+  if ((is_probe(motion) || motion == code(33) || motion == code(33.1)) && axis_words == 0)
+    return missing("axis", column);
+  const bool feeds = is_arc(motion) || is_cycle(motion) || is_spline(motion) || is_nurbs(motion) ||
+                     ((motion == code(1) || is_probe(motion)) && axis_words != 0) ||
+                     (motion == code(1) && names_direction(block, modal, motion));
+  const bool may_own =
+      block.unclear_code() != nullptr && block.code(Group::motion) == no_code && !users.any();
+  const Letters lacking = may_own ? 0 : left_out(block, alphabet, motion);
+  if (feeds || lacking != 0 || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
+  used |= lacking;
+  if (auto ok = check_signs(block, motion, used); !ok) return ok;
+  if (feeds)
+    if (auto ok = check_feed(block, modal, column); !ok) return ok;
+  return settle(block, block.letters() & ~used, alphabet);
+}
+
 }  // namespace detail
 
 CNCPLAN_INLINE Expected<Code, Diagnostic> resolve(Block& block, const Modal& modal, const Alphabet& alphabet,
                                                   Code before) {
   using namespace detail;
+  const auto users = AxisUsers::of(block, alphabet);
   const Letters axis_words = block.letters() & (alphabet.axes | polar_words);
-  const Letters center_words = block.letters() & bits("IJK");
-  const Code requested = block.code(Group::motion);
-  const Code non_modal = block.code(Group::non_modal);
-  const bool homes = non_modal == code(28) || non_modal == code(30);
-  const bool shifts =
-      non_modal == code(92) || non_modal == code(52) || non_modal == code(10) || dwells_by_x(block, alphabet);
-  const bool sets_length = block.code(Group::tool_length) == code(43.1);
-  const bool takes_axes = homes || shifts || sets_length;
-
   if (auto ok = check_tools(block); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_owners(block, modal, alphabet); !ok) return tl::unexpected(ok.error());
   if (block.code(Group::tool_length) == code(43.2) &&
@@ -340,113 +482,19 @@ CNCPLAN_INLINE Expected<Code, Diagnostic> resolve(Block& block, const Modal& mod
     return conflict(block.error(ErrorCode::conflicting_words, first_of(axis_words)), "G", 43.2);
 
   // What is said under a code that was not understood belongs to it.
-  if (modal.motion == lost_code && requested == no_code && !takes_axes) return no_code;
-
+  if (modal.motion == lost_code && block.code(Group::motion) == no_code && !users.any()) return no_code;
   Code motion = no_code;
-  if (takes_axes) {  // these use the axis words, so nothing else on the line can; G0 says no more than G28
-                     // does
-    if (non_modal == code(4))
-      if (auto ok = not_negative(block, 'X'); !ok) return tl::unexpected(ok.error());
-    const Group taker = homes || shifts ? Group::non_modal : Group::tool_length;
-    if ((homes || shifts) && sets_length)
-      return conflict(block.error(ErrorCode::conflicting_words, Group::tool_length), "G", non_modal / 10.0);
-    if (requested != no_code && requested != code(80) && !(homes && requested == code(0)))
-      return conflict(block.error(ErrorCode::conflicting_words, Group::motion), "G",
-                      block.code(taker) / 10.0);
-    if (!homes && axis_words == 0 && non_modal != code(10) &&
-        (block.letters() & alphabet.left_out) == 0) {  // an unknown letter was meant to be the axis
-      const Letters unknown = block.letters() & ~alphabet.known();
-      if (unknown != 0 && !block.passes_code())
-        if (auto ok = settle(block, unknown, alphabet); !ok) return tl::unexpected(ok.error());
-      return missing("axis", block.column(taker));
-    }
-  } else if (requested == no_code && axis_words != 0 && modal.motion == no_code) {
-    return missing("G0, G1, G2 or G3", block.first_column(axis_words));
-  } else if (const Word* passed = block.passed_g(); passed && requested == no_code && axis_words != 0) {
-    return tl::unexpected(
-        Diagnostic{{ErrorCode::not_to_pass, name('G'), passed->number, 0.0}, 0, passed->column});
-  } else if (requested != no_code || axis_words != 0 ||
-             (center_words != 0 && (is_arc(modal.motion) || is_nurbs(modal.motion) ||
-                                    names_direction(block, modal, modal.motion)))) {
-    motion = modal.motion;
-  }
-  const int column =
-      block.has(Group::motion) ? block.column(Group::motion) : block.first_column(axis_words | center_words);
-
-  if (non_modal == code(53)) {
-    if (motion == no_code) return tl::unexpected(block.error(ErrorCode::unused_word, Group::non_modal));
-    const auto machine = block.error(ErrorCode::conflicting_words, Group::non_modal);
-    if (is_arc(motion)) return conflict(machine, "G", motion / 10.0);
-    if (modal.incremental) return conflict(machine, "G", 91);
-  }
-
-  Letters used = bits("NST");
-  if (takes_axes || motion != no_code) used |= alphabet.axes;
-  if (motion != no_code) used |= polar_words;
-  const bool turns = is_synchronised(motion) || is_tap(motion);
-  if ((block.has('S') && !dwells_by_s(block)) || block.has(Group::spindle) || turns) used |= bit('$');
-  if (turns && block.has('$') && block.number('$') != 0.0)  // the feed is made of spindle 0
-    return tl::unexpected(block.error(ErrorCode::not_supported, '$'));
-  if (auto ok = check_polar(block, modal, alphabet, motion); !ok) return tl::unexpected(ok.error());
-  // The time of a line is not that of each motion that it may give.
-  const bool curves = is_spline(motion) || is_nurbs(motion) || motion == code(5.3);
-  if (modal.feed_mode == FeedMode::inverse_time && (curves || is_cycle(motion) || is_synchronised(motion)))
-    return conflict(Diagnostic{{{}, "G", motion / 10.0, 0.0}, 0, column}, "G", 93);
-  Letters taken = 0;
-  if (is_arc(motion)) {
-    if (auto ok = check_arc(block, modal, alphabet, column); !ok) return tl::unexpected(ok.error());
-    const auto [first, second, third] = axes(modal.plane);
-    used |= bit(center_letter(third));
-    taken = bit(center_letter(first)) | bit(center_letter(second)) | bits("PR");
-  } else if (is_spline(motion) || is_nurbs(motion)) {
-    if (auto ok = check_spline(block, modal, alphabet, motion, column); !ok)
+  if (users.any()) {
+    if (auto ok = check_axis_users(block, alphabet, users, axis_words); !ok)
       return tl::unexpected(ok.error());
-    const auto [first, second, third] = axes(modal.plane);
-    used &= ~alphabet.axes | bit("XYZ"[first]) | bit("XYZ"[second]);
-    taken = motion == code(5)     ? bits("IJPQ")
-            : motion == code(5.1) ? bits("IJ")
-            : motion == code(5.2) ? bits("PL")
-                                  : bits("PQRK");
-  } else if (motion == code(5.3)) {
-    used &= ~alphabet.axes;
-  } else if (is_cycle(motion)) {
-    if (auto ok = check_cycle(block, modal, alphabet, motion != before, column); !ok)
-      return tl::unexpected(ok.error());
-    used &= ~alphabet.axes | bits("XYZ");
-    taken = bits("LR") | (dwells(motion) || is_tap(motion) ? bit('P') : 0) | (is_peck(motion) ? bit('Q') : 0);
-  } else if (is_synchronised(motion)) {
-    if (auto ok = check_synchronised(block, modal, alphabet, motion, column); !ok)
-      return tl::unexpected(ok.error());
-    taken = motion == code(33) ? bit('K') : motion == code(33.1) ? bits("KI") : bits("PIJKRQHEL");
+  } else {
+    const auto found = motion_of(block, modal, axis_words);
+    if (!found) return found;
+    motion = *found;
   }
-  if (names_direction(block, modal, motion)) taken = bits("IJK");
-  used |= taken;
-  if (auto ok = take_words(block, alphabet, taken, used); !ok) return tl::unexpected(ok.error());
-  if (non_modal == code(10))
-    if (auto ok = check_setting(block, alphabet); !ok) return tl::unexpected(ok.error());
-
-  if ((is_probe(motion) || motion == code(33) || motion == code(33.1)) && axis_words == 0)
-    return missing("axis", column);
-  const bool feeds = is_arc(motion) || is_cycle(motion) || is_spline(motion) || is_nurbs(motion) ||
-                     ((motion == code(1) || is_probe(motion)) && axis_words != 0) ||
-                     (motion == code(1) && names_direction(block, modal, motion));
-  const bool may_own = block.unclear_code() != nullptr && requested == no_code && !takes_axes;
-  const Letters lacking = may_own ? 0 : left_out(block, alphabet, motion);
-  if (feeds || lacking != 0 || modal.feed_mode != FeedMode::inverse_time) used |= bit('F');
-  used |= lacking;
-  const bool signed_diameter = block.has(Group::compensation);
-  const Letters counted = used & block.letters();
-  for (const char letter : {'D', 'F', 'S', 'P', 'Q'})
-    if ((counted & bit(letter)) != 0 && !(letter == 'D' && signed_diameter) && motion != code(5) &&
-        block.code(Group::input_output) < code(67))  // M67, M68: any Q
-      if (auto ok = not_negative(block, letter); !ok) return tl::unexpected(ok.error());
-  if (auto ok = not_negative(block, 'N'); !ok) return tl::unexpected(ok.error());
-  if (block.code(Group::spindle_mode) == code(96) && block.has('D') && block.number('D') == 0.0)
-    return tl::unexpected(block.error(ErrorCode::not_positive, 'D'));
-  if (feeds)
-    if (auto ok = check_feed(block, modal, column); !ok) return tl::unexpected(ok.error());
-  if (const Letters unused = block.letters() & ~used; unused != 0)
-    if (auto ok = settle(block, unused, alphabet); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_machine_coordinates(block, modal, motion); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_words(block, modal, alphabet, motion, users, axis_words, motion != before); !ok)
+    return tl::unexpected(ok.error());
   return motion;
 }
 
