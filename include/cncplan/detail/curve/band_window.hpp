@@ -16,6 +16,16 @@
 
 namespace cncplan::detail {
 
+/// What four control points come to by weights, less what that is to come near to. Of points with more
+/// numbers the first ones count.
+template <std::floating_point S, int N, int M>
+[[nodiscard]] VectorN<S, N> weighted_off(const std::array<S, 4>& weights, const VectorN<S, N>& target,
+                                         const VectorN<S, M>* four) {
+  VectorN<S, N> result = -target;
+  for (std::size_t q = 0; q < 4; ++q) result += weights[q] * four[q].template head<N>();
+  return result;
+}
+
 /// A cell of the curve: how it hangs on its four control points, and what it is to come near to.
 template <std::floating_point S, int N>
 struct BasicBandCell {
@@ -24,6 +34,12 @@ struct BasicBandCell {
   S length{};
   S jerk_weight{};  ///< of |q''' - third|^2
   std::size_t first_sample{};
+
+  /// q''' - third
+  template <int M>
+  [[nodiscard]] VectorN<S, N> third_off(const VectorN<S, M>* four) const {
+    return weighted_off<S, N, M>(weights[3], third, four);
+  }
 };
 
 /// A place where the curve must stay in the tube.
@@ -33,6 +49,12 @@ struct BasicBandSample {
   VectorN<S, N> target = VectorN<S, N>::Zero();  ///< the programmed position
   VectorN<S, N> scale = VectorN<S, N>::Ones();   ///< 1 / tolerance of each axis: |scale (q - target)| < 1
   S length{};                                    ///< mm that it stands for
+
+  /// q - target
+  template <int M>
+  [[nodiscard]] VectorN<S, N> off(const VectorN<S, M>* four) const {
+    return weighted_off<S, N, M>(weights, target, four);
+  }
 };
 
 /// The curve of `points`: cell k hangs on points k to k + 3 and has samples from its first to the next
@@ -45,6 +67,10 @@ struct BasicBandProblem {
   S centring{};  ///< what a mm at the edge of the tube costs
 
   [[nodiscard]] std::size_t cell_count() const { return cells.size() - 1; }
+  [[nodiscard]] std::span<const BasicBandSample<S, N>> samples_of(std::size_t cell) const {
+    const std::size_t from = cells[cell].first_sample;
+    return samples.subspan(from, cells[cell + 1].first_sample - from);
+  }
 };
 
 /// Room for windows: so many control points may move.
@@ -189,32 +215,16 @@ class BandWindow {
     S energy{}, barrier{};
   };
 
-  [[nodiscard]] std::span<const Sample> samples_of(std::size_t cell) const {
-    const std::size_t from = problem_.cells[cell].first_sample;
-    return problem_.samples.subspan(from, problem_.cells[cell + 1].first_sample - from);
-  }
-  // From what it is to come near to, with the four control points of the cell.
-  [[nodiscard]] static Vector third_off(const Cell& cell, const Vector* four) {
-    Vector third = -cell.third;
-    for (std::size_t q = 0; q < 4; ++q) third += cell.weights[3][q] * four[q];
-    return third;
-  }
-  [[nodiscard]] static Vector position_off(const Sample& sample, const Vector* four) {
-    Vector off = -sample.target;
-    for (std::size_t q = 0; q < 4; ++q) off += sample.weights[q] * four[q];
-    return off;
-  }
-
   // With the control points that the cells of the window hang on.
   [[nodiscard]] Cost cost_of(std::span<const Vector> points) const {
     Cost cost;
     for (std::size_t cell = cell0_; cell < cell1_; ++cell) {
       const Cell& here = problem_.cells[cell];
       const Vector* four = &points[cell - cell0_];
-      cost.energy += here.jerk_weight * third_off(here, four).cwiseAbs2().dot(jerk_sq_);
+      cost.energy += here.jerk_weight * here.third_off(four).cwiseAbs2().dot(jerk_sq_);
       S room = S(1);
-      for (const Sample& sample : samples_of(cell)) {
-        const S share = position_off(sample, four).cwiseProduct(sample.scale).squaredNorm();
+      for (const Sample& sample : problem_.samples_of(cell)) {
+        const S share = sample.off(four).cwiseProduct(sample.scale).squaredNorm();
         if (!(share < S(1))) return {none, none};
         cost.energy += problem_.centring * sample.length * share;
         room *= S(1) - share;
@@ -238,13 +248,13 @@ class BandWindow {
       const Cell& here = problem_.cells[cell];
       const Vector* four = &points_[cell];
       const S stiffness = S(2) * here.jerk_weight;
-      const Vector pull = stiffness * third_off(here, four).cwiseProduct(jerk_sq_);
+      const Vector pull = stiffness * here.third_off(four).cwiseProduct(jerk_sq_);
       const Vector stiff = stiffness * jerk_sq_;
       add(
           cell, here.weights[3], [&](S weight) { return Vector(weight * pull); },
           [&](Matrix& block, S product) { block.diagonal() += product * stiff; });
-      for (const Sample& sample : samples_of(cell)) {
-        const Vector off = position_off(sample, four);
+      for (const Sample& sample : problem_.samples_of(cell)) {
+        const Vector off = sample.off(four);
         const Vector scale_sq = sample.scale.cwiseAbs2();
         const Vector scaled = off.cwiseProduct(scale_sq);
         const S left = S(1) - off.dot(scaled);

@@ -260,12 +260,12 @@ class CoupledWindow {
         }
         barrier.settle();
       }
-      for (const auto& sample : samples(cell)) {
-        barrier.take(off(sample, four).cwiseProduct(sample.scale).squaredNorm());
+      for (const auto& sample : curve_.samples_of(cell)) {
+        barrier.take(sample.off(four).cwiseProduct(sample.scale).squaredNorm());
         barrier.settle();
       }
       if (!barrier.kept()) return {none, none};
-      thirds += curve_.cells[cell].jerk_weight * third_off(cell, four).cwiseAbs2().dot(jerk_sq_);
+      thirds += curve_.cells[cell].jerk_weight * curve_.cells[cell].third_off(four).cwiseAbs2().dot(jerk_sq_);
     }
     return {time, barrier.sum() + thirds};
   }
@@ -329,8 +329,8 @@ class CoupledWindow {
         add_row(limited.limits.jerk, true, at_row.jerk(here), changes, change);
       }
     }
-    for (const auto& sample : samples(cell)) {
-      const Vector away = off(sample, four), scale_sq = sample.scale.cwiseAbs2(),
+    for (const auto& sample : curve_.samples_of(cell)) {
+      const Vector away = sample.off(four), scale_sq = sample.scale.cwiseAbs2(),
                    scaled = away.cwiseProduct(scale_sq);
       const S left = S(1) - away.dot(scaled), once = S(2) * weight / left,
               twice = S(4) * weight / (left * left);
@@ -343,7 +343,8 @@ class CoupledWindow {
     const Vector stiff = (S(2) * weight * curve_.cells[cell].jerk_weight) * jerk_sq_;
     typename CoupledModel<S, N>::Matrix stiffness = CoupledModel<S, N>::Matrix::Zero();
     stiffness.diagonal().template head<N>() = stiff;
-    model.add_position(curve_.cells[cell].weights[3], third_off(cell, four).cwiseProduct(stiff), stiffness);
+    model.add_position(curve_.cells[cell].weights[3], curve_.cells[cell].third_off(four).cwiseProduct(stiff),
+                       stiffness);
     return model;
   }
 
@@ -394,22 +395,6 @@ class CoupledWindow {
   }
   [[nodiscard]] std::span<const CoupledLimit<S, N>> limits() const {
     return std::span<const CoupledLimit<S, N>>(limits_).first(limit_count_);
-  }
-  [[nodiscard]] std::span<const BasicBandSample<S, N>> samples(std::size_t cell) const {
-    const std::size_t from = curve_.cells[cell].first_sample;
-    return curve_.samples.subspan(from, curve_.cells[cell + 1].first_sample - from);
-  }
-  // q''' less that of the programmed path.
-  [[nodiscard]] Vector third_off(std::size_t cell, const Both* four) const {
-    Vector third = -curve_.cells[cell].third;
-    for (std::size_t q = 0; q < 4; ++q)
-      third += curve_.cells[cell].weights[3][q] * four[q].template head<N>();
-    return third;
-  }
-  [[nodiscard]] static Vector off(const BasicBandSample<S, N>& sample, const Both* four) {
-    Vector result = -sample.target;
-    for (std::size_t q = 0; q < 4; ++q) result += sample.weights[q] * four[q].template head<N>();
-    return result;
   }
 
   const BasicBandProblem<S, N>& curve_;
