@@ -76,6 +76,7 @@
 #include "cncplan/detail/curve/smoothing.hpp"
 #include "cncplan/detail/curve/smoothing_ahead.hpp"
 #include "cncplan/detail/curve/unmapped_path.hpp"
+#include "cncplan/detail/executor/asked_rates.hpp"
 #include "cncplan/detail/executor/axis_part.hpp"
 #include "cncplan/detail/executor/block_ring.hpp"
 #include "cncplan/detail/executor/brake.hpp"

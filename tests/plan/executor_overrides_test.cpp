@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cncplan/trajectory_executor.hpp"
 #include "plan/level_runner.hpp"
@@ -136,4 +137,91 @@ TEST_CASE("executor overrides: a higher feed is driven soon through bends, and l
       INFO("s until it has its effect " << effect);
       CHECK(effect <= horizon + 0.3);
     }
+}
+
+namespace {
+
+struct Asked {
+  int tick{};
+  double feed = 1, rapid = 1;
+  bool back = false;
+};
+
+// The most by which the speed on a block is above what is asked for it, from half a second behind the last
+// request on. One block every other tick goes in, if that is wanted.
+template <class Machine>
+double excess(const Machine& machine, const LevelExecutorOptions& options, const std::string& text,
+              const std::vector<Asked>& asked, bool slowly = false) {
+  const MillBlocks blocks = blocks_of(text, machine);
+  const auto executor = std::make_unique<Runner>(machine, options);
+  std::size_t fed = 0;
+  double worst = 0;
+  int tick = 0;
+  for (; tick < 40'000 && !executor->finished(); ++tick) {
+    if (!slowly || tick % 2 == 0) {
+      if (slowly && fed < blocks.size() && executor->push(blocks[fed])) ++fed;
+      if (slowly && fed == blocks.size()) executor->end_of_program();
+      if (!slowly) feed(*executor, blocks, fed);
+    }
+    const Asked* last = nullptr;
+    for (const Asked& one : asked) {
+      if (one.tick == tick) {
+        executor->feed_override(one.feed);
+        executor->rapid_override(one.rapid);
+        executor->reverse(one.back);
+      }
+      if (one.tick <= tick) last = &one;
+    }
+    const auto point = executor->tick(period);
+    if (last == nullptr || last != &asked.back() || tick < last->tick + 500) continue;
+    const MillBlock& block = blocks[point.block];
+    const double share = block.rapid ? last->rapid : last->feed;
+    const double most = share * (block.rapid ? machine.limits.velocity
+                                             : std::min(block.feed, machine.limits.velocity / share));
+    worst = std::max(worst, point.velocity.norm() - most);
+    if (executor->rests() && last->back) break;
+  }
+  CHECK(tick < 40'000);
+  CHECK_FALSE(executor->error());
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("executor overrides: a lower feed or rapid behind a lowered override is begun at its own",
+          "[executor-overrides]") {
+  Machine<3> machine = fast_machine();
+  machine.limits = {.velocity = 100, .acceleration = 2000, .jerk = 10000};
+  for (auto& axis : machine.axes)
+    axis = {.letter = axis.letter, .velocity = 100, .acceleration = 2000, .jerk = 10000};
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best})
+    for (const double most : {2.0, 6.0})
+      for (const double horizon : {0.3, 5.0})
+        for (const bool slowly : {false, true}) {
+          CAPTURE(level, most, horizon, slowly);
+          const LevelExecutorOptions options{.level = level, .most_override = most, .horizon = horizon};
+          CHECK(excess(machine, options, "F6000\nG1 X150\nF1000\nG1 X250\n", {{0, most}, {800, 1}}, slowly) <
+                0.02);
+          CHECK(excess(machine, options, "F6000\nG1 X300\nF1000\nG1 X350 Y1\n", {{0, most}, {500, 1}},
+                       slowly) < 0.02);
+          CHECK(excess(mill, options, "F1800\nG1 X60\nG0 X120\n", {{0, most, 0.2}, {800, 1, 0.2}}, slowly) <
+                0.01);
+          CHECK(excess(mill, options, "F1800\nG1 X60\nG0 X120\n", {{0, most, 0.55}, {800, 1, 0.55}}, slowly) <
+                0.02);
+        }
+}
+
+TEST_CASE("executor overrides: on the way back a block is come to at its own share", "[executor-overrides]") {
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best})
+    for (const std::string end : {"G1 X70 Y5\n", "G1 X70\n"})
+      for (const double share : {0.0, 0.1, 0.2, 0.6}) {
+        CAPTURE(level, end, share);
+        const LevelExecutorOptions options{.level = level};
+        CHECK(excess(mill, options, "G0 X30\nF1800\nG1 X60\n" + end,
+                     {{1400, 1, share}, {1600, 1, share, true}}) < 0.01);
+        CHECK(excess(mill, options, "F1800\nG1 X30\nG0 X60\n" + end,
+                     {{1400, share, 1}, {1600, share, 1, true}}) < 0.01);
+        CHECK(excess(mill, options, "F600\nG1 X20\nF1800\nX60\n" + end, {{0, 2, 1}, {2600, 1, 1, true}}) <
+              0.02);
+      }
 }

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "cncplan/core/detail/fixed_list.hpp"
+#include "cncplan/detail/executor/asked_rates.hpp"
 #include "cncplan/detail/executor/driven_parts.hpp"
 #include "cncplan/detail/executor/level_driver.hpp"
 #include "cncplan/detail/executor/part_planner.hpp"
@@ -81,12 +82,13 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!clock_.rests()) clock_.brake_with(std::max(share, S(1)));
   }
   void feed_override(S share) override {
-    feed_share_ = cut(share, infinity);
-    planner_.shares().ask(feed_share_);
-    raised_ = raised_ || feed_share_ > S(1);
+    rates_.ask_feed(cut(share, infinity));
+    planner_.shares().ask(rates_.feed_share());
+    raised_ = raised_ || rates_.feed_share() > S(1);
   }
-  void rapid_override(S share) override { rapid_share_ = cut(share, S(1)); }
+  void rapid_override(S share) override { rates_.ask_rapid(cut(share, S(1))); }
   void backwards(bool wanted) override {
+    if (backwards_ != wanted) slower_at_.reset();
     backwards_ = wanted;
     no_way_back_ = no_way_back_ && wanted;
   }
@@ -174,9 +176,9 @@ class LiveDriver final : public LevelDriver<M, B> {
     driven_ = DrivenParts<Planner>(planner_);
     tail_ahead_ = stopped_ = program_holds_ = backwards_ = rests_before_ = no_way_back_ = false;
     rested_ = quiet_ = S(0);
-    feed_rate_ = S(1);
     pushed_before_ = 0;
-    passed_ = slower_from_ = turned_ = stop_passed_ = -infinity;
+    slower_at_.reset();
+    passed_ = turned_ = stop_passed_ = -infinity;
     return true;
   }
 
@@ -207,15 +209,19 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   // Whether a feed or a rapid of no speed is asked for where it is.
   [[nodiscard]] bool no_speed() const {
-    if (clock_.chain().empty()) return !(feed_share_ > S(0));
-    const auto none_at = [&](S time) {
-      return !((clock_.chain().block_at(time).rapid ? rapid_share_ : feed_share_) > S(0));
-    };
-    const S now = clock_.state().position;
-    return none_at(now) || (comes_down(now) && none_at(slower_from_));
+    if (clock_.chain().empty()) return !(rates_.feed_share() > S(0));
+    const auto none_at = [&](S time) { return !(rates_.share(clock_.chain().block_at(time).rapid) > S(0)); };
+    return none_at(here()) || (comes_down() && none_at(*slower_at_));
   }
+  // What the clock shows, s; at the start of a block, on the way back, a time of the one before it.
+  [[nodiscard]] S here() const {
+    const S now = clock_.state().position;
+    return backwards_ ? std::max(now - same_time, clock_.chain().start_time(0)) : now;
+  }
+  // Whether one time lies behind another one on the way that is asked for.
+  [[nodiscard]] bool beyond(S time, S other) const { return backwards_ ? time < other : time > other; }
   // Whether the rate is that of a block ahead, which is lower.
-  [[nodiscard]] bool comes_down(S now) const { return !backwards_ && now < slower_from_; }
+  [[nodiscard]] bool comes_down() const { return slower_at_ && beyond(*slower_at_, clock_.state().position); }
   // Whether it is to run back, and stands where the way that is kept begins.
   [[nodiscard]] bool nothing_behind() const {
     if (!backwards_ || clock_.chain().empty()) return false;
@@ -293,29 +299,16 @@ class LiveDriver final : public LevelDriver<M, B> {
   // The rate: what is asked for, by what is planned.
   [[nodiscard]] S wanted() {
     if (held_ || stopped_ || no_way_back_) return S(0);
-    S share = feed_share_;
+    S share = rates_.feed_share();
     if (!clock_.chain().empty()) {
-      const S now = clock_.state().position;
-      share = clock_.chain().block_at(now).rapid ? rapid_share_ : rate_of_feed(now);
-      if (comes_down(now)) share = rests_before_ ? S(0) : std::min(share, lowest_share(slower_from_));
+      share = rate_here();
+      if (comes_down()) share = rests_before_ ? S(0) : std::min(share, rate_at(*slower_at_));
     }
     return backwards_ ? -std::min(share, S(1)) : pauses() ? std::min(share, S(1)) : share;
   }
-  // The rate on a feed move. One that is planned for a higher feed than is asked for is slowed as far as it
-  // would be faster than that: limits may have kept it slower.
-  [[nodiscard]] S rate_of_feed(S now) {
-    const S planned = planned_share(now), asked = std::max(feed_share_, S(1));
-    if (!(asked < planned)) return feed_share_ / planned;
-    constexpr S window = S(1);       // s, in which the rate changes by so much at the latest
-    constexpr S worth_it = S(1.02);  // times the rate: a change of it takes work
-    const S low = asked / planned, feed = static_cast<S>(clock_.chain().block_at(now).feed);
-    const S rate = std::clamp(low * feed / clock_.chain().peak_between(now, now + window), low, S(1));
-    feed_rate_ = rate > worth_it * feed_rate_ ? rate : std::min(rate, std::max(feed_rate_, low));
-    return std::min(feed_share_, S(1)) * feed_rate_;
-  }
-  // The rate on the block that is driven at a time, no more.
-  [[nodiscard]] S lowest_share(S time) {
-    return clock_.chain().block_at(time).rapid ? rapid_share_ : feed_share_ / planned_share(time);
+  [[nodiscard]] S rate_at(S time) { return rates_.at(clock_.chain(), time, planned_share(time), backwards_); }
+  [[nodiscard]] S rate_here() {
+    return rates_.here(clock_.chain(), here(), planned_share(here()), backwards_);
   }
   // Of its feed, by which the block is planned that is driven at a time.
   [[nodiscard]] S planned_share(S time) {
@@ -405,47 +398,64 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   // Whether a brake that begins a tick later ends behind a time.
   [[nodiscard]] bool is_last_chance(S time, S period) {
-    const auto brake = clock_.brake_in(period);
-    return brake ? *brake > time
-                 : clock_.passes_last_brake_before(time, period) ||
-                       clock_.state_after(S(1.5) * period).position >= time;
+    if (const auto brake = clock_.brake_in(period)) return beyond(*brake, time);
+    return (!backwards_ && clock_.passes_last_brake_before(time, period)) ||
+           !beyond(time, clock_.state_after(S(1.5) * period).position);
   }
-  // Where less is asked for a block ahead, as for a rapid behind a feed, the rate has come down to that when
-  // the block begins: it goes down a little before a brake to rest would have to begin, which takes longer.
+  // Where a block ahead has a lower rate, as a rapid behind a feed, the rate has come down to that when it
+  // comes to the block: it goes down a little before a brake to rest would have to begin, which takes longer.
   // Where no change of the rate is proven in time, the motion rests before the block.
   void slow_for_next(S period) {
-    const S now = clock_.state().position;
-    const bool never = backwards_ || (rapid_share_ == feed_share_ && !raised_);
-    if (never) slower_from_ = -infinity;
-    if (!comes_down(now)) rests_before_ = false;
+    const bool never = (rates_.equal() && !raised_) || (!clock_.rests() && backwards_ != clock_.heads_back());
+    if (never || !comes_down()) {
+      slower_at_.reset();
+      rests_before_ = false;
+    }
     if (held_ || stopped_ || never) return;
-    if (!comes_down(now)) {
-      const auto next = next_slower(now, period);
-      const S early = next && lowest_share(*next + same_time) > S(0) ? S(0.1) : S(0);  // s
-      if (next && clock_.next_rest() > *next + same_time && is_last_chance(*next - early, period))
-        slower_from_ = *next + same_time;
-    } else if (const S low = lowest_share(slower_from_); !(low < lowest_share(now))) {
-      slower_from_ = -infinity;  // more is asked for by now
+    const S own = std::min(rate_here(), S(1));
+    if (!slower_at_) {
+      const auto next = next_slower(own, period);
+      if (!next || rests_by(*next)) return;
+      const S early = rate_at(*next) > S(0) ? S(0.1) : S(0);  // s
+      if (is_last_chance(backwards_ ? *next + early : *next - early, period)) slower_at_ = next;
+    } else if (const S low = rate_at(*slower_at_); !(low < own)) {
+      slower_at_.reset();  // more is asked for by now
     } else if (!rests_before_) {
       const BasicState<S> then =
           clock_.state_after(std::max(clock_.ramp().duration() - clock_.elapsed(), S(0)));
-      const auto slow = [&](S rate) { return rate <= low + rounding; };
-      const bool in_time = then.position <= slower_from_ || slow(clock_.state().velocity);
-      rests_before_ = !(slow(then.velocity) && in_time) && is_last_chance(slower_from_, period);
+      const auto slow = [&](S rate) { return std::abs(rate) <= low + rounding; };
+      const bool in_time = !beyond(then.position, *slower_at_) || slow(clock_.state().velocity);
+      rests_before_ = !(slow(then.velocity) && in_time) && is_last_chance(*slower_at_, period);
     }
   }
-  // When a block begins for which less is asked than where it is now, if a brake may be as long.
-  [[nodiscard]] std::optional<S> next_slower(S now, S period) {
-    const S own = lowest_share(now);
+  // Whether the plan rests before a time, or there.
+  [[nodiscard]] bool rests_by(S time) const {
+    if (!backwards_) return clock_.next_rest() <= time;
+    const auto rest = clock_.chain().rest_before(clock_.state().position);
+    return rest && rest->to >= time;
+  }
+  // A time just within the next block that has a lower rate than where it is, if a brake may be as long. Of
+  // one with the same feed the rate here knows.
+  [[nodiscard]] std::optional<S> next_slower(S own, S period) {
     if (!(own > S(0))) return std::nullopt;
-    const bool rapid = clock_.chain().block_at(now).rapid;
-    const S hold = planner_.longest_hold(), most = now + S(2) * (hold > S(0) ? hold : S(1)) + S(4) * period;
+    const auto& chain = clock_.chain();
+    const S now = clock_.state().position, hold = planner_.longest_hold();
+    const S reach = S(2) * (hold > S(0) ? hold : S(1)) + S(4) * period;
+    const auto programmed = [&](S time) {
+      return static_cast<S>(chain.block_at(time).feed) / planned_share(time);
+    };
+    const bool rapid = chain.block_at(here()).rapid;
+    const S feed = programmed(here());
+    const auto is_slower = [&](S time) {
+      const bool other = chain.block_at(time).rapid != rapid || (!rapid && programmed(time) < feed);
+      return other && rate_at(time) < own;
+    };
     std::optional<S> found;
-    for_begins(now, [&](S time, const auto& begin) {
-      if (time > most) return true;
-      if (begin.rapid == rapid || !(lowest_share(time + same_time) < own)) return false;
-      found = time;
-      return true;
+    for_begins(backwards_ ? now - reach : now, [&](S time, const auto&) {
+      if (time > (backwards_ ? now : now + reach)) return true;
+      const S within = backwards_ ? time - same_time : time + same_time;
+      if (is_slower(within)) found = within;
+      return !backwards_ && found.has_value();
     });
     return found;
   }
@@ -528,29 +538,28 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool held_{}, stopped_{}, backwards_{}, single_step_{}, optional_stop_{}, program_holds_{};
   bool program_stop_ = true;
   int pause_line_ = 0;
-  S feed_share_ = S(1), rapid_share_ = S(1);
-  bool raised_ = false;        // a feed above the program's has been asked for
-  S passed_ = -infinity;       // when the block begins before which it last paused
-  S slower_from_ = -infinity;  // when the block begins for which the rate comes down
-  bool rests_before_ = false;  // that one: nothing else comes down in time
-  bool no_way_back_ = false;   // what is kept begins here, without a rest
-  S turned_ = -infinity;       // the furthest from which it was to run back
-  S stop_passed_ = -infinity;  // where the rest begins at which the program stopped last
-  S begins_at_{};              // s of the first part, at which it stands first
-  bool tail_ahead_{};          // the chain ends with a tail that is not driven yet
-  S cut_{};                    // where it begins
+  BasicAskedRates<S> rates_;
+  bool raised_ = false;         // a feed above the program's has been asked for
+  S passed_ = -infinity;        // when the block begins before which it last paused
+  std::optional<S> slower_at_;  // a time in the block for which the rate comes down
+  bool rests_before_ = false;   // that one: nothing else comes down in time
+  bool no_way_back_ = false;    // what is kept begins here, without a rest
+  S turned_ = -infinity;        // the furthest from which it was to run back
+  S stop_passed_ = -infinity;   // where the rest begins at which the program stopped last
+  S begins_at_{};               // s of the first part, at which it stands first
+  bool tail_ahead_{};           // the chain ends with a tail that is not driven yet
+  S cut_{};                     // where it begins
   BasicReachedWords<S> words_;
   FixedList<TickPart, Base::most_parts> parts_;
   S moved_until_{};       // s of the tick that has parts
   S rested_{}, quiet_{};  // s
-  S feed_rate_ = S(1);    // where the plan is for a higher feed
   std::int64_t pushed_before_ = 0;
 };
 
 template <MachineModel M, BlockModel B, class Planner>
 void LiveDriver<M, B, Planner>::look(S period) {
   take_parts();
-  planner_.left(driven_.end(), (way_end() - clock_.state().position) / std::max(feed_share_, S(1)));
+  planner_.left(driven_.end(), (way_end() - clock_.state().position) / std::max(rates_.feed_share(), S(1)));
   let_go_where_none_come(period);
   if (background_) return;
   planner_.plan();
