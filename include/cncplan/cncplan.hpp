@@ -114,6 +114,7 @@
 #include "cncplan/detail/executor/tool_jog.hpp"
 #include "cncplan/detail/executor/trajectory_chain.hpp"
 #include "cncplan/detail/executor/trajectory_clock.hpp"
+#include "cncplan/detail/plan/add_fallback.hpp"
 #include "cncplan/detail/plan/corners_beside_ends.hpp"
 #include "cncplan/detail/plan/interruption.hpp"
 #include "cncplan/detail/plan/look_ahead_plan.hpp"

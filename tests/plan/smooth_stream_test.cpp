@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -141,6 +142,56 @@ TEST_CASE("stream: plans that look ahead over seconds make short parts, and take
     }
     CHECK(parts.ends().size() > static_cast<std::size_t>(joined.duration() / 8));
   }
+}
+
+TEST_CASE("stream: where feeds are raised behind a cut the motion goes on", "[smooth-stream]") {
+  // From the fuzzing of executors: with a higher feed the search beyond the cut begins with another curve
+  // than the one along which a way to rest was proven.
+  Machine<3> machine{.limits = {.velocity = 50, .acceleration = 1000, .jerk = 100000}};
+  machine.axes[0].velocity = 31.0847513, machine.axes[0].acceleration = 877.993888;
+  machine.axes[1].velocity = 55.4672692, machine.axes[1].acceleration = 714.684798;
+  machine.axes[2].velocity = 33.2934659, machine.axes[2].acceleration = 662.545337;
+  machine.axes[0].jerk = 34917.9428, machine.axes[1].jerk = 36539.643, machine.axes[2].jerk = 105527.886;
+  const std::string text =
+      "G91 G21 F1801.927\nG0 X1.80156 Y1.07464 Z-0.30486\nG1 X0.52360 Y3.34880 Z-0.99851\nF67.938\n"
+      "G64 P0.0097\nG0 X2.49750 Y0.92788 Z-0.54742\nG0 X1.11155 Y1.70349 Z-0.18410\n"
+      "G1 X-0.39106 Y2.92340 Z-0.43369\nG1 X-2.82634 Y3.36672 Z-1.36351\nG1 X-1.56806 Y1.77250 Z-0.70422\n"
+      "G0 X-1.78832 Y3.76106 Z-1.33240\nG0 X-2.20918 Y2.59644 Z-0.63006\nM3 S1000\n"
+      "G0 X-3.76304 Y2.63373 Z-0.97827\nG1 X-2.33247 Y0.95459 Z-0.93821\n";
+  const MillBlocks blocks = blocks_of(text, machine);
+  std::size_t raised = 0;
+  for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best})
+    for (const double reserve : {0.0, 0.02})
+      for (double by = 1.05; by < 6; by *= 1.1) {
+        CAPTURE(level, reserve, by);
+        PlanOptions options{.tolerance = 0.0152749204, .level = level, .reserve = reserve};
+        Stream stream(machine, options, 300);
+        stream.plan_ahead(1.588, 0.784);
+        JoinedParts<MillBlock, Machine<3>> parts;
+        for (const MillBlock& block : blocks) REQUIRE(stream.push(block));
+        while (stream.has_part()) {
+          REQUIRE(stream.make_part());
+          if (!stream.ready()) break;  // more blocks are needed
+          parts.take(stream);
+          const auto [higher, lower] = stream.open_feeds();
+          if (!(higher < lower)) continue;
+          ++raised;
+          stream.scale_feeds(higher, [&](std::int64_t) { return by; });
+        }
+        while (!stream.empty()) {
+          REQUIRE(stream.finish_part());
+          parts.take(stream);
+        }
+        const auto joined = parts.trajectory(machine);
+        const Used most = used(joined, machine);
+        CHECK(most.velocity <= 1 + 1e-6);
+        CHECK(most.acceleration <= 1 + 1e-5);
+        CHECK(most.jerk <= 1 + 1e-4);
+        CHECK(joined.completed());
+        const Vector3 end = blocks.back().path.position_at(blocks.back().path.length());
+        CHECK((joined.at(joined.duration()).position - end).norm() < 1e-9);
+      }
+  CHECK(raised > 40);
 }
 
 TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]") {

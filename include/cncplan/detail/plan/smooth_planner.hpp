@@ -14,6 +14,7 @@
 #include "cncplan/core/enclosed_bounds.hpp"
 #include "cncplan/detail/curve/smooth_pieces.hpp"
 #include "cncplan/detail/executor/run_brakes.hpp"
+#include "cncplan/detail/plan/add_fallback.hpp"
 #include "cncplan/detail/plan/corners_beside_ends.hpp"
 #include "cncplan/detail/plan/interruption.hpp"
 #include "cncplan/detail/plan/look_ahead_plan.hpp"
@@ -92,8 +93,7 @@ class SmoothPlanner {
   }
   /// Whether what was planned last ends at a speed.
   [[nodiscard]] bool open() const { return cut_.has_value(); }
-  /// From there to rest along blocks that are known, which is proven; nothing that is planned changes. Only
-  /// where it is open and all that was planned has been taken.
+  /// From there, where all that was planned is taken, to rest along known blocks; no plan changes.
   [[nodiscard]] Part tail();
   /// Keeps what it takes to go back to where it is open, from now on.
   void keep_cuts() { keeps_cuts_ = true; }
@@ -191,18 +191,10 @@ class SmoothPlanner {
     longest_hold_ = time_ = S(0);
   }
 
-  // A planned block has another level than was asked for. There is room.
-  void tell(std::size_t block, SmoothLevel level, FallbackReason reason) {
-    if (!fallbacks_.empty() && fallbacks_.back().last == block) return;
-    if (!fallbacks_.empty() && fallbacks_.back().last + 1 == block && fallbacks_.back().level == level &&
-        fallbacks_.back().reason == reason)
-      fallbacks_.back().last = block;
-    else
-      fallbacks_.push_back({block, block, level, reason});
-  }
-  // So have all that were planned since there were so many.
+  // For all blocks that were planned since there were so many.
   void tell_since(std::size_t before, SmoothLevel level, FallbackReason reason) {
-    for (std::size_t block = before; block < out_.size(); ++block) tell(block, level, reason);
+    for (std::size_t block = before; block < out_.size(); ++block)
+      add_fallback(fallbacks_, block, level, reason);
   }
 
   // Blocks as they are, up to `end`, planned at the level `fast`.
@@ -246,11 +238,11 @@ class SmoothPlanner {
     for (std::size_t i = before; i < out_.size(); ++i) {
       while (own_level != planned->fallbacks().end() && own_level->last < i - before) ++own_level;
       if (own_level != planned->fallbacks().end() && own_level->first <= i - before)
-        tell(i, own_level->level, own_level->reason);
+        add_fallback(fallbacks_, i, own_level->level, own_level->reason);
       else if (beside_an_end(i))
-        tell(i, SmoothLevel::exact, FallbackReason::travel);
+        add_fallback(fallbacks_, i, SmoothLevel::exact, FallbackReason::travel);
       else if (reason)
-        tell(i, MappedModel<M> ? SmoothLevel::exact : SmoothLevel::fast, *reason);
+        add_fallback(fallbacks_, i, MappedModel<M> ? SmoothLevel::exact : SmoothLevel::fast, *reason);
     }
     return {};
   }
@@ -263,7 +255,11 @@ class SmoothPlanner {
         beside_ends_.rest(std::span(blocks_), end - planned_, first_source_))
       return {};
     if (cut_) {
-      if (add_curve(known_)) add_slow(known_);
+      if (add_curve(known_)) {
+        // With other feeds the search may begin with another curve than the proven one.
+        for (std::size_t i = 0; i < known_; ++i) blocks_[i].feed = proven_feeds_[i];
+        add_slow(known_);
+      }
       return planned_ < end ? add_run(end) : Expected<void, ProgramError>{};
     }
     return add_fast(end, reason);
@@ -292,7 +288,7 @@ class SmoothPlanner {
     add_pieces(planned, given, end);
     if (run_brakes_.wanted()) add_brakes(run_brakes_.brakes(), start);
     for (; i < out_.size(); ++i)
-      if (beside_an_end(i)) tell(i, SmoothLevel::exact, FallbackReason::travel);
+      if (beside_an_end(i)) add_fallback(fallbacks_, i, SmoothLevel::exact, FallbackReason::travel);
     return std::nullopt;
   } catch (const std::bad_alloc&) {
     return FallbackReason::memory;
@@ -302,8 +298,8 @@ class SmoothPlanner {
     const Given given = run_blocks(0, end);
     const RunPlan planned = given.blocks.run(work_, cut_, memory_).slow_plan();
     make_room(fallbacks_, 1);
-    const std::size_t before = out_.size();
     make_room(brakes_, run_brakes_.of_way().size());
+    const std::size_t before = out_.size();
     const S start = time_;
     add_pieces(planned, given, end);
     add_brakes(run_brakes_.of_way(), start);
@@ -340,6 +336,7 @@ class SmoothPlanner {
       }
       const std::size_t at = given.sources[planned.end_block], gone = next->gone;
       make_room(fallbacks_, 1);
+      make_room(proven_feeds_, end);
       const std::size_t before = out_.size();
       const S start = time_;
       add_pieces(planned, given, at);
@@ -351,6 +348,8 @@ class SmoothPlanner {
       cut_->prefix = &prefix_;
       known_ = end - gone;
       let_go(gone);
+      proven_feeds_.clear();
+      for (std::size_t i = 0; i < known_; ++i) proven_feeds_.push_back(blocks_[i].feed);
       return true;
     }
     return false;
@@ -541,7 +540,8 @@ class SmoothPlanner {
   std::optional<Cut> cut_;
   BasicPrefix<S, Run::axis_count> prefix_{memory_};
   std::size_t known_ = 0;
-  bool begun_ = false;  // a piece of the block in which it goes on is planned
+  std::pmr::vector<S> proven_feeds_{memory_};  // of those, when that was proven
+  bool begun_ = false;                         // a piece of the block in which it goes on is planned
   // Before the last plan, if that began at a cut.
   struct LastCut {
     std::pmr::vector<B> blocks;
