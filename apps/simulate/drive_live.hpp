@@ -46,7 +46,9 @@ template <class M, class B>
   constexpr int most_search = 1000;  // ticks in which a change of the rate is looked for
   const auto destroy = [](Driver* driver) { driver->destroy(); };
   const std::unique_ptr<Driver, decltype(destroy)> driver(
-      Driver::make(machine, {}, std::pmr::get_default_resource(), options, held_blocks), destroy);
+      Driver::make(machine, {}, std::pmr::get_default_resource(), options, held_blocks,
+                   cncplan::LevelExecutorOptions{}.horizon),
+      destroy);
   driver->program_stop(false);
   if (blocks.empty()) driver->end_of_program();
   LiveRecord<M, B> record(blocks);

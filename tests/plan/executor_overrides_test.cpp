@@ -204,6 +204,7 @@ TEST_CASE("executor overrides: a lower feed or rapid behind a lowered override i
                 0.02);
           CHECK(excess(machine, options, "F6000\nG1 X300\nF1000\nG1 X350 Y1\n", {{0, most}, {500, 1}},
                        slowly) < 0.02);
+          CHECK(excess(mill, options, "F600\nG1 X40\nG4 P0.1\nX80\n", {{0, most}, {300, 1}}, slowly) < 0.01);
           CHECK(excess(mill, options, "F1800\nG1 X60\nG0 X120\n", {{0, most, 0.2}, {800, 1, 0.2}}, slowly) <
                 0.01);
           CHECK(excess(mill, options, "F1800\nG1 X60\nG0 X120\n", {{0, most, 0.55}, {800, 1, 0.55}}, slowly) <

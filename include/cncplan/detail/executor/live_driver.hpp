@@ -213,10 +213,11 @@ class LiveDriver final : public LevelDriver<M, B> {
     const auto none_at = [&](S time) { return !(rates_.share(clock_.chain().block_at(time).rapid) > S(0)); };
     return none_at(here()) || (comes_down() && none_at(*slower_at_));
   }
-  // What the clock shows, s; at the start of a block, on the way back, a time of the one before it.
+  // What the clock shows, s; where blocks meet, a time of the one that comes, which may be behind a dwell.
   [[nodiscard]] S here() const {
     const S now = clock_.state().position;
-    return backwards_ ? std::max(now - same_time, clock_.chain().start_time(0)) : now;
+    if (backwards_) return std::max(now - same_time, clock_.chain().start_time(0));
+    return clock_.standing() ? now + same_time : now;
   }
   // Whether one time lies behind another one on the way that is asked for.
   [[nodiscard]] bool beyond(S time, S other) const { return backwards_ ? time < other : time > other; }
