@@ -43,8 +43,8 @@ struct BasicExecutorOptions {
   /// `good` and `best` are slower where a hold would come later. Not behind a map, where no
   /// bound is planned.
   S hold_factor = S(1.5);
-  /// >= 1: the highest override of the feed. At the level `fast` one above 1 leaves as much acceleration as
-  /// paths do at the highest.
+  /// >= 1: the highest override of the feed. At the level `fast` any override above 1 has the acceleration
+  /// and jerk that bends leave at this one: the higher it is, the less.
   S most_override = S(2);
   /// s of motion, > 0: how far plans at the levels `good` and `best` are ahead, whole blocks at least. A feed
   /// above the one that they were made for has its full effect behind it. The shorter, the more work, and the

@@ -12,6 +12,8 @@ class BasicAskedRates {
  public:
   void ask_feed(S share) { feed_share_ = share; }
   void ask_rapid(S share) { rapid_share_ = share; }
+  /// The next rate is compared with none before.
+  void begin() { last_ = S(1); }
   [[nodiscard]] S feed_share() const { return feed_share_; }
   [[nodiscard]] S share(bool rapid) const { return rapid ? rapid_share_ : feed_share_; }
   [[nodiscard]] bool equal() const { return rapid_share_ == feed_share_; }

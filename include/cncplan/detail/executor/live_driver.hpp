@@ -178,6 +178,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
     slower_at_.reset();
+    rates_.begin();
     passed_ = turned_ = stop_passed_ = -infinity;
     return true;
   }
