@@ -58,6 +58,7 @@
 #include "cncplan/core/vector.hpp"
 #include "cncplan/detail/block_checks.hpp"
 #include "cncplan/detail/curve/band.hpp"
+#include "cncplan/detail/curve/band_knots.hpp"
 #include "cncplan/detail/curve/band_window.hpp"
 #include "cncplan/detail/curve/correction.hpp"
 #include "cncplan/detail/curve/coupled_window.hpp"

@@ -179,14 +179,14 @@ TEST_CASE("sharp corners take little more than any motion must") {
   }
 }
 
-// A circle of radius 1 with whole turns, then a line.
-Program turns(int count, bool axes) {
+// A circle with whole turns, then a line.
+Program turns(int count, bool axes, double radius = 1) {
   Program program;
   program.limits.tool = {30, 1000, 1e4};
   if (axes) program.limits.axes.fill({30, 1000, 1e4});
   path::ArcGeometry<double> circle{
-      .start = {0, 0, 0}, .end = {0, 0, 0}, .center = {1, 0, 0}, .radial = {-1, 0, 0}};
-  circle.start_radius = circle.end_radius = 1;
+      .start = {0, 0, 0}, .end = {0, 0, 0}, .center = {radius, 0, 0}, .radial = {-radius, 0, 0}};
+  circle.start_radius = circle.end_radius = radius;
   circle.angle = 2 * std::numbers::pi * count;
   circle.turn = Turn::clockwise;
   program.paths.emplace_back(path::Arc(circle));
@@ -228,6 +228,31 @@ TEST_CASE("a longer line takes hardly more cells") {
   const auto few = planned(50), many = planned(500);
   CHECK(many.pieces.size() <= few.pieces.size() + 200);
   CHECK(many.duration - few.duration == Approx(450.0 / 30).margin(1e-3));
+}
+
+TEST_CASE("an arc that is driven at its feed has as many cells as its tolerance asks for") {
+  constexpr double radius = 100;
+  for (const bool axes : {false, true}) {
+    CAPTURE(axes);
+    const auto planned = [&](int count) {
+      const Program program = turns(count, axes, radius);
+      const auto run = smooth_run<double, 3>(program.blocks(), program.limits);
+      check(run, program);
+      const Vector3 center(radius, 0, 0);
+      for (const auto& [phase, piece] : run.phases) {
+        if (run.pieces[piece].block > 0) break;
+        const Vector3 at = run.pieces[piece].path.position_at(phase.position);
+        REQUIRE(std::abs((at - center).norm() - radius) <= program.tolerance);
+      }
+      return run;
+    };
+    const auto few = planned(1), many = planned(5);
+    // A cell on h mm of it is off by h^2 / (6 radius), of which 0.8 of the tolerance are used.
+    const double length = 4 * 2 * std::numbers::pi * radius, cell = std::sqrt(6 * 0.8 * 0.01 * radius);
+    CHECK(static_cast<double>(many.pieces.size() - few.pieces.size()) <= 1.2 * length / cell);
+    CHECK(many.duration - few.duration >= length * (1 - 0.01 / radius) / 30);
+    CHECK(many.duration - few.duration <= length / 30 * (1 + 1e-4));
+  }
 }
 
 TEST_CASE("the time does not depend on the windows") {

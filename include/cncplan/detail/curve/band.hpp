@@ -18,20 +18,12 @@
 #include "cncplan/core/limits.hpp"
 #include "cncplan/core/path_point.hpp"
 #include "cncplan/core/progress.hpp"
+#include "cncplan/detail/curve/band_knots.hpp"
 #include "cncplan/detail/curve/band_window.hpp"
 #include "cncplan/detail/curve/coupled_window.hpp"
 #include "cncplan/path/cubic.hpp"
 
 namespace cncplan::detail {
-
-/// A block as smoothing sees it: where it goes, how fast it may, and how far each axis may leave it. The
-/// tolerances of the tool's axes are one number, which bounds the tool's distance.
-template <std::floating_point S, int N>
-struct BasicBandBlock {
-  BasicPathView<S, N> path{};
-  S feed{};
-  VectorN<S, N> tolerance{};
-};
 
 /// Where a curve goes on that was cut: its point and derivatives at a length into the first block. Blocks
 /// before that may come along: the corners between them reach beyond it.
@@ -52,15 +44,12 @@ class BasicBand {
   using Block = BasicBandBlock<S, N>;
   using Cut = BasicBandCut<S, N>;
 
-  struct Options {
-    BasicLimits<S> along{};  ///< the limits of motion along the path
+  struct Options : BasicBandLimits<S> {
     S share = S(0.99);       ///< of the tolerances that is used between samples
     S start_share = S(0.6);  ///< of the tolerances, by the start's corners
     S jerk_share = S(0.15);  ///< of the jerk limit, by corners that may be run through at the feed
     S centring = S(0.1);
     std::size_t window = 300;  ///< control points that one window moves, at least 200
-    S coarseness = S(1);       ///< how many times longer the cells are
-    bool even_lines = true;    ///< whether limits see the same all along a line: its cells may be longer
     BasicBandOptions<S> solver{};
   };
 
@@ -160,12 +149,7 @@ class BasicBand {
  private:
   static constexpr std::size_t reach_ = 6;
 
-  struct Corner {
-    S at{};
-    S tolerance{};
-    S width{};  // of a third of its kernel's half
-    Vector jump = Vector::Zero();
-  };
+  using Corner = BasicBandCorner<S, N>;
 
   [[nodiscard]] Vector programmed(S s) const {
     const std::size_t block = block_at(s);
@@ -222,106 +206,8 @@ class BasicBand {
     }
   }
 
-  // The length on which a speed is reached from rest, about.
-  [[nodiscard]] S ramp_length(S speed) const {
-    const auto& limits = options_.along;
-    return std::isfinite(limits.jerk) ? speed * std::sqrt(speed / limits.jerk)
-                                      : speed * speed / limits.acceleration;
-  }
-
-  // A length of cell, which holds up to `reach` on both sides of a place and grows with the distance beyond.
-  struct Fine {
-    S at, size, reach;
-  };
-
-  // The cells on which control points on the path itself leave a curve inside the tolerance: on a bend |p''|
-  // it is off by |p''| h^2 / 6. A piece is halved where one half allows longer cells.
-  template <class Add>
-  void fit_bends(std::size_t block, S from, S to, int halvings, const Add& add) const {
-    constexpr S most_off = S(0.8);  // of the tolerance; a start is narrowed above 0.85
-    const auto size = [&](S a, S b) {
-      const Vector bend = blocks_[block].path.bounds(a, b).second.cwiseQuotient(blocks_[block].tolerance);
-      return std::sqrt(S(6) * most_off / bend.norm());
-    };
-    const S own = size(from, to), middle = from + (to - from) / S(2);
-    if (!(own < std::numeric_limits<S>::infinity())) return;
-    if (halvings > 0 && std::max(size(from, middle), size(middle, to)) > S(1.5) * own) {
-      fit_bends(block, from, middle, halvings - 1, add);
-      fit_bends(block, middle, to, halvings - 1, add);
-      return;
-    }
-    add(starts_[block] + middle, own, middle - from);
-  }
-
-  // Cells a quarter of a corner's width near it, a thirteenth where it is a right angle, and growing with the
-  // distance, all of that times the coarseness; short on narrow bends; and short where the feed changes, for
-  // from a low speed to a high one b grows by decades on a short length. Far from the ends of a line nothing
-  // happens: there they grow on.
   void make_knots() {
-    S feed = S(0), tolerance = std::numeric_limits<S>::infinity();
-    for (const auto& block : blocks_) {
-      feed = std::max(feed, block.feed);
-      tolerance = std::min(tolerance, block.tolerance.minCoeff());
-    }
-    // Where the feed is so low that ramps are shorter than the tolerance, no more of them is gained.
-    const S longer = options_.coarseness;
-    const S widest =
-        std::min(std::max(longer * S(0.1) * ramp_length(feed), S(4) * tolerance), length() / S(8));
-    const S growth = longer * S(0.12);
-    constexpr int halvings = 6;
-    std::pmr::vector<Fine> fine(memory_);
-    fine.push_back({starts_.front(), cut_ ? widest : widest / S(30), S(0)});
-    const auto add = [&](S at, S size, S reach) {
-      if (size < widest) fine.push_back({at, std::max(size, widest / S(1000)), reach});
-    };
-    auto corner = corners_.begin();
-    fit_bends(0, S(0), blocks_[0].path.length(), halvings, add);
-    for (std::size_t i = 1; i < blocks_.size(); ++i) {
-      const auto [slow, fast] = std::minmax(blocks_[i - 1].feed, blocks_[i].feed);
-      if (slow < S(0.9) * fast) add(starts_[i], S(0.3) * ramp_length(slow), S(0));
-      if (corner != corners_.end() && !(corner->at > starts_[i])) {
-        const S parts = std::max(S(4), S(9) * corner->jump.norm()) / longer;
-        add(corner->at, corner->width / parts, S(0.6) * corner->width);
-        ++corner;
-      }
-      fit_bends(i, S(0), blocks_[i].path.length(), halvings, add);
-    }
-    fine.push_back({length(), widest / S(30), S(0)});
-    for (std::size_t i = 1; i < fine.size(); ++i)
-      fine[i].size = std::min(
-          fine[i].size,
-          fine[i - 1].size + growth * std::max(fine[i].at - fine[i - 1].at - fine[i - 1].reach, S(0)));
-    for (std::size_t i = fine.size() - 1; i-- > 0;)
-      fine[i].size = std::min(
-          fine[i].size,
-          fine[i + 1].size + growth * std::max(fine[i + 1].at - fine[i].at - fine[i + 1].reach, S(0)));
-    const S far = S(40) * widest, far_growth = longer * S(0.05);
-    const auto widest_at = [&](S s) {
-      const std::size_t block = block_at(s);
-      const S inside = std::min(s - std::max(starts_[block], S(0)), starts_[block + 1] - s) - far;
-      return even_[block] != 0 && inside > S(0) ? widest + far_growth * inside : widest;
-    };
-    std::size_t index = 0;
-    const auto size_at = [&](S s) {
-      while (index + 1 < fine.size() && fine[index + 1].at <= s) ++index;
-      S size = std::min(widest_at(s),
-                        fine[index].size + growth * std::max(s - fine[index].at - fine[index].reach, S(0)));
-      if (index + 1 < fine.size())
-        size = std::min(size, fine[index + 1].size +
-                                  growth * std::max(fine[index + 1].at - s - fine[index + 1].reach, S(0)));
-      return size;
-    };
-    knots_.assign(1, S(0));
-    while (knots_.back() < length()) {
-      const S here = size_at(knots_.back());
-      const std::size_t stay = index;
-      const S next = std::min(here, size_at(knots_.back() + here));
-      index = stay;
-      knots_.push_back(knots_.back() + next);
-    }
-    const S fit = length() / knots_.back();
-    for (S& knot : knots_) knot *= fit;
-    knots_.back() = length();
+    BandKnots<S, N>(blocks_, starts_, cut_.has_value(), options_, memory_).make(corners_, knots_);
     lengths_.resize(knots_.size() - 1);
     for (std::size_t i = 0; i < lengths_.size(); ++i) lengths_[i] = knots_[i + 1] - knots_[i];
     cells_.assign(lengths_.size() + 1, {});
@@ -469,7 +355,6 @@ class BasicBand {
   std::pmr::memory_resource* memory_;
   std::pmr::vector<S> starts_{memory_}, knots_{memory_}, lengths_{memory_};
   std::pmr::vector<std::pair<std::size_t, std::size_t>> held_{memory_};  // control points
-  std::pmr::vector<char> even_{memory_};  // of each block, whether it is a line along which limits are even
   std::pmr::vector<Corner> corners_{memory_};
   std::pmr::vector<Vector> points_{memory_}, start_{memory_};
   std::pmr::vector<BasicBandCell<S, N>> cells_{memory_};
@@ -490,7 +375,6 @@ BasicBand<S, N>::BasicBand(std::span<const Block> blocks, const Options& options
   for (const auto& block : blocks_) {
     const S length = block.path.length();
     starts_.push_back(at);
-    even_.push_back(options_.even_lines && block.path.bounds(S(0), length).second.isZero(S(0)) ? 1 : 0);
     at += length;
   }
   starts_.push_back(at);

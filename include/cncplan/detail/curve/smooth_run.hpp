@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory_resource>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -24,6 +25,7 @@
 #include "cncplan/core/progress.hpp"
 #include "cncplan/detail/curve/band.hpp"
 #include "cncplan/detail/speed/curve_speed.hpp"
+#include "cncplan/detail/speed/limit_smoothing.hpp"
 
 namespace cncplan::detail {
 
@@ -124,13 +126,14 @@ class SmoothRun {
   [[nodiscard]] Plan slow_plan();
 
  private:
-  [[nodiscard]] static typename BasicBand<S, N>::Options geometry(const BasicLimits<S>& along,
+  [[nodiscard]] static typename BasicBand<S, N>::Options geometry(const Seen& seen, const Limits& limits,
                                                                   const BasicSmoothOptions<S>& options) {
     typename BasicBand<S, N>::Options geometry;
-    geometry.along = along;
+    geometry.along = seen.along(limits);
     geometry.window = options.band_window;
     geometry.coarseness = options.coarseness;
-    geometry.even_lines = Seen::count == N;
+    if constexpr (Seen::count == N)
+      geometry.least = std::accumulate(limits.axes.begin(), limits.axes.end(), limits.tool, lowest<S>);
     return geometry;
   }
 
@@ -322,7 +325,7 @@ SmoothRun<S, N, Seen>::SmoothRun(std::span<const Block> blocks, const Limits& li
       limits_(limits),
       options_(options),
       memory_(memory),
-      band_(blocks, geometry(seen.along(limits), options), start ? std::optional(start->place) : std::nullopt,
+      band_(blocks, geometry(seen, limits, options), start ? std::optional(start->place) : std::nullopt,
             memory),
       speed_(limits, options.speed_window, memory, seen) {
   if (!start) return;
