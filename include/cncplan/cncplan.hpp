@@ -111,6 +111,7 @@
 #include "cncplan/detail/executor/running_profile.hpp"
 #include "cncplan/detail/executor/shared_count.hpp"
 #include "cncplan/detail/executor/simulate_motion.hpp"
+#include "cncplan/detail/executor/speed_peaks.hpp"
 #include "cncplan/detail/executor/told_words.hpp"
 #include "cncplan/detail/executor/tool_jog.hpp"
 #include "cncplan/detail/executor/trajectory_chain.hpp"

@@ -62,8 +62,9 @@ class ExecutorRoom {
 /// by a clock as a `TrajectoryExecutor` does; of a part that ends at a speed the way to rest is known, and is
 /// driven if no other part comes in time. What differs:
 ///
-/// - an override below 1 slows all of the motion, its ramps too; one above 1 acts at once where what is
-///   planned leaves room for it, and on the parts that are planned from then on, `horizon` ahead at most;
+/// - an override acts at once on what is planned: below 1 it slows all of that, its ramps too; above 1 it
+///   acts where the plan leaves room. Parts that are planned from then on, `horizon` ahead at most, are
+///   planned for it, from 0.1 on; on the way back they are as slow;
 /// - a hold comes once a change of the rate is proven: soon, with the `reserve` of the options;
 /// - `single_step` and `pause_at` rest before the next block, on the curve that is driven, as near as a brake
 ///   is proven or planned; behind its start where limits do not allow it sooner;

@@ -46,9 +46,9 @@ struct BasicExecutorOptions {
   /// >= 1: the highest override of the feed. At the level `fast` any override above 1 has the acceleration
   /// and jerk that bends leave at this one: the higher it is, the less.
   S most_override = S(2);
-  /// s of motion, > 0: how far plans at the levels `good` and `best` are ahead, whole blocks at least. A feed
-  /// above the one that they were made for has its full effect behind it. The shorter, the more work, and the
-  /// longer the program takes.
+  /// s of motion, > 0: how far plans at the levels `good` and `best` are ahead, whole blocks at least.
+  /// Another feed than the one that they were made for has its full effect behind it. The shorter, the more
+  /// work, and the longer the program takes.
   S horizon = S(5);
 };
 

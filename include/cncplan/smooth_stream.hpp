@@ -95,16 +95,10 @@ class SmoothStream {
     return detail::guarded([&] { return planner_.make_part(merging_.size() + 1); });
   }
 
-  /// The first block, of all that were pushed, whose feed may still be raised, and the first whose may be
-  /// lowered: what is planned keeps its way to rest.
-  struct OpenFeeds {
-    std::int64_t higher{}, lower{};
-  };
-  [[nodiscard]] OpenFeeds open_feeds() const {
-    const auto [higher, lower] = planner_.open_feeds();
-    return {static_cast<std::int64_t>(higher), static_cast<std::int64_t>(lower)};
-  }
-  /// Multiplies the feeds of blocks that are held, from one on, by factor(number).
+  /// The first block, of all that were pushed, of which nothing is planned.
+  [[nodiscard]] std::int64_t first_open() const { return static_cast<std::int64_t>(planner_.first_open()); }
+  /// Multiplies the feeds of blocks that are held, from one on, by factor(number). Where the last plan ends
+  /// at a speed, `tail` is to keep to them.
   template <class Factor>
   void scale_feeds(std::int64_t first, Factor&& factor) {
     planner_.scale_feeds(first, factor);

@@ -226,3 +226,41 @@ TEST_CASE("executor overrides: on the way back a block is come to at its own sha
               0.02);
       }
 }
+
+TEST_CASE("executor overrides: a lower feed is planned, and leaves corners and ramps their speed",
+          "[executor-overrides]") {
+  // Legs of 2 mm with turns of 60 degrees: most of the time goes into ramps.
+  std::string legs;
+  for (int i = 0; i < 400; ++i)
+    legs += "G1 X" + std::to_string(1.7320508 * (i + 1)) + " Y" + std::to_string(i % 2 == 0 ? 1 : 0) + "\n";
+  const Machine<3> machine = with_axes();
+  const MillBlocks at_30 = blocks_of("F1800\n" + legs, machine), at_12 = blocks_of("F720\n" + legs, machine);
+  // s until the end; from a time on a share of the feed is asked for, from another one on all of it.
+  const auto takes = [&](const MillBlocks& blocks, SmoothLevel level, double share = 1, double from = 0,
+                         double until = 1e9) {
+    const auto executor = std::make_unique<Executor<Machine<3>, 128>>(
+        machine, LevelExecutorOptions{.level = level, .horizon = 1});
+    std::size_t fed = 0;
+    double time = 0, fastest = 0;
+    for (; !executor->finished() && time < 300; time += period) {
+      executor->feed_override(time >= from && time < until ? share : 1);
+      feed(*executor, blocks, fed);
+      const double speed = executor->tick(period).velocity.norm();
+      if (time > from + 1 && time < until) fastest = std::max(fastest, speed);
+    }
+    CHECK(executor->finished());
+    CHECK(fastest <= share * 30 + 1e-6);
+    return time;
+  };
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(level);
+    const double whole = takes(at_30, level), slower = takes(at_12, level);
+    INFO("s at the feed " << whole << ", at 0.4 of it by the program " << slower);
+    CHECK(slower < 1.7 * whole);  // by the clock alone it takes 2.5 times as long
+    CHECK(takes(at_30, level, 0.4) == Approx(slower).epsilon(2e-3));
+    // In the middle of the program, and back.
+    const double from = whole / 3, until = from + slower / 3;
+    CHECK(takes(at_30, level, 0.4, from) <= whole / 3 + 2 * slower / 3 + 2);
+    CHECK(takes(at_30, level, 0.4, from, until) <= 2 * whole / 3 + slower / 3 + 2);
+  }
+}

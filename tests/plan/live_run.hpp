@@ -38,8 +38,9 @@ struct LiveFaults {
   double dwell = 0;   ///< s that rests are too short
   double end = 0;     ///< mm
   double hold = 0;    ///< s from a hold to rest, at most
-  double time = 0;    ///< s that it took
-  int words = 0;      ///< told
+  double feed = 0;  ///< the tool's speed over the share of its block's that is asked for, 2 s behind requests
+  double time = 0;  ///< s that it took
+  int words = 0;    ///< told
   bool words_wrong = false, finished = false, failed = false;
   long requests = 0, tails = 0;
 };
@@ -113,15 +114,18 @@ class LiveRun {
     executor_.pause_at(0);
     executor_.optional_stop(false);
     executor_.program_stop(false);
-    executor_.feed_override(1);
-    executor_.rapid_override(1);
+    override_feed(1);
+    override_rapid(1);
     executor_.reverse(false);
     executor_.resume();
     since_hold_ = -1;
   }
+  void override_feed(double share) { executor_.feed_override(feed_share_ = share); }
+  void override_rapid(double share) { executor_.rapid_override(rapid_share_ = share); }
   void ask() {
     ++faults.requests;
     const int lines = blocks_.back().line;
+    since_request_ = 0;
     switch (random_.integer(0, 13)) {
       case 0:
       case 1:
@@ -137,9 +141,9 @@ class LiveRun {
       case 4:
         return executor_.reverse(false);
       case 5:
-        return executor_.feed_override(random_.uniform(0, 1.5));
+        return override_feed(random_.uniform(0, 2));
       case 6:
-        return executor_.rapid_override(random_.uniform(0.1, 1));
+        return override_rapid(random_.uniform(0, 1));
       case 7:
         return executor_.single_step(random_.coin());
       case 8:
@@ -167,6 +171,8 @@ class LiveRun {
     p_ = {Vector3(point.position), p_[0], p_[1], p_[2]};
     since_beside_ = beside ? 0 : since_beside_ + 1;
     compare(since_beside_ > 3);
+    since_request_ += how_.period;
+    if (since_request_ > 2 && !beside) compare_feed(point);
     if (!beside) track_.push_back(point.position);
     if (p_[0] == p_[1]) rested_ += how_.period;
     if (since_hold_ >= 0 && !(p_[0] == p_[1])) {
@@ -191,6 +197,14 @@ class LiveRun {
          [&](const Axis& a) { return how_.share * a.acceleration; });
     grow(faults.jerk, p_[0] - 3 * p_[1] + 3 * p_[2] - p_[3], h * h * h, how_.share * machine_.limits.jerk,
          [&](const Axis& a) { return how_.share * a.jerk; });
+  }
+
+  // Against the share of the feed or of the rapid rate of the block that the set point names.
+  void compare_feed(const typename E::SetPoint& point) {
+    const LiveBlock& block = blocks_[point.block];
+    const double programmed = block.rapid ? rapid_speed(machine_) : block.feed;
+    const double most = (block.rapid ? rapid_share_ : feed_share_) * programmed;
+    faults.feed = std::max(faults.feed, (point.velocity.norm() - most) / programmed);
   }
 
   void finish() {
@@ -218,6 +232,7 @@ class LiveRun {
   Vector3 last_ = Vector3::Zero();
   bool was_beside_ = false;
   long since_beside_ = 100;
+  double feed_share_ = 1, rapid_share_ = 1, since_request_ = 0;
   Polyline track_;
 };
 

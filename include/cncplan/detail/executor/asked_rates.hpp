@@ -6,7 +6,7 @@
 
 namespace cncplan::detail {
 
-/// Rates along a chain of trajectories whose blocks are planned for shares of their feeds, at least 1.
+/// Rates along a chain of trajectories whose blocks are planned for shares of their feeds.
 template <std::floating_point S>
 class BasicAskedRates {
  public:
@@ -23,7 +23,7 @@ class BasicAskedRates {
   template <class Chain>
   [[nodiscard]] S at(const Chain& chain, S time, S planned, bool back) const {
     if (chain.block_at(time).rapid) return rapid_share_;
-    return std::min(feed_share_, S(1)) * of_feed(chain, time, planned, back).most;
+    return of_feed(chain, time, planned, back).most;
   }
   /// The same where the clock is, without small changes.
   template <class Chain>
@@ -32,7 +32,7 @@ class BasicAskedRates {
     if (chain.block_at(time).rapid) return rapid_share_;
     const auto [least, most] = of_feed(chain, time, planned, back);
     last_ = most > worth_it * last_ ? most : std::min(most, std::max(last_, least));
-    return std::min(feed_share_, S(1)) * last_;
+    return last_;
   }
 
  private:
@@ -40,20 +40,21 @@ class BasicAskedRates {
     S least{}, most{};
   };
 
-  // On a feed move, if no less than its feed is asked for. One that is planned for a higher feed than that is
-  // slowed as far as it would be faster: limits may have kept it slower.
+  // On a feed move. One that is planned for a higher feed than the program's is slowed as far as it would be
+  // faster than what is asked for: limits may have kept it slower.
   template <class Chain>
   [[nodiscard]] FeedRate of_feed(const Chain& chain, S time, S planned, bool back) const {
     constexpr S window = S(1);  // s, in which the rate changes by so much at the latest
-    const S low = std::max(feed_share_, S(1)) / planned;
-    if (!(low < S(1))) return {low, low};
+    const S low = feed_share_ / planned;
+    if (!(planned > S(1) && low < S(1))) return {low, low};
     const S peak = back ? chain.peak_between(std::max(time - window, chain.start_time(0)), time)
                         : chain.peak_between(time, time + window);
-    return {low, std::clamp(low * static_cast<S>(chain.block_at(time).feed) / peak, low, S(1))};
+    return {low, std::clamp(low * static_cast<S>(chain.block_at(time).feed) / peak, low,
+                            std::min(feed_share_, S(1)))};
   }
 
   S feed_share_ = S(1), rapid_share_ = S(1);
-  S last_ = S(1);  // where the clock is, if no less than the feed is asked for
+  S last_ = S(1);  // where the clock is
 };
 
 }  // namespace cncplan::detail

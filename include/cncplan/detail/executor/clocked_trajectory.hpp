@@ -35,6 +35,7 @@ struct ClockedTrajectory {
       : trajectory(std::forward<T>(motion)),
         rests(rests_of(trajectory, memory)),
         brakes(trajectory.brakes()),
+        peaks(memory),
         words(memory),
         begins(memory) {
     for (const TimedWord& word : trajectory.words()) words.push_back({static_cast<S>(word.time), word.word});
@@ -57,6 +58,7 @@ struct ClockedTrajectory {
   T trajectory;
   std::pmr::vector<BasicRest<S>> rests;
   std::span<const BasicPlannedBrake<S>> brakes;
+  std::pmr::vector<S> peaks;  ///< `speed_peaks`, where the clock asks for them
   std::pmr::vector<Word> words;
   std::pmr::vector<Begin> begins;
 };

@@ -12,13 +12,17 @@
 
 namespace cncplan::detail {
 
-/// An override above 1 is planned into the blocks that have no plan yet: the thread that plans scales their
-/// feeds, and the one that drives them knows by how much. Shares are at least 1.
+/// An override of the feed is planned into the blocks that have no plan yet: the thread that plans scales
+/// their feeds, and the one that drives them knows by how much.
 template <std::floating_point S>
 class BasicFeedShares {
  public:
-  /// The thread that drives: what is asked for.
-  void ask(S share) { asked_.store(share > S(1) ? share : S(1), std::memory_order_relaxed); }
+  /// The thread that drives: what is asked for. Lower shares than the least that is planned are for the
+  /// clock.
+  void ask(S share) {
+    constexpr S least = S(0.1);
+    if (share >= least) asked_.store(share, std::memory_order_relaxed);
+  }
   [[nodiscard]] S asked() const { return asked_.load(std::memory_order_relaxed); }
 
   /// The thread that plans: the share of a block, and of those that will come.

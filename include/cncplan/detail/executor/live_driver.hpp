@@ -84,7 +84,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   void feed_override(S share) override {
     rates_.ask_feed(cut(share, infinity));
     planner_.shares().ask(rates_.feed_share());
-    raised_ = raised_ || rates_.feed_share() > S(1);
+    planned_anew_ = planned_anew_ || rates_.feed_share() != S(1);
   }
   void rapid_override(S share) override { rates_.ask_rapid(cut(share, S(1))); }
   void backwards(bool wanted) override {
@@ -273,7 +273,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S end_of_chain() const { return clock_.chain().empty() ? S(0) : clock_.chain().end_time(); }
   void add(Driven& now, const Clocked& motion) {
     if (motion.trajectory.phases().empty()) return;
-    clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes);
+    clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes, motion.peaks);
     ++now.motions;
   }
 
@@ -408,7 +408,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   // comes to the block: it goes down a little before a brake to rest would have to begin, which takes longer.
   // Where no change of the rate is proven in time, the motion rests before the block.
   void slow_for_next(S period) {
-    const bool never = (rates_.equal() && !raised_) || (!clock_.rests() && backwards_ != clock_.heads_back());
+    const bool never =
+        (rates_.equal() && !planned_anew_) || (!clock_.rests() && backwards_ != clock_.heads_back());
     if (never || !comes_down()) {
       slower_at_.reset();
       rests_before_ = false;
@@ -447,9 +448,10 @@ class LiveDriver final : public LevelDriver<M, B> {
       return static_cast<S>(chain.block_at(time).feed) / planned_share(time);
     };
     const bool rapid = chain.block_at(here()).rapid;
-    const S feed = programmed(here());
+    const S feed = programmed(here()), planned = planned_share(here());
     const auto is_slower = [&](S time) {
-      const bool other = chain.block_at(time).rapid != rapid || (!rapid && programmed(time) < feed);
+      const bool other = chain.block_at(time).rapid != rapid ||
+                         (!rapid && (programmed(time) < feed || planned_share(time) > planned));
       return other && rate_at(time) < own;
     };
     std::optional<S> found;
@@ -541,7 +543,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool program_stop_ = true;
   int pause_line_ = 0;
   BasicAskedRates<S> rates_;
-  bool raised_ = false;         // a feed above the program's has been asked for
+  bool planned_anew_ = false;   // another feed than the program's has been asked for
   S passed_ = -infinity;        // when the block begins before which it last paused
   std::optional<S> slower_at_;  // a time in the block for which the rate comes down
   bool rests_before_ = false;   // that one: nothing else comes down in time
@@ -561,7 +563,8 @@ class LiveDriver final : public LevelDriver<M, B> {
 template <MachineModel M, BlockModel B, class Planner>
 void LiveDriver<M, B, Planner>::look(S period) {
   take_parts();
-  planner_.left(driven_.end(), (way_end() - clock_.state().position) / std::max(rates_.feed_share(), S(1)));
+  planner_.left(driven_.end(),
+                (way_end() - clock_.state().position) / std::max(std::abs(clock_.state().velocity), S(1)));
   let_go_where_none_come(period);
   if (background_) return;
   planner_.plan();

@@ -13,6 +13,7 @@
 #include "cncplan/detail/executor/clocked_trajectory.hpp"
 #include "cncplan/detail/executor/feed_shares.hpp"
 #include "cncplan/detail/executor/part_link.hpp"
+#include "cncplan/detail/executor/speed_peaks.hpp"
 #include "cncplan/smooth_stream.hpp"
 
 namespace cncplan::detail {
@@ -203,16 +204,30 @@ class PartPlanner {
     return !stream_->full() || failed_.load(std::memory_order_relaxed);
   }
 
-  // Blocks that have no plan take the share of their feed that is asked for. Those along which the machine is
-  // known to come to rest become no slower.
+  // Blocks that have no plan take the share of their feed that is asked for. Where the machine comes to rest
+  // if no part follows none becomes slower than that motion.
   void adopt_share() {
     const S share = shares_.asked();
-    const auto [higher, lower] = stream_->open_feeds();
-    if (share == shares_.planned() || !shares_.has_room(higher)) return;
-    std::int64_t first = lower;
-    while (first > higher && !(shares_.planned(first - 1) > share)) --first;
+    const std::int64_t open = stream_->first_open();
+    if (share == shares_.planned() || !shares_.has_room(open)) return;
+    std::int64_t first = open_ ? behind_faster(*part(made_ - 1).tail, share, open) : open;
+    while (first > open && !(shares_.planned(first - 1) > share)) --first;
     stream_->scale_feeds(first, [&](std::int64_t block) { return share / shares_.planned(block); });
     shares_.plan(first, share);
+  }
+
+  // The first block behind those, from one on, in which a motion is faster than a share of their feeds.
+  [[nodiscard]] std::int64_t behind_faster(const Clocked& motion, S share, std::int64_t first) const {
+    const auto& trajectory = motion.trajectory;
+    for (const auto& [phase, piece] : trajectory.phases()) {
+      const std::size_t own = trajectory.block_of(piece);
+      const auto number = static_cast<std::int64_t>(trajectory.first_block() + own);
+      const B& block = trajectory.program()[own];
+      if (number < first || block.rapid) continue;
+      const S most = share * static_cast<S>(block.feed) / shares_.planned(number);
+      if (highest_speed(trajectory, phase, piece) > most) first = number + 1;
+    }
+    return first;
   }
 
   // The next part of all that was pushed; the last one to rest. What was void is planned again.
@@ -237,6 +252,8 @@ class PartPlanner {
     const std::size_t last = next.motion.emplace(stream_->take(), last_block_, memory_).last_block();
     const bool opens = stream_->open();
     if (opens) next.tail.emplace(stream_->tail(), last, memory_);
+    if (is_raised(next.motion->trajectory))
+      next.motion->peaks = speed_peaks(next.motion->trajectory, memory_);
     const S hold = next.motion->trajectory.longest_hold();
     if (hold > longest_hold()) longest_hold_.store(hold, std::memory_order_relaxed);
     next.link.store(opens ? PartLink::open : PartLink::rest, std::memory_order_relaxed);
@@ -256,6 +273,13 @@ class PartPlanner {
     fail(no_memory().about);
     stream_.emplace(machine_, options_, most_blocks_, memory_);
     return true;
+  }
+
+  // Whether a block is planned for more than its feed.
+  [[nodiscard]] bool is_raised(const Trajectory<M, B>& part) const {
+    for (std::size_t i = 0; i < part.program().size(); ++i)
+      if (shares_.planned(static_cast<std::int64_t>(part.first_block() + i)) > S(1)) return true;
+    return false;
   }
 
   // Puts the next part behind the last one; false if that is open and its tail is driven.

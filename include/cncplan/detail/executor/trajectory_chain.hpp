@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "cncplan/detail/executor/speed_peaks.hpp"
 #include "cncplan/trajectory.hpp"
 
 namespace cncplan::detail {
@@ -60,10 +61,11 @@ class TrajectoryChain {
 
   static constexpr std::size_t most_parts = 20;
 
-  /// Adds a trajectory with phases, where it stands, and the brakes that are planned along it. There has to
-  /// be room.
-  void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes) {
-    Part next{&trajectory, rests, brakes, end_time(), 0, S(0)};
+  /// Adds a trajectory with phases, where it stands, the brakes that are planned along it, and its
+  /// `speed_peaks`, if these are asked for. There has to be room.
+  void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes,
+                 std::span<const S> peaks = {}) {
+    Part next{&trajectory, rests, brakes, peaks, end_time(), 0, S(0)};
     if (count_ > 0) {
       const Part& last = parts_[count_ - 1];
       const std::size_t blocks = last.trajectory->program().size();
@@ -132,15 +134,16 @@ class TrajectoryChain {
     const Part& part = part_at(time);
     return static_cast<std::int64_t>(part.trajectory->first_block() + block_in(part, time));
   }
-  /// The highest speed from one time to another, mm/s; of some hundred phases at most.
+  /// The highest speed of the tool from one time to another, mm/s, of the trajectories that have their peaks.
   [[nodiscard]] S peak_between(S from, S to) const {
-    constexpr std::size_t most = 256;
-    const std::size_t first = phase_at(from);
     S peak = S(0);
-    for (std::size_t i = first; i <= std::min(last_phase(), first + most); ++i) {
-      const auto next = phase(i);
-      if (next.time > to) break;
-      peak = std::max(peak, next.highest_velocity());
+    for (std::size_t i = part_number(from); i < count_ && !(parts_[i].start > to); ++i) {
+      const Part& part = parts_[i];
+      const auto period_at = [&](S time) {
+        return static_cast<std::size_t>(std::max(time - part.start, S(0)) / peak_period<S>);
+      };
+      for (std::size_t k = period_at(from); k < std::min(period_at(to) + 1, part.peaks.size()); ++k)
+        peak = std::max(peak, part.peaks[k]);
     }
     return peak;
   }
@@ -192,6 +195,7 @@ class TrajectoryChain {
     const T* trajectory{};
     std::span<const Rest> rests{};
     std::span<const Brake> brakes{};
+    std::span<const S> peaks{};
     S start{};
     std::size_t first_phase{};
     S start_length{};  // mm of the program

@@ -79,11 +79,8 @@ class SmoothPlanner {
   /// Whether there are blocks for a part that does.
   [[nodiscard]] bool has_part() const { return runs_.has_part(planned_, cut_.has_value(), ahead_); }
 
-  /// The first blocks whose feed may be raised, and lowered: from the last plan's end there is a way to rest.
-  [[nodiscard]] std::pair<std::size_t, std::size_t> open_feeds() const {
-    const std::size_t higher = planned_ + (cut_ ? 1 : 0);
-    return {first_source_ + higher, first_source_ + (cut_ ? std::max(known_, higher) : higher)};
-  }
+  /// The first block of which nothing is planned.
+  [[nodiscard]] std::size_t first_open() const { return first_source_ + planned_ + (cut_ ? 1 : 0); }
   /// Multiplies feeds of blocks that are held, from a number on, by factor(number).
   template <class Factor>
   void scale_feeds(std::int64_t first, Factor&& factor) {
