@@ -148,9 +148,8 @@ TEST_CASE("executor levels: random programs, random requests, random feeding", "
       if (more == 1) text += "M8\n";
       if (more == 2) text += "M0\n";
     }
-    const auto program = read_text(text, c.machine, {.tolerance = c.tolerance});
-    REQUIRE_FALSE(program.failed());
-    const LiveBlocks blocks(program.blocks().begin(), program.blocks().end());
+    const LiveBlocks blocks = live_blocks(text, c.machine, {.tolerance = c.tolerance});
+    REQUIRE_FALSE(blocks.empty());
     LiveCase how;
     how.pace = round % 3 == 0 ? 0 : random.log_uniform(0.02, 0.5);
     how.starved = random.coin() ? 0 : random.integer(1, 30);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "cncplan/block_reader.hpp"
@@ -18,6 +20,23 @@ namespace cncplan::test {
 
 using LiveBlock = ProgramBlock<Machine<3>>;
 using LiveBlocks = std::vector<LiveBlock>;
+
+/// The blocks of a program as they come to an executor, with words and stops among them; nothing where a line
+/// is wrong.
+inline LiveBlocks live_blocks(const std::string& text, const Machine<3>& machine,
+                              const PlanOptions& options) {
+  BlockReader<Machine<3>> reader(machine, options);
+  LiveBlocks blocks;
+  const auto take = [&](const auto& read) {
+    if (read)
+      for (const auto& block : *read) blocks.push_back(block);
+    return read.has_value();
+  };
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (!take(reader.read_line(line))) return {};
+  return take(reader.end_of_program()) ? blocks : LiveBlocks{};
+}
 
 /// What is done to a run.
 struct LiveCase {

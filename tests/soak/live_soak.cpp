@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 
-#include "cncplan/program.hpp"
 #include "plan/live_run.hpp"
 #include "soak/smooth_program.hpp"
 #include "soak/worst.hpp"
@@ -66,10 +65,8 @@ Case draw(std::uint64_t seed, test::Random& random) {
 
 bool examine(const Case& c, test::Random& random, Errors& errors) {
   const double tolerance = c.program.tolerance;
-  const auto program = read_text(c.program.program, c.program.machine, {.tolerance = tolerance});
-  if (program.failed()) return false;
-  if (program.blocks().empty()) return true;
-  const test::LiveBlocks blocks(program.blocks().begin(), program.blocks().end());
+  const auto blocks = test::live_blocks(c.program.program, c.program.machine, {.tolerance = tolerance});
+  if (blocks.empty()) return false;
   const auto executor = std::make_unique<Runner>(
       c.program.machine,
       LevelExecutorOptions{

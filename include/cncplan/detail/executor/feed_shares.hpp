@@ -1,6 +1,7 @@
 // By which share of its feed each block of a stream is planned.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <concepts>
 #include <cstddef>
@@ -17,11 +18,11 @@ namespace cncplan::detail {
 template <std::floating_point S>
 class BasicFeedShares {
  public:
-  /// The thread that drives: what is asked for. Lower shares than the least that is planned are for the
-  /// clock.
+  /// The thread that drives: what is asked for. A rest changes no plans, and what is below the least share
+  /// that is planned is for the clock.
   void ask(S share) {
     constexpr S least = S(0.1);
-    if (share >= least) asked_.store(share, std::memory_order_relaxed);
+    if (share > S(0)) asked_.store(std::max(share, least), std::memory_order_relaxed);
   }
   [[nodiscard]] S asked() const { return asked_.load(std::memory_order_relaxed); }
 
