@@ -388,7 +388,8 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (!clock_.heads_back() || clock_.chain().rest_before(clock_.state().position)) return;
     const S start = clock_.chain().start_time(0) + way_to_brake;
     const auto brake = clock_.brake_in(period);
-    no_way_back_ = no_way_back_ || (brake ? *brake : clock_.state_after(S(1.5) * period).position) <= start;
+    no_way_back_ =
+        no_way_back_ || (brake ? brake->end : clock_.state_after(S(1.5) * period).position) <= start;
   }
   // Brakes so that the axes come to rest at the start of a block, or before it: where a brake that begins a
   // tick later would end behind it. Where the search finds none, the last planned one has to do.
@@ -400,7 +401,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   // Whether a brake that begins a tick later ends behind a time.
   [[nodiscard]] bool is_last_chance(S time, S period) {
-    if (const auto brake = clock_.brake_in(period)) return beyond(*brake, time);
+    const auto brake = clock_.brake_in(period);
+    if (brake && (brake->proven || beyond(brake->end, time))) return beyond(brake->end, time);
     return (!backwards_ && clock_.passes_last_brake_before(time, period)) ||
            !beyond(time, clock_.state_after(S(1.5) * period).position);
   }

@@ -133,17 +133,30 @@ class TrajectoryClock {
     return std::isfinite(feed) ? std::max(now, from({S(0), feed, S(0)})) : now;
   }
 
-  /// What it shows where a change to rest ends that is proven and may begin in some seconds, before the next
-  /// rest, if nothing is asked for until then; fast ones first.
-  [[nodiscard]] std::optional<S> brake_in(S seconds) {
+  /// A change to rest: what it shows where that ends, and whether it is proven.
+  struct SoonBrake {
+    S end{};
+    bool proven{};
+  };
+  /// One that may begin in some seconds, before the next rest, if nothing is asked for until then; fast ones
+  /// first. Forwards, where none is proven but a gentle one, it takes as long as the last one, or somewhat
+  /// longer than if the path went straight on.
+  [[nodiscard]] std::optional<SoonBrake> brake_in(S seconds) {
     const BasicState<S> then = state_after(seconds);
     if (!heads_back() && !(then.position < high_.from)) return std::nullopt;
     const int level = std::exchange(level_, 0);
-    int work = work_in_tick;
+    int work = work_to_pause;
     const auto ramp = find_change(then, S(0), heads_back(), infinity, work);
     level_ = level;
-    if (!ramp) return std::nullopt;
-    return shown_at_end(*ramp);
+    if (heads_back()) return ramp ? std::optional(SoonBrake{shown_at_end(*ramp), true}) : std::nullopt;
+    const AlongPath along = along_path(then);
+    const auto straight = PathBrake<M, B>::straight_on(along.now, along.limits, 0);
+    const S least = shown_at_end(Ramp(straight, along.phase)) - then.position;
+    const S way = ramp ? shown_at_end(*ramp) - then.position : infinity;
+    const bool proven = way < gentle * least;
+    if (proven) brake_way_ = way;
+    const S last = std::max(brake_way_.value_or(S(0)), PathBrake<M, B>::hardly_faster * least);
+    return SoonBrake{then.position + (proven ? way : last), proven};
   }
   /// Whether it runs at a constant rate, and passes within some seconds the last planned brake that comes to
   /// rest before it shows a time.
@@ -167,13 +180,15 @@ class TrajectoryClock {
   using AxisState = BasicAxisState<S>;
   using RateMotion = state::BasicMotion<S>;
 
-  static constexpr int work_in_tick = 250, work_in_plan = 3000;  // intervals of proofs
+  // Intervals of proofs. Where it is to rest before a block a tick may take longer.
+  static constexpr int work_in_tick = 250, work_to_pause = 1000, work_in_plan = 3000;
   // Of changes of the rate, each slower than the one before; ramps along the path come first.
   static constexpr int levels_along_path = PathBrake<M, B>::levels, levels = levels_along_path + 32;
   static constexpr int no_level = levels + 1;
   static constexpr S growth = S(1.2599210498948732);  // 2^(1/3)
   static constexpr S same_time = S(1e-9);             // s
   static constexpr S least_portion = S(0.1);
+  static constexpr S gentle = S(2);  // times as long a brake is as if the path went straight on
 
   // A stretch above the planned speed: the rate that was asked for, and s from its start to its way back.
   struct Faster {
@@ -293,6 +308,7 @@ class TrajectoryClock {
 
   void run_at(const AxisState& state) {
     standing_ = false;
+    brake_way_.reset();
     ramp_ = Ramp(RateMotion(state, state));
     elapsed_ = S(0);
     goal_ = state.velocity;
@@ -322,7 +338,7 @@ class TrajectoryClock {
     const std::optional<Brake> planned = goal == S(0) ? planned_brake() : std::nullopt;
     if (planned) sooner = (planned->time - now.position + planned->duration) / goal_;
     const S to = std::min(now.velocity + portion_ * (goal - now.velocity), S(1));
-    int work = work_in_tick;
+    int work = goal == S(0) && brake_way_ ? work_to_pause : work_in_tick;
     const auto ramp = find_change(now, to, back, sooner, work);
     if (ramp && !may_change(shown_at_end(*ramp), false)) return search_from(S(1));
     if (ramp) begin(*ramp, to);
@@ -527,8 +543,9 @@ class TrajectoryClock {
   S asked_{};         // the one that is looked for
   S portion_ = S(1);  // of the way to it, and how slow the change: where the search goes on
   int level_ = 0;
-  Faster faster_;  // that goes on
-  int trial_ = 0;  // where the search for one goes on
+  std::optional<S> brake_way_;  // s that the clock shows during the last brake of `brake_in`
+  Faster faster_;               // that goes on
+  int trial_ = 0;               // where the search for one goes on
 };
 
 }  // namespace cncplan::detail
