@@ -212,6 +212,17 @@ TEST_CASE("executor overrides: a lower feed or rapid behind a lowered override i
         }
 }
 
+TEST_CASE("executor overrides: at each level the tool has the share of its feed where lines meet arcs",
+          "[executor-overrides]") {
+  // At the level fast the tool is up to 1.2 % faster there than along the programmed length.
+  const std::string text = "F333\nG1 X3\nG3 X3.318 Y0.318 I0 J0.318\nG1 Y3.318\nG2 X4 Y4 I0.682 J0\nG1 X9\n";
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best})
+    for (const double share : {0.3, 0.7, 1.0, 1.7}) {
+      CAPTURE(level, share);
+      CHECK(excess(mill, {.level = level}, text, {{0, share}}) < 1e-6);
+    }
+}
+
 TEST_CASE("executor overrides: on the way back a block is come to at its own share", "[executor-overrides]") {
   for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best})
     for (const std::string end : {"G1 X70 Y5\n", "G1 X70\n"})
