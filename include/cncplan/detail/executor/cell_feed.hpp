@@ -203,14 +203,16 @@ class CellFeed {
   [[nodiscard]] bool near(const B& block, const Vector& place, const Vector& there) const;
   [[nodiscard]] Cell motion_block(const B& block, const BasicCell<Scalar>& cell) const;
 
-  // How many times as fast as along the programmed length the tool is at most, where it is faster: the feed
-  // is the tool's. Corrections of directions make it slower.
-  [[nodiscard]] static Scalar tool_rate(const Driven& driven, Scalar from, Scalar to) {
-    if constexpr (SmoothingAhead<M, B>::possible)
+  // The feed by the programmed length. It is the tool's, which is faster than that where |q'| > 1, as beside
+  // a jump of curvature: a limit of the speed below the feed counts that, else a bound of |q'| does.
+  [[nodiscard]] Scalar feed_along(Scalar feed, Scalar most, Scalar from, Scalar to) const {
+    if constexpr (SmoothingAhead<M, B>::possible) {
+      const Driven driven = path(begun_ - 1);
       for (const auto& correction : driven.corrections())
         if (correction.jump == Jump::curvature)
-          return std::max(driven.bounds(from, to).tool.first, Scalar(1));
-    return Scalar(1);
+          return std::clamp(most, feed / std::max(driven.bounds(from, to).tool.first, Scalar(1)), feed);
+    }
+    return feed;
   }
 
   // A rest on the way. Its limits play no part.
@@ -402,7 +404,7 @@ typename CellFeed<M, B>::Cell CellFeed<M, B>::motion_block(const B& block,
   result.goes_on = !last || block.goes_on;
   result.from = from;
   result.feed = !block.rapid && std::isfinite(block.feed)
-                    ? block.feed / tool_rate(path(begun_ - 1), from, to)
+                    ? feed_along(block.feed, limits.velocity, from, to)
                     : std::min(maker_.requested_speed(), limits.velocity);
   const BasicLimits<Scalar> above = finite_limits(cell.above);
   result.above = {std::max(above.velocity, limits.velocity),
