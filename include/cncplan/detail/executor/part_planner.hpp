@@ -204,8 +204,8 @@ class PartPlanner {
     return !stream_->full() || failed_.load(std::memory_order_relaxed);
   }
 
-  // Blocks that have no plan take the share of their feed that is asked for. Where the machine comes to rest
-  // if no part follows none becomes slower than that motion.
+  // Blocks that have no plan take the share of their feed that is asked for. The tail of the last part stays
+  // driveable: a block along it takes no feed below the tail's speed there.
   void adopt_share() {
     const S share = shares_.asked();
     const std::int64_t open = stream_->first_open();
