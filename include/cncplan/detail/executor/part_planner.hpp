@@ -252,8 +252,9 @@ class PartPlanner {
     const std::size_t last = next.motion.emplace(stream_->take(), last_block_, memory_).last_block();
     const bool opens = stream_->open();
     if (opens) next.tail.emplace(stream_->tail(), last, memory_);
-    if (is_raised(next.motion->trajectory))
-      next.motion->peaks = speed_peaks(next.motion->trajectory, memory_);
+    for (auto* motion : {&next.motion, &next.tail})
+      if (*motion && is_raised((*motion)->trajectory))
+        (*motion)->peaks = speed_peaks((*motion)->trajectory, memory_);
     const S hold = next.motion->trajectory.longest_hold();
     if (hold > longest_hold()) longest_hold_.store(hold, std::memory_order_relaxed);
     next.link.store(opens ? PartLink::open : PartLink::rest, std::memory_order_relaxed);
