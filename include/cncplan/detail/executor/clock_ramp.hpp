@@ -21,6 +21,7 @@ class PhasesByLength {
   using S = typename M::Scalar;
   using Chain = TrajectoryChain<M, B>;
 
+  PhasesByLength() = default;
   /// From one of them on, which begins at so many mm.
   PhasesByLength(const Chain& chain, std::size_t index, S start)
       : chain_(&chain), index_(index), start_(start) {}
@@ -48,9 +49,9 @@ class PhasesByLength {
     return std::max(phase.at(phase.duration).position - phase.position, S(0));
   }
 
-  const Chain* chain_;
-  std::size_t index_;
-  S start_;  // mm
+  const Chain* chain_ = nullptr;
+  std::size_t index_{};
+  S start_{};  // mm
 };
 
 /// A change of the rate of a clock that shows the time of a chain. By time, its motion is that of the clock.

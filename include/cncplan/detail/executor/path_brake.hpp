@@ -74,28 +74,43 @@ class PathBrake {
     if (!std::isfinite(most_jerk) || !(duration > S(0))) return {};
     const S longest_step =
         std::clamp(straight.acceleration_down / most_jerk, duration, S(2) * duration) / steps_in_brake;
-    Motion motion(from, from);
-    Way way(chain_, phase, S(0));
-    AxisState state = from;
-    S left = wanted.most;
+    Motion steps(from, from);
+    Places places;
+    Place now{from, S(0), Way(chain_, phase, S(0))};
     bool late = false;
-    while (motion.phases().size() + 1 < Motion::most_phases && !too_late(state, most_jerk)) {
-      const S least = wanted.gives_up ? state.velocity / (hardly_faster * straight.acceleration_down) : S(0);
-      late = !(left > least);
+    while (steps.phases().size() + 1 < Motion::most_phases && !too_late(now.state, most_jerk)) {
+      const S least =
+          wanted.gives_up ? now.state.velocity / (hardly_faster * straight.acceleration_down) : S(0);
+      late = !(wanted.most - now.time > least);
       if (late) break;
-      const auto step = prove(way, last, state, longest_step, share, most_jerk, work);
+      const auto step = prove(now.way, last, now.state, longest_step, share, most_jerk, work);
       if (!step) break;
-      motion.append(*step);
-      left -= step->duration;
-      state = step->after(state, step->duration);
-      way.go_to(state.position);
+      places[steps.phases().size()] = now;
+      steps.append(*step);
+      now = behind(now, *step);
     }
-    return end(motion, Way(chain_, phase, S(0)), last, most_jerk, wanted.most, late, work);
+    places[steps.phases().size()] = now;
+    return end(steps, places, last, most_jerk, wanted.most, late, work);
   }
 
  private:
   static constexpr S steps_in_brake = S(24);  // about
   static constexpr S within = S(0.97);        // of the limits
+
+  // Where a step begins or ends.
+  struct Place {
+    AxisState state;
+    S time{};  // s from the start of the brake
+    Way way{};
+  };
+  using Places = std::array<Place, Motion::most_phases>;
+
+  // At the end of a step.
+  [[nodiscard]] static Place behind(const Place& before, const BasicJerkPhase<S>& step) {
+    Place place{step.after(before.state, step.duration), before.time + step.duration, before.way};
+    place.way.go_to(place.state.position);
+    return place;
+  }
 
   // What derivatives of the length by time may be.
   struct Rooms {
@@ -191,39 +206,32 @@ class PathBrake {
     return std::nullopt;
   }
 
-  // The steps of a motion, as many as can be, and then to rest at a constant jerk, sooner than `most`.
-  // `late`: the steps ended because too little of `most` was left. It stays so where no end is soon enough.
-  [[nodiscard]] Found end(const Motion& steps, const Way& from, std::size_t last, S most_jerk, S most,
+  // The steps of a motion between places, as many as can be, and then to rest at a constant jerk, sooner than
+  // `most`. `late`: the steps ended because too little of `most` was left. It stays so where no end is soon
+  // enough.
+  [[nodiscard]] Found end(const Motion& steps, const Places& places, std::size_t last, S most_jerk, S most,
                           bool late, int& work) const {
-    std::array<AxisState, Motion::most_phases + 1> states;
-    std::array<S, Motion::most_phases + 1> times{};
-    states[0] = steps.start();
-    for (std::size_t i = 0; i < steps.phases().size(); ++i) {
-      times[i + 1] = times[i] + steps.phases()[i].duration;
-      states[i + 1] = steps.phases()[i].after(states[i], steps.phases()[i].duration);
-    }
     constexpr int parts = 4;
     for (auto count = static_cast<int>(steps.phases().size()) * parts; count >= 0 && work >= 0; --count) {
       // Behind some steps and a part of the next.
       const auto whole = static_cast<std::size_t>(count / parts);
-      AxisState state = states[whole];
+      Place place = places[whole];
       BasicJerkPhase<S> part;
       if (count % parts > 0) {
         part = steps.phases()[whole];
         part.duration *= S(count % parts) / S(parts);
-        state = part.after(state, part.duration);
+        place = behind(place, part);
       }
+      const AxisState& state = place.state;
       if (!(state.acceleration < S(0)) || too_late(state, most_jerk)) continue;
-      Way way = from;
-      way.go_to(state.position);
       const S duration = S(-2) * state.velocity / state.acceleration;
-      if (!(times[whole] + part.duration + duration < most)) continue;
+      if (!(place.time + duration < most)) continue;
       late = false;
       const BasicJerkPhase<S> step{duration, state.acceleration, -state.acceleration / duration};
       const AxisState rest{step.after(state, duration).position, S(0), S(0)};
       Motion last_step(state, rest);
       last_step.append(step);
-      if (!proof_.moves(chain_, way, last, last_step, most_rate_, work)) continue;
+      if (!proof_.moves(chain_, place.way, last, last_step, most_rate_, work)) continue;
       Motion motion(steps.start(), rest);
       for (std::size_t i = 0; i < whole; ++i) motion.append(steps.phases()[i]);
       motion.append(part, step);
