@@ -76,7 +76,7 @@ class BrakePlanner {
   void plan_between(S from, S to) {
     if (!(to > from)) return brakes_.push_back({to, S(0), to, 0});
     Brake next{to, S(0), to, 0};
-    for (S least = clock_.least_brake(std::max(from, to - S(1e-3)));; least = clock_.least_brake(next.time)) {
+    for (S least = least_at(std::max(from, to - tick));; least = least_at(next.time)) {
       const S bound = most(least);
       const S wait =
           std::max(std::clamp(bound - next.duration, shortest_wait * bound, longest_wait * bound), tick);
@@ -93,33 +93,36 @@ class BrakePlanner {
       next = *before;
     }
   }
+  [[nodiscard]] S least_at(S time) { return clock_.least_brake(time).duration(); }
   // The most times of the least at the place where it is asked for, or where the brake begins, that a hold
-  // takes which waits for a brake from a time on.
+  // takes which waits for a brake from a time on. As time goes on the hold gets shorter, and the least from
+  // the planned speed no faster than that: the plan itself may be the brake.
   [[nodiscard]] S times_least_between(S start, const Brake& brake, S least) {
     constexpr int parts = 8;
-    S most = S(0), here = clock_.least_brake(start);
+    S most = S(0);
+    auto here = clock_.least_brake(start);
     for (int i = 0; i < parts; ++i) {
       const S time = start + (brake.time - start) * S(i) / S(parts);
-      const S there = clock_.least_brake(start + (brake.time - start) * S(i + 1) / S(parts));
-      const S hold = brake.time - time + brake.duration;
-      most = std::max(most, (hold - tick) / std::max(std::min(here, there), least));
+      const auto there = clock_.least_brake(start + (brake.time - start) * S(i + 1) / S(parts));
+      const S feed = std::min(here.from_feed, there.from_feed);
+      const S lowest = std::max({std::min(here.now, there.now), feed, least});
+      const S later = std::max(here.now - lowest, S(0));
+      most = std::max(most, (brake.time - time - later + brake.duration - tick) / lowest);
       here = there;
     }
     return most;
   }
-  // The brake before another one: so far before it as can be, but no farther than the wait if there is one
-  // that keeps the bound; else the next that is at rest sooner. Nothing where none is needed from a time on.
+  // The brake before another one: as far before it as the wait allows if there is one that keeps the bound;
+  // else the next that is at rest sooner. Nothing where none is needed from a time on.
   [[nodiscard]] std::optional<Brake> find_before(const Brake& next, S wait, S from) {
     constexpr S hard = S(2);  // times the least: a softer one only where the bound leaves room for it
-    for (const S times : {hard, infinity})
-      for (const S share : {S(1), S(0.7), S(0.4), S(0.2)}) {
-        const S time = next.time - share * wait;
-        if (!(time > from)) return std::nullopt;
-        const S least = clock_.least_brake(time);
-        const S longest = most(least) - kept_wait * (most(least) - least);
-        if (times > hard && !(longest > hard * least)) continue;
-        if (const auto brake = clock_.find_brake(time, std::min(longest, times * least))) return brake;
-      }
+    const S time = next.time - wait;
+    if (!(time > from)) return std::nullopt;
+    const S least = least_at(time);
+    const S longest = most(least) - kept_wait * (most(least) - least);
+    if (const auto brake = clock_.find_brake(time, std::min(longest, hard * least))) return brake;
+    if (longest > hard * least)
+      if (const auto brake = clock_.find_brake(time, longest)) return brake;
     return find_sooner(next, wait, from);
   }
   // The next brake that is at rest sooner than one that is waited for.
@@ -127,7 +130,7 @@ class BrakePlanner {
     S way = S(0.2) * wait;
     for (S time = next.time - way; time > from; time -= way) {
       if (const auto brake = clock_.find_brake(time, next.time - time + next.duration)) return brake;
-      way *= S(1.25);  // the work is bounded where there is none for long
+      way *= S(1.1);  // the work is bounded where there is none for long
     }
     return std::nullopt;
   }

@@ -40,6 +40,7 @@ class RunBrakes {
     if (follows) planner.chain().push_back(*before_, rests_before.emplace(rests_of(*before_, memory_)), {});
     const S start = follows ? before_->duration() : S(0), end = start + part.duration();
     const auto rests = rests_of(part, memory_);
+    inner_ = {follows ? next_to_an_end : S(-1), part.duration() + (way != nullptr ? -next_to_an_end : S(1))};
     planner.chain().push_back(part, rests, {});
     if (way != nullptr) planner.chain().push_back(*way, rests_of_way.emplace(rests_of(*way, memory_)), {});
     planner.plan(follows ? start + uncovered_ : S(0));
@@ -58,6 +59,12 @@ class RunBrakes {
   }
   /// Where brakes come late: s of the part.
   [[nodiscard]] const std::pmr::vector<Late>& late() const { return late_; }
+  /// Whether there is such a place, also next to an end that is not at rest.
+  [[nodiscard]] bool comes_late(bool next_to_ends) const {
+    return std::ranges::any_of(late_, [=, this](const Late& late) {
+      return next_to_ends || (late.from > inner_.from && late.to < inner_.to);
+    });
+  }
   /// Of the part that was planned last: those that end in it, and those that end on the way behind it, in the
   /// time of that.
   [[nodiscard]] const Brakes& brakes() const { return brakes_; }
@@ -71,6 +78,8 @@ class RunBrakes {
   }
 
  private:
+  static constexpr S next_to_an_end = S(0.01);  // s
+
   const M& machine_;
   S factor_;
   std::pmr::memory_resource* memory_;
@@ -79,6 +88,7 @@ class RunBrakes {
   Brakes brakes_{memory_}, tail_{memory_};
   std::pmr::vector<Late> late_{memory_};
   S longest_{};
+  Late inner_;  // of the part, without what is next to an end that is not at rest
 };
 
 }  // namespace cncplan::detail

@@ -119,9 +119,14 @@ class TrajectoryClock {
     if (!ramp) return std::nullopt;
     return Brake{shown, ramp->duration(), shown_at_end(*ramp), level_};
   }
-  /// s, the least that a brake takes where the clock shows a time between rests, if the path went straight
-  /// on: from the planned speed and acceleration, or from the feed if that is longer.
-  [[nodiscard]] S least_brake(S shown) {
+  /// The least that a brake takes if the path went straight on, s: from the planned speed and acceleration,
+  /// and from the feed, 0 where it has no bound.
+  struct LeastBrake {
+    S now{}, from_feed{};
+    [[nodiscard]] S duration() const { return std::max(now, from_feed); }
+  };
+  /// Where the clock shows a time between rests.
+  [[nodiscard]] LeastBrake least_brake(S shown) {
     run_planned(shown);
     const AlongPath along = along_path(state());
     const B& block = chain_.block_at(shown);
@@ -129,8 +134,7 @@ class TrajectoryClock {
     const auto from = [&](const AxisState& start) {
       return Change(start, S(0), along.limits).fastest().duration();
     };
-    const S now = from(along.now);
-    return std::isfinite(feed) ? std::max(now, from({S(0), feed, S(0)})) : now;
+    return {from(along.now), std::isfinite(feed) ? from({S(0), feed, S(0)}) : S(0)};
   }
 
   /// A change to rest: what it shows where that ends, and whether it is proven.

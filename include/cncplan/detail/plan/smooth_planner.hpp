@@ -380,13 +380,13 @@ class SmoothPlanner {
   // Plans brakes, and a run slower where they come late, as long as that works; what is behind it.
   template <class BehindIt>
   std::optional<Behind> make_holdable(Run& run, RunPlan& planned, const Given& given, BehindIt&& behind_it) {
-    constexpr int most_rounds = 16;
-    constexpr S share = S(0.95);  // of the limits of acceleration, from round to round
+    constexpr int most_rounds = 16, rounds_at_ends = 6;  // which hardly help where a speed is given
+    constexpr S share = S(0.95);                         // of the limits of acceleration, from round to round
     auto next = behind_it(planned);
     for (int round = 0;; ++round) {
       const Part part = part_of(planned, given);
       run_brakes_.plan(part, cut_.has_value(), next->way ? &*next->way : nullptr);
-      if (run_brakes_.late().empty() || round == most_rounds) return next;
+      if (round == most_rounds || !run_brakes_.comes_late(round < rounds_at_ends)) return next;
       const auto piece_at = [&](S time) { return part.phases()[part.phase_at(time)].piece; };
       for (const auto& [from, to] : run_brakes_.late())
         run.slow_down(planned, piece_at(from), piece_at(to), share);
