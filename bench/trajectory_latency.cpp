@@ -1,7 +1,7 @@
 // The time of single ticks of an executor of a planned trajectory, and how long holds take, on a program of
-// many short moves at the level good, planned for holds that take 1.5 times the least of a brake unless said:
-// holds at random instants, each resumed at rest. COUNT 0: what such a plan costs.
-//   [CNCPLAN_BALL=ball.nc] cncplan_trajectory_latency [COUNT [HOLD_FACTOR]]
+// many short moves at the level good, planned for holds that take 1.5 times the least of a brake, unless
+// said: holds at random instants, each resumed at rest. COUNT 0: what such a plan costs.
+//   [CNCPLAN_BALL=ball.nc] cncplan_trajectory_latency [COUNT [HOLD_FACTOR [good | best]]]
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -38,11 +38,16 @@ int main(int argc, char** argv) {
   constexpr double period = 1e-3;
   const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1'000'000;
   const double factor = argc > 2 ? std::strtod(argv[2], nullptr) : 1.5;
+  auto level = SmoothLevel::good;
+  if (argc > 3 && argv[3] == to_text(SmoothLevel::best))
+    level = SmoothLevel::best;
+  else if (argc > 3 && argv[3] != to_text(level))
+    return std::fprintf(stderr, "the level is good or best\n"), 2;
   std::vector<bench::Block> blocks;
   if (!bench::read_blocks(bench::ball(), blocks))
     return std::fprintf(stderr, "the program does not read\n"), 1;
-  const auto planned = plan_blocks(blocks, bench::mill, {.level = SmoothLevel::good, .hold_factor = factor});
-  const auto without = plan_blocks(blocks, bench::mill, {.level = SmoothLevel::good});
+  const auto planned = plan_blocks(blocks, bench::mill, {.level = level, .hold_factor = factor});
+  const auto without = plan_blocks(blocks, bench::mill, {.level = level});
   if (!planned || !without) return std::fprintf(stderr, "the program has no plan\n"), 1;
   const TrajectoryExecutorOptions options{.hold_factor = factor};
   {

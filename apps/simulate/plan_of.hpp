@@ -86,7 +86,7 @@ template <class M>
       const cncplan::LevelExecutorOptions executor;  // by default
       planning.level = std::max(planning.level, cncplan::SmoothLevel::good);
       planning.reserve = executor.reserve;
-      planning.hold_factor = cncplan::MappedModel<M> ? 0.0 : executor.hold_factor;
+      planning.hold_factor = executor.hold_factor;
       return drive_live(std::span<const Block>(program.blocks), machine, planning,
                         read_events(*options.events), options.period);
     }

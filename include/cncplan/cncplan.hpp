@@ -103,6 +103,7 @@
 #include "cncplan/detail/executor/part_planner.hpp"
 #include "cncplan/detail/executor/path_ahead.hpp"
 #include "cncplan/detail/executor/path_brake.hpp"
+#include "cncplan/detail/executor/path_near.hpp"
 #include "cncplan/detail/executor/plan_ahead.hpp"
 #include "cncplan/detail/executor/planned_brake.hpp"
 #include "cncplan/detail/executor/plans.hpp"

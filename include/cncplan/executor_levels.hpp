@@ -55,8 +55,7 @@ LevelDriver<M, B>* ExecutorLevels<M, B>::make(const M& machine, const Options& o
   plan.junction_deviation = static_cast<double>(options.junction_deviation);
   plan.exact_between_rapids_and_feeds = options.exact_between_rapids_and_feeds;
   plan.reserve = static_cast<double>(options.reserve);
-  // Under a map a proof takes too long for brakes to be planned as blocks come.
-  plan.hold_factor = MappedModel<M> ? 0.0 : static_cast<double>(options.hold_factor);
+  plan.hold_factor = static_cast<double>(options.hold_factor);
   return LiveDriver<M, B>::make(machine, {options.longest_wait, options.background}, memory, plan,
                                 most_blocks, options.horizon);
 }

@@ -40,8 +40,7 @@ struct BasicExecutorOptions {
   /// leave for holds. The more, the sooner a hold comes, and the longer the program takes.
   S reserve = S(0.02);
   /// How many times the least that a brake takes a hold may take, > 1; 0: no plan for it. Plans at the levels
-  /// `good` and `best` are slower where a hold would come later. Not behind a map, where no
-  /// bound is planned.
+  /// `good` and `best` are slower where a hold would come later.
   S hold_factor = S(1.5);
   /// >= 1: the highest override of the feed. At the level `fast` any override above 1 has the acceleration
   /// and jerk that bends leave at this one: the higher it is, the less.

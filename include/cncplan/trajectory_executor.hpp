@@ -14,9 +14,9 @@ namespace cncplan {
 /// What a `TrajectoryExecutor` asks of a trajectory.
 template <std::floating_point S>
 struct BasicTrajectoryExecutorOptions {
-  /// s, > 0: the longest that a hold may take from a request to rest. Behind a map nothing bounds it.
+  /// s, > 0: the longest that a hold may take from a request to rest.
   S longest_hold = S(1);
-  /// How many times the least that a brake takes it may take, > 1; behind a map infinity alone
+  /// How many times the least that a brake takes it may take, > 1
   S hold_factor = std::numeric_limits<S>::infinity();
   S quick_stop_share = S(1);  ///< as in `BasicExecutorOptions`
   S most_override = S(2);     ///< as in `BasicExecutorOptions`
@@ -38,7 +38,7 @@ using TrajectoryExecutorOptions = BasicTrajectoryExecutorOptions<double>;
 /// takes no longer than the options allow; one that is found sooner is taken. Where that cannot be, the
 /// trajectory is refused: it does not begin, and `error` says how long a hold takes. Plan with `hold_factor`
 /// then, or allow for longer holds. Refused as well is one that does not begin and end at rest, as a part of
-/// a `SmoothStream`, and a machine that `validate` refuses. Behind a map no brakes are planned.
+/// a `SmoothStream`, and a machine that `validate` refuses.
 ///
 /// It does what an `Executor` at the levels `good` and `best` does, but that the program is there as a whole:
 /// a block that is pushed is an error, `reverse` goes back to the start, and `restart` begins at a line

@@ -134,7 +134,7 @@ TEST_CASE("clock: the third derivative of an arc changes by no more than its bou
     REQUIRE(arc != nullptr);
     const long double pi = std::acos(-1.0L), h = rise / (2 * pi), w = 1 / std::sqrt(r * r + h * h);
     const double middle = arc->length() / 2;
-    const double bound = detail::third_change(*arc, arc->bounds(middle - half, middle + half), half);
+    const double bound = detail::path_near(*arc, middle, half).third_change[0];
     const long double u = static_cast<long double>(middle) * w, du = static_cast<long double>(half) * w;
     const long double scale = r * w * w * w;
     const auto change = [&](long double d) {

@@ -17,6 +17,7 @@
 #include "cncplan/trajectory_executor.hpp"
 #include "kinematics/tool_jog_run.hpp"
 #include "maps/maps.hpp"
+#include "plan/least_brake.hpp"
 #include "plan/mapped_motion.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -229,7 +230,46 @@ void live(SmoothLevel level, bool disturbed) {
   watch.check(blocks);
 }
 
-// The same of a plan that is there as a whole.
+// Holds at random instants at the planned speed come to rest within what is told; joints and tip keep their
+// limits.
+template <class Case>
+void holds(SmoothLevel level) {
+  using M = typename Case::Machine;
+  const M machine = Case::machine();
+  const auto program = read_text(Case::text(), machine, Case::options(level));
+  REQUIRE_FALSE(program.failed());
+  const auto blocks = program.blocks();
+  using Runner = Executor<M, 64>;
+  const auto runner = std::make_unique<Runner>(
+      machine, typename Runner::LevelOptions{.tolerance = tolerance, .level = level, .hold_factor = 1.5});
+  constexpr double period = 1e-3;
+  Watch<Case> watch(period);
+  test::Random random;
+  INFO("CNCPLAN_SEED=" << test::seed() << ", level " << static_cast<int>(level));
+  std::size_t fed = 0;
+  int rests = 0, asked = -1, until_hold = random.integer(1, 600);
+  double longest = 0;
+  for (int tick = 0; !runner->finished(); ++tick) {
+    REQUIRE(tick < 200000);
+    while (fed < blocks.size() && runner->push(blocks[fed]))
+      if (++fed == blocks.size()) runner->end_of_program();
+    if (asked < 0 && --until_hold == 0) runner->feed_hold(), asked = tick;
+    watch.add(runner->tick(period).position);
+    if (asked < 0 || runner->state() != ExecutorState::held) continue;
+    longest = std::max(longest, (tick - asked) * period);
+    runner->resume();
+    asked = -1, ++rests, until_hold = random.integer(400, 1000);  // it is at the planned speed again
+  }
+  REQUIRE(runner->worst_hold());
+  CAPTURE(rests, longest, *runner->worst_hold());
+  CHECK(rests > 8);
+  CHECK(longest <= *runner->worst_hold() + 2 * period);
+  // No joint takes twice as long to brake as the tip.
+  CHECK(*runner->worst_hold() <= 1.5 * 2 * least_time(50, 0, 1000, 20000));
+  watch.check(blocks);
+}
+
+// Requests to a plan that is there as a whole.
 template <class Case>
 void given() {
   const auto machine = Case::machine();
@@ -238,10 +278,8 @@ void given() {
   const auto trajectory = plan_program(program, machine, Case::options(SmoothLevel::good));
   REQUIRE(trajectory);
   TrajectoryExecutor executor(*trajectory, machine);
-  CHECK_FALSE(executor.worst_hold());
-  const TrajectoryExecutor bounded(*trajectory, machine, {.hold_factor = 2});
-  REQUIRE(bounded.error());
-  CHECK(bounded.error()->error().code == ErrorCode::not_supported);
+  REQUIRE_FALSE(executor.error());
+  REQUIRE(executor.worst_hold());
   constexpr double period = 1e-3;
   Watch<Case> watch(period);
   int rests = 0;
@@ -308,6 +346,11 @@ TEST_CASE("under a map: an executor at the level good does not rest between bloc
 TEST_CASE("under a map: an executor at the level good under random requests", "[mapped-live]") {
   live<Polar>(SmoothLevel::good, true);
   live<FiveAxes>(SmoothLevel::good, true);
+}
+
+TEST_CASE("under a map: a hold always comes", "[mapped-live]") {
+  holds<Polar>(SmoothLevel::good);
+  holds<FiveAxes>(SmoothLevel::good);
 }
 
 TEST_CASE("under a map: a plan that is there as a whole is run and held", "[mapped-live]") {

@@ -1,7 +1,7 @@
 // Random programs within a tolerance on every ready-made machine behind a map: joints and tool by differences
-// of sampled joints, the tool's distance from the program by brute force, and the time against stops at every
-// corner. Prints the worst of each with the seed of its program; `--show SEED` prints that program. Exit 1 if
-// a bound is broken.
+// of sampled joints, the tool's distance from the program by brute force, the time against stops at every
+// corner, and holds of what is planned for them: when they come, joints and tool. Prints the worst of each
+// with the seed of its program; `--show SEED` prints that program. Exit 1 if a bound is broken.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -16,6 +16,7 @@
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
 #include "cncplan/plan_program.hpp"
+#include "cncplan/trajectory_executor.hpp"
 #include "maps/maps.hpp"
 #include "plan/mapped_motion.hpp"
 #include "soak/worst.hpp"
@@ -27,6 +28,7 @@ using namespace cncplan;
 
 struct Errors {
   double velocity = -1, acceleration = -1, jerk = -1, deviation = -1, over_stops = -1, exact = -1;
+  double held_velocity = -1, held_acceleration = -1, held_jerk = -1, hold = -1, late = -1, refused = -1;
 };
 
 // A program on a machine: lines from a start to points near by, of which some may be far.
@@ -84,8 +86,46 @@ void draw_limits(test::Random& random, M& machine) {
                     .jerk = random.log_uniform(2e3, 2e5)};
 }
 
+// The same planned for holds, and held now and then at its planned speed.
 template <class M, class Tip>
-bool examine(Case drawn, const M& machine, const Tip& tip, Errors& errors) {
+bool examine_holds(const Program<M>& program, PlanOptions options, const M& machine, const Tip& tip,
+                   test::Random& random, Errors& errors) {
+  options.hold_factor = random.uniform(1.2, 2.5);
+  const auto planned = plan_program(program, machine, options);
+  if (!planned) return std::printf("%s\n", to_text(planned.error()).c_str()), false;
+  // What is planned with a factor is run with it.
+  const TrajectoryExecutor strict(*planned, machine,
+                                  {.longest_hold = 1000, .hold_factor = options.hold_factor * (1 + 1e-6)});
+  errors.refused = strict.error() ? 1 : 0;
+  TrajectoryExecutor executor(*planned, machine, {.longest_hold = 1000});
+  executor.program_stop(false);
+  constexpr double period = 5e-4;
+  test::UsedUnderMap<M, Tip> used(machine, tip, period);
+  double asked = -1;
+  int resumes = 0;
+  const auto next = [&] { return executor.time() + random.uniform(0, 0.4 * planned->duration()); };
+  for (double until = next(); !executor.finished() && executor.time() < 20 * planned->duration() + 100;) {
+    const bool steady = executor.clock().velocity == 1 && executor.clock().acceleration == 0;
+    if (asked < 0 && steady && executor.time() >= until && resumes < 5) {
+      executor.feed_hold();
+      asked = executor.time();
+    }
+    used.add(executor.tick(period).position, executor.time());
+    if (asked < 0 || !executor.rests()) continue;
+    errors.hold = std::max(errors.hold, executor.time() - asked);
+    errors.late = std::max(errors.late, executor.time() - asked - *executor.worst_hold() - period);
+    asked = -1, ++resumes, until = next();
+    executor.resume();
+  }
+  if (!executor.finished()) return std::printf("it does not come to its end\n"), false;
+  errors.held_velocity = used.most().velocity - 1;
+  errors.held_acceleration = used.most().acceleration - 1;
+  errors.held_jerk = used.most().jerk - 1;
+  return true;
+}
+
+template <class M, class Tip>
+bool examine(Case drawn, const M& machine, const Tip& tip, test::Random& random, Errors& errors) {
   auto program = read_text(drawn.text, machine, drawn.options);
   if (program.failed() && drawn.options.orientation == Orientation::great_circle) {  // none leads there
     drawn.options.orientation = Orientation::joints;
@@ -108,7 +148,7 @@ bool examine(Case drawn, const M& machine, const Tip& tip, Errors& errors) {
   errors.deviation = test::farthest(curve, path) / drawn.options.tolerance - 1;
   errors.over_stops = planned->duration() / stops->duration() - 1;
   errors.exact = planned->fallbacks().empty() ? 0 : 1;
-  return true;
+  return examine_holds(program, drawn.options, machine, tip, random, errors);
 }
 
 // Where programs of a ready-made machine go.
@@ -171,7 +211,7 @@ bool examine(std::uint64_t seed, SmoothLevel level, bool show, Errors& errors) {
               const auto p = map.point(joints);
               return Vector3(p[0], p[1], p[2]);
             },
-            errors);
+            random, errors);
       },
       *chosen);
 }
@@ -196,6 +236,8 @@ int main(int argc, char** argv) {
     if (!examine(shown, level, true, e)) return 1;
     std::printf("; limits %.2g %.2g %.2g, deviation %.2g, over stops %.4f, %s\n", e.velocity, e.acceleration,
                 e.jerk, e.deviation, e.over_stops, e.exact > 0 ? "in parts exact" : "smooth");
+    std::printf("; holds: limits %.2g %.2g %.2g, longest %.4f s, late %.4f s%s\n", e.held_velocity,
+                e.held_acceleration, e.held_jerk, e.hold, e.late, e.refused > 0 ? ", refused" : "");
     return 0;
   }
   using Worst = test::Worst<Errors, std::uint64_t>;
@@ -203,8 +245,13 @@ int main(int argc, char** argv) {
                          {"acceleration over its limit", &Errors::acceleration, 1e-5},
                          {"jerk over its limit", &Errors::jerk, 1e-4},
                          {"deviation over the tolerance", &Errors::deviation, 1e-5},
-                         {"time over stops at all corners", &Errors::over_stops, 1e-6}};
-  int exact = 0;
+                         {"time over stops at all corners", &Errors::over_stops, 1e-6},
+                         {"held: velocity over its limit", &Errors::held_velocity, 1e-6},
+                         {"held: acceleration over its limit", &Errors::held_acceleration, 1e-5},
+                         {"held: jerk over its limit", &Errors::held_jerk, 1e-4},
+                         {"s of a hold", &Errors::hold, 10},
+                         {"s of a hold behind its bound", &Errors::late, 1e-3}};
+  int exact = 0, refused = 0;
   double gained = 0;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) {
     Errors errors;
@@ -214,12 +261,15 @@ int main(int argc, char** argv) {
     }
     for (Worst& worst : all) worst.take(errors, seed + i);
     exact += errors.exact > 0 ? 1 : 0;
+    refused += errors.refused > 0 ? 1 : 0;
     gained -= errors.over_stops;
   }
-  std::printf("seeds %llu to %llu: %d with exact parts, %.1f %% of the time of stops saved\n",
-              static_cast<unsigned long long>(seed),
-              static_cast<unsigned long long>(seed) + static_cast<unsigned long long>(count) - 1, exact,
-              100 * gained / count);
+  std::printf(
+      "seeds %llu to %llu: %d with exact parts, %d beyond the factor of holds, %.1f %% of the time of stops "
+      "saved\n",
+      static_cast<unsigned long long>(seed),
+      static_cast<unsigned long long>(seed) + static_cast<unsigned long long>(count) - 1, exact, refused,
+      100 * gained / count);
   const auto literal = [](std::uint64_t which) { return "--show " + std::to_string(which); };
   return test::report(std::span<const Worst>(all), literal) ? 0 : 1;
 }

@@ -52,6 +52,21 @@ template <std::floating_point S>
 
 }  // namespace detail
 
+/// Bounds of the axes' derivatives up to a way to both sides of a point, between which they are enclosed:
+/// the third one as it is, the lower ones from their values at the point.
+template <class Enclosure, class Vector, std::floating_point S>
+[[nodiscard]] auto bounds_about(const Enclosure& enclosed, const PathPoint<Vector>& point, S way) {
+  constexpr int n = Vector::RowsAtCompileTime;
+  BasicPathBounds<S, n> result;
+  for (int axis = 0; axis < n; ++axis) {
+    const auto& jet = enclosed[static_cast<std::size_t>(axis)];
+    result.third[axis] = jet.third.largest();
+    result.second[axis] = detail::grown(point.second[axis], way, result.third[axis], jet.second.largest());
+    result.first[axis] = detail::grown(point.first[axis], way, result.second[axis], jet.first.largest());
+  }
+  return result;
+}
+
 /// Bounds of the axes' derivatives between two lengths; those of the tool are left zero. In each of a few
 /// parts the third derivative is enclosed, and the lower ones are bounded from their values in the middle:
 /// the excess falls with the square of a part's width.
@@ -66,15 +81,7 @@ template <int parts = 4, EnclosedPath P>
     return result;
   }
   detail::for_each_part(path, from, to, parts, [&](const auto& enclosed, const auto& middle, S half) {
-    for (int axis = 0; axis < n; ++axis) {
-      const auto& jet = enclosed[static_cast<std::size_t>(axis)];
-      const S third = jet.third.largest();
-      const S second = detail::grown(middle.second[axis], half, third, jet.second.largest());
-      const S first = detail::grown(middle.first[axis], half, second, jet.first.largest());
-      result.third[axis] = std::max(result.third[axis], third);
-      result.second[axis] = std::max(result.second[axis], second);
-      result.first[axis] = std::max(result.first[axis], first);
-    }
+    result = result.joined(bounds_about(enclosed, middle, half));
   });
   return result;
 }

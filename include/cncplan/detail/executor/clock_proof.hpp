@@ -13,43 +13,12 @@
 #include "cncplan/core/in_space.hpp"
 #include "cncplan/core/interval.hpp"
 #include "cncplan/detail/executor/clock_ramp.hpp"
+#include "cncplan/detail/executor/path_near.hpp"
 #include "cncplan/detail/speed/limits_along.hpp"
-#include "cncplan/path/cubic.hpp"
-#include "cncplan/path/mapped.hpp"
 #include "cncplan/path/segment.hpp"
 #include "cncplan/tool.hpp"
 
 namespace cncplan::detail {
-
-/// The largest change of q''' from the middle of an interval of lengths to its ends, in any axis: none on
-/// lines and cubics; on a circle or helix of curvature k and torsion t the fourth derivative is k (k^2 +
-/// t^2), and the square of the third k^2 (k^2 + t^2); else no more than twice what q''' is.
-template <Path P, std::floating_point S, int N>
-[[nodiscard]] S third_change(const P& path, const BasicPathBounds<S, N>& bounds, S half) {
-  if constexpr (std::same_as<P, path::BasicLine<S, N>> || std::same_as<P, path::BasicCubic<S, N>>)
-    return S(0);
-  if constexpr (std::same_as<P, path::ArcOf<S, N>>) {
-    const auto circular = [&] {
-      if constexpr (requires { path.arc(); })
-        return path.arc().is_circular();
-      else
-        return path.is_circular();
-    };
-    const auto& tool = bounds.tool;
-    if (circular() && tool.second_across > S(0))
-      return half * (tool.third_along * tool.third_along + tool.third_across * tool.third_across) /
-             tool.second_across;
-  }
-  return S(2) * bounds.third.norm();
-}
-
-/// Whether q''' of the tool does not change along a path under a map: on lines and cubics of the program.
-template <class P>
-inline constexpr bool third_of_tool_is_constant = false;
-template <path::Map M, std::floating_point S, int N>
-inline constexpr bool third_of_tool_is_constant<path::Mapped<M, path::BasicCubic<S, N>>> = true;
-template <path::Map M, std::floating_point S, int N>
-inline constexpr bool third_of_tool_is_constant<path::Mapped<M, path::BasicLine<S, N>>> = true;
 
 /// Whether a trajectory keeps the limits of a machine while the rate of its clock changes: those of
 /// acceleration and jerk, of the tool's vector and of each axis. Velocities are no higher than planned where
@@ -253,10 +222,10 @@ class ClockProof {
     const S velocity_off = half * acceleration, velocity = std::abs(now.velocity) + velocity_off;
     const S way = half * velocity;
 
-    const S length = path.length(), s = std::clamp(now.position, S(0), length);
-    const PathPoint<Vector> at = path.point_at(s);
-    const BasicPathBounds<S, n> bounds = path.bounds(std::max(s - way, S(0)), std::min(s + way, length));
-    const AxisMotion<Vector> axes = motion(at, now);
+    const S s = std::clamp(now.position, S(0), path.length());
+    const PathNear<P> near = path_near(path, s, way);
+    const auto& bounds = near.bounds;
+    const AxisMotion<Vector> axes = motion(near.at, now);
     const S product_off = velocity * acceleration_off + std::abs(now.acceleration) * velocity_off;
     const S square = now.velocity * now.velocity, cube = std::abs(now.velocity) * square;
     // From bounds of the derivatives by length, of the axes or of the tool's own point.
@@ -271,8 +240,8 @@ class ClockProof {
                       S(3) * way * std::abs(now.velocity * now.acceleration));
     };
     const Vector acceleration_off_axes = acceleration_spread(bounds.first, bounds.second, bounds.third);
-    const Vector jerk_off_axes = jerk_spread(bounds.first, bounds.second, bounds.third) +
-                                 Vector::Constant(third_change(path, bounds, way) * cube);
+    const Vector jerk_off_axes =
+        jerk_spread(bounds.first, bounds.second, bounds.third) + near.third_change * cube;
 
     bool proven = true;
     const auto fits = [&](S value, S spread, S limit) {
@@ -282,13 +251,10 @@ class ClockProof {
     if constexpr (MappedModel<M>) {
       // The tool is no vector of axes: the same by its own point.
       const auto tool = motion(tool_point(path, s, tool_), now);
-      const S first = bounds.tool.first,
-              second = std::hypot(bounds.tool.second_along, bounds.tool.second_across),
-              third = std::hypot(bounds.tool.third_along, bounds.tool.third_across);
-      const S third_off = third_of_tool_is_constant<P> ? S(0) : S(2) * third;
+      const auto [first, second, third, third_change] = tool_near(path, s, way);
       if (!fits(tool.acceleration.norm(), acceleration_spread(first, second, third),
                 limits_.tool.acceleration) ||
-          !fits(tool.jerk.norm(), jerk_spread(first, second, third) + third_off * cube, limits_.tool.jerk))
+          !fits(tool.jerk.norm(), jerk_spread(first, second, third) + third_change * cube, limits_.tool.jerk))
         return Answer::no;
     } else {
       const auto tool = [&](const Vector& v) { return in_space(v, tool_).norm(); };

@@ -103,8 +103,6 @@ class GivenPlan {
                      "longest hold", bound.longest);
     if (!(bound.times_least > S(1)))
       return refusal(ErrorCode::below_limit, "hold factor", bound.times_least, S(1));
-    if (MappedModel<M> && std::isfinite(bound.times_least))
-      return refusal(ErrorCode::not_supported, "hold factor", bound.times_least);
     if (trajectory_.phases().empty()) return {};
     const auto& first = trajectory_.phases().front().phase;
     const auto& last = trajectory_.phases().back().phase;
@@ -113,18 +111,16 @@ class GivenPlan {
     if (!last.ends_at_rest())
       return refusal(ErrorCode::above_limit, "speed at the end of the trajectory",
                      last.at(last.duration).velocity);
-    if constexpr (!MappedModel<M>) {  // there a proof takes too long
-      BrakePlanner<M, B> planner(machine, bound, memory);
-      planner.chain().push_back(trajectory_, part_.motion->rests, {});
-      planner.plan(S(0));
-      brakes_ = planner.brakes();
-      longest_hold_ = planner.longest();
-      if (longest_hold_ > bound.longest)
-        return refusal(ErrorCode::above_limit, "s of a hold", longest_hold_, bound.longest);
-      if (!planner.late().empty())
-        return refusal(ErrorCode::above_limit, "times the least of a hold", planner.times_least(),
-                       bound.times_least);
-    }
+    BrakePlanner<M, B> planner(machine, bound, memory);
+    planner.chain().push_back(trajectory_, part_.motion->rests, {});
+    planner.plan(S(0));
+    brakes_ = planner.brakes();
+    longest_hold_ = planner.longest();
+    if (longest_hold_ > bound.longest)
+      return refusal(ErrorCode::above_limit, "s of a hold", longest_hold_, bound.longest);
+    if (!planner.late().empty())
+      return refusal(ErrorCode::above_limit, "times the least of a hold", planner.times_least(),
+                     bound.times_least);
     return {};
   }
 
