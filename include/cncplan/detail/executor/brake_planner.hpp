@@ -80,20 +80,35 @@ class BrakePlanner {
       const S bound = most(least);
       const S wait =
           std::max(std::clamp(bound - next.duration, shortest_wait * bound, longest_wait * bound), tick);
-      const auto before = find_before(next, wait, from);
-      const S start = before ? before->time : from, hold = next.time - start + next.duration;
-      longest_ = std::max(longest_, hold);
-      const bool keeps = !(hold > bound * (S(1) + S(1e-6)));
-      const S times = keeps ? (hold - tick) / least : times_least_between(start, next, least);
-      times_least_ = std::max(times_least_, times);
-      if (!keeps && (hold > bound_.longest || times > bound_.times_least))
-        add_late({start, next.time + least / S(2)});
+      auto before = find_before(next, wait, from);
+      const auto start = [&] { return before ? before->time : from; };
+      Hold hold = hold_from(start(), next, least);
+      if (hold.late)
+        if (const auto nearer = find_at(next.time - wait / S(2))) {
+          before = nearer;
+          hold = hold_from(start(), next, least);
+        }
+      longest_ = std::max(longest_, hold.duration);
+      times_least_ = std::max(times_least_, hold.times_least);
+      if (hold.late) add_late({start(), next.time + least / S(2)});
       brakes_.push_back(next);
       if (!before) return;
       next = *before;
     }
   }
   [[nodiscard]] S least_at(S time) { return clock_.least_brake(time).duration(); }
+  // The longest that is asked for from a time on and waits for a brake.
+  struct Hold {
+    S duration{}, times_least{};
+    bool late{};
+  };
+  [[nodiscard]] Hold hold_from(S start, const Brake& brake, S least) {
+    Hold hold{brake.time - start + brake.duration};
+    const bool keeps = !(hold.duration > most(least) * (S(1) + S(1e-6)));
+    hold.times_least = keeps ? (hold.duration - tick) / least : times_least_between(start, brake, least);
+    hold.late = !keeps && (hold.duration > bound_.longest || hold.times_least > bound_.times_least);
+    return hold;
+  }
   // The most times of the least at the place where it is asked for, or where the brake begins, that a hold
   // takes which waits for a brake from a time on. As time goes on the hold gets shorter, and the least from
   // the planned speed no faster than that: the plan itself may be the brake.
@@ -115,15 +130,17 @@ class BrakePlanner {
   // The brake before another one: as far before it as the wait allows if there is one that keeps the bound;
   // else the next that is at rest sooner. Nothing where none is needed from a time on.
   [[nodiscard]] std::optional<Brake> find_before(const Brake& next, S wait, S from) {
+    if (!(next.time - wait > from)) return std::nullopt;
+    if (const auto brake = find_at(next.time - wait)) return brake;
+    return find_sooner(next, wait, from);
+  }
+  // One that begins at a time and keeps the bound, if that is waited for a little.
+  [[nodiscard]] std::optional<Brake> find_at(S time) {
     constexpr S hard = S(2);  // times the least: a softer one only where the bound leaves room for it
-    const S time = next.time - wait;
-    if (!(time > from)) return std::nullopt;
     const S least = least_at(time);
     const S longest = most(least) - kept_wait * (most(least) - least);
     if (const auto brake = clock_.find_brake(time, std::min(longest, hard * least))) return brake;
-    if (longest > hard * least)
-      if (const auto brake = clock_.find_brake(time, longest)) return brake;
-    return find_sooner(next, wait, from);
+    return longest > hard * least ? clock_.find_brake(time, longest) : std::nullopt;
   }
   // The next brake that is at rest sooner than one that is waited for.
   [[nodiscard]] std::optional<Brake> find_sooner(const Brake& next, S wait, S from) {
