@@ -292,12 +292,15 @@ TEST_CASE("polar: a path near the axis is slowed, inside the radius refused", "[
                              [](const auto& before, const auto& after) { return before.line == after.line; });
   check_within(worst, machine, 1e-4);
   // at 1.5 mm from the axis, 60 degrees a second are pi/2 mm/s
-  double nearest = 100, speed = 0;
-  for (const auto& point : trajectory->samples(1e-3))
+  double nearest = 100, speed = 0, off = 0;
+  for (const auto& point : trajectory->samples(1e-3)) {
+    off = std::max(off, std::abs(std::hypot(point.tool.x(), point.tool.y()) - point.position[0]));
     if (point.line == 1 && point.position[0] < nearest) {
       nearest = point.position[0];
       speed = point.along.velocity;
     }
+  }
+  CHECK(off < 1e-9);
   CHECK(nearest == Approx(1.5).epsilon(1e-5));
   CHECK(speed < pi / 2 * (1 + 1e-9));
   CHECK(speed > 0.3);

@@ -110,7 +110,8 @@ bool examine_holds(const Program<M>& program, PlanOptions options, const M& mach
       executor.feed_hold();
       asked = executor.time();
     }
-    used.add(executor.tick(period).position, executor.time());
+    const auto point = executor.tick(period);
+    used.add(point.position, executor.time());
     if (asked < 0 || !executor.rests()) continue;
     errors.hold = std::max(errors.hold, executor.time() - asked);
     errors.late = std::max(errors.late, executor.time() - asked - *executor.worst_hold() - period);

@@ -84,6 +84,8 @@ class Smoothed {
   }
   /// X Y Z of the tool, and their derivatives.
   [[nodiscard]] PathPoint<BasicVector3<Scalar>> tool_point_at(Scalar s) const {
+    if constexpr (requires { path_->tool_point_at(s); })
+      if (exact()) return path_->tool_point_at(s);
     const auto at = point_at(s);
     return {in_space(at.position), in_space(at.first), in_space(at.second), in_space(at.third)};
   }

@@ -83,8 +83,8 @@ class BrakePlanner {
       auto before = find_before(next, wait, from);
       const auto start = [&] { return before ? before->time : from; };
       Hold hold = hold_from(start(), next, least);
-      if (hold.late)
-        if (const auto nearer = find_at(next.time - wait / S(2))) {
+      if (const S time = next.time - wait / S(2); hold.late && time > start())
+        if (const auto nearer = find_at(time)) {
           before = nearer;
           hold = hold_from(start(), next, least);
         }
@@ -109,19 +109,21 @@ class BrakePlanner {
     hold.late = !keeps && (hold.duration > bound_.longest || hold.times_least > bound_.times_least);
     return hold;
   }
-  // The most times of the least at the place where it is asked for, or where the brake begins, that a hold
-  // takes which waits for a brake from a time on. As time goes on the hold gets shorter, and the least from
-  // the planned speed no faster than that: the plan itself may be the brake.
+  // How many times the least, at the place where it is asked for or where the brake begins, a hold takes at
+  // most that waits for a brake from a time on. The least is known at some places. From one to the next the
+  // hold gets shorter, and so does the least from the planned speed, but no faster where the limits along the
+  // path are the same: the plan itself may be the brake.
   [[nodiscard]] S times_least_between(S start, const Brake& brake, S least) {
     constexpr int parts = 8;
+    const S width = (brake.time - start) / S(parts);
     S most = S(0);
     auto here = clock_.least_brake(start);
     for (int i = 0; i < parts; ++i) {
-      const S time = start + (brake.time - start) * S(i) / S(parts);
-      const auto there = clock_.least_brake(start + (brake.time - start) * S(i + 1) / S(parts));
+      const S time = start + S(i) * width;
+      const auto there = clock_.least_brake(start + S(i + 1) * width);
       const S feed = std::min(here.from_feed, there.from_feed);
       const S lowest = std::max({std::min(here.now, there.now), feed, least});
-      const S later = std::max(here.now - lowest, S(0));
+      const S later = std::clamp(here.now - lowest, S(0), width);
       most = std::max(most, (brake.time - time - later + brake.duration - tick) / lowest);
       here = there;
     }
@@ -134,7 +136,7 @@ class BrakePlanner {
     if (const auto brake = find_at(next.time - wait)) return brake;
     return find_sooner(next, wait, from);
   }
-  // One that begins at a time and keeps the bound, if that is waited for a little.
+  // One that begins at a time, and keeps the bound with a short wait for it.
   [[nodiscard]] std::optional<Brake> find_at(S time) {
     constexpr S hard = S(2);  // times the least: a softer one only where the bound leaves room for it
     const S least = least_at(time);

@@ -15,7 +15,6 @@
 #include "cncplan/detail/executor/clock_ramp.hpp"
 #include "cncplan/detail/executor/path_near.hpp"
 #include "cncplan/detail/speed/limits_along.hpp"
-#include "cncplan/path/segment.hpp"
 #include "cncplan/tool.hpp"
 
 namespace cncplan::detail {

@@ -23,8 +23,9 @@ struct PathNear {
   using S = typename P::Scalar;
   using Vector = typename P::Vector;
 
-  PathPoint<Vector> at;                                  ///< at the place
-  BasicPathBounds<S, Vector::RowsAtCompileTime> bounds;  ///< of the axes
+  PathPoint<Vector> at;  ///< at the place
+  BasicPathBounds<S, Vector::RowsAtCompileTime>
+      bounds;           ///< of the axes; that of the tool too where nothing is enclosed
   Vector third_change;  ///< how far q''' of each axis goes from what it is at the place, at most
 };
 
@@ -56,8 +57,7 @@ template <Path P>
     near.bounds = bounds_about(enclosed, near.at, way);
     for (int i = 0; i < n; ++i) {
       const auto& third = enclosed[static_cast<std::size_t>(i)].third;
-      near.third_change[i] =
-          (third.high - third.low) / S(2) + std::abs(near.at.third[i] - (third.low + third.high) / S(2));
+      near.third_change[i] = std::max(third.high - near.at.third[i], near.at.third[i] - third.low);
     }
   } else {
     near.bounds = path.bounds(from, to);
@@ -80,7 +80,7 @@ decltype(auto) inside(const P& path, F&& f) {
     return f(path);
 }
 
-/// The same of the tool, under a map: bounds of its derivatives, and how far the third one goes.
+/// The same of the tool, under a map: of the programmed path, or straight in the joints of its bounds.
 template <std::floating_point S>
 struct BasicToolNear {
   S first{}, second{}, third{}, third_change{};
@@ -90,20 +90,20 @@ template <Path P>
                                                           typename P::Scalar way) {
   using S = typename P::Scalar;
   const S from = std::max(s - way, S(0)), to = std::min(s + way, path.length());
-  const auto near = [](const auto& tool) -> BasicToolNear<S> {
+  const auto of_bounds = [](const auto& tool) -> BasicToolNear<S> {
     const S third = std::hypot(tool.third_along, tool.third_across);
     return {tool.first, std::hypot(tool.second_along, tool.second_across), third, S(2) * third};
   };
   if constexpr (requires { path.map(), path.programmed(); }) {
     using Map = std::remove_cvref_t<decltype(path.map())>;
-    auto tool = near(path.programmed().bounds(from, to).tool);
+    auto tool = of_bounds(path.programmed().bounds(from, to).tool);
     tool.third_change = inside(path.programmed(), [&]<class Programmed>(const Programmed& programmed) {
       if constexpr (keeps_third<Programmed>) return S(0);
       return in_space(path_near(programmed, s, way).third_change, path::coordinates_in_space<Map>).norm();
     });
     return tool;
   } else {
-    return near(path.bounds(from, to).tool);
+    return of_bounds(path.bounds(from, to).tool);
   }
 }
 

@@ -40,7 +40,6 @@ class RunBrakes {
     if (follows) planner.chain().push_back(*before_, rests_before.emplace(rests_of(*before_, memory_)), {});
     const S start = follows ? before_->duration() : S(0), end = start + part.duration();
     const auto rests = rests_of(part, memory_);
-    inner_ = {follows ? next_to_an_end : S(-1), part.duration() + (way != nullptr ? -next_to_an_end : S(1))};
     planner.chain().push_back(part, rests, {});
     if (way != nullptr) planner.chain().push_back(*way, rests_of_way.emplace(rests_of(*way, memory_)), {});
     planner.plan(follows ? start + uncovered_ : S(0));
@@ -54,15 +53,18 @@ class RunBrakes {
       if (late.from < end && late.to > start)
         late_.push_back({std::max(late.from - start, S(0)), std::min(late.to - start, part.duration())});
     longest_ = planner.longest();
+    inner_from_ = follows ? longest_ : S(-1);
+    inner_to_ = part.duration() + (way != nullptr ? -longest_ : S(1));
     planned_until_ =
         brakes_.empty() ? -part.duration() : std::min(brakes_.back().time - part.duration(), S(0));
   }
   /// Where brakes come late: s of the part.
   [[nodiscard]] const std::pmr::vector<Late>& late() const { return late_; }
-  /// Whether there is such a place, also next to an end that is not at rest.
+  /// Whether brakes come late anywhere; where `next_to_ends` is false, farther than a hold from the ends of
+  /// the part that are not at rest.
   [[nodiscard]] bool comes_late(bool next_to_ends) const {
     return std::ranges::any_of(late_, [=, this](const Late& late) {
-      return next_to_ends || (late.from > inner_.from && late.to < inner_.to);
+      return next_to_ends || (late.to > inner_from_ && late.from < inner_to_);
     });
   }
   /// Of the part that was planned last: those that end in it, and those that end on the way behind it, in the
@@ -78,8 +80,6 @@ class RunBrakes {
   }
 
  private:
-  static constexpr S next_to_an_end = S(0.01);  // s
-
   const M& machine_;
   S factor_;
   std::pmr::memory_resource* memory_;
@@ -88,7 +88,7 @@ class RunBrakes {
   Brakes brakes_{memory_}, tail_{memory_};
   std::pmr::vector<Late> late_{memory_};
   S longest_{};
-  Late inner_;  // of the part, without what is next to an end that is not at rest
+  S inner_from_{}, inner_to_{};  // s of the part, without what is next to an end that is not at rest
 };
 
 }  // namespace cncplan::detail

@@ -125,7 +125,7 @@ class TrajectoryClock {
     S now{}, from_feed{};
     [[nodiscard]] S duration() const { return std::max(now, from_feed); }
   };
-  /// Where the clock shows a time between rests.
+  /// That where the clock shows a time between rests.
   [[nodiscard]] LeastBrake least_brake(S shown) {
     run_planned(shown);
     const AlongPath along = along_path(state());
