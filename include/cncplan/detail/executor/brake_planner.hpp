@@ -83,11 +83,12 @@ class BrakePlanner {
       auto before = find_before(next, wait, from);
       const auto start = [&] { return before ? before->time : from; };
       Hold hold = hold_from(start(), next, least);
-      if (const S time = next.time - wait / S(2); hold.late && time > start())
-        if (const auto nearer = find_at(time)) {
-          before = nearer;
-          hold = hold_from(start(), next, least);
-        }
+      for (const S share : {S(0.7), S(0.4), S(0.2)})
+        if (const S time = next.time - share * wait; hold.late && time > start())
+          if (const auto nearer = find_at(time)) {
+            before = nearer;
+            hold = hold_from(start(), next, least);
+          }
       longest_ = std::max(longest_, hold.duration);
       times_least_ = std::max(times_least_, hold.times_least);
       if (hold.late) add_late({start(), next.time + least / S(2)});
