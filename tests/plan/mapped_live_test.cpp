@@ -160,11 +160,25 @@ class Watch {
 };
 
 template <class Case>
+auto program_of(SmoothLevel level) {
+  auto program = read_text(Case::text(), Case::machine(), Case::options(level));
+  REQUIRE_FALSE(program.failed());
+  return program;
+}
+
+// An executor with the options by default.
+template <class Case>
+auto leveled(SmoothLevel level) {
+  using Runner = Executor<typename Case::Machine, 64>;
+  return std::make_unique<Runner>(Case::machine(),
+                                  typename Runner::LevelOptions{.tolerance = tolerance, .level = level});
+}
+
+template <class Case>
 void in_parts(SmoothLevel level, std::size_t held) {
   using M = typename Case::Machine;
   const M machine = Case::machine();
-  const auto program = read_text(Case::text(), machine, Case::options(level));
-  REQUIRE_FALSE(program.failed());
+  const auto program = program_of<Case>(level);
   const auto whole = plan_program(program, machine, Case::options(level));
   REQUIRE(whole);
   constexpr double period = 5e-4;
@@ -195,14 +209,9 @@ void in_parts(SmoothLevel level, std::size_t held) {
 
 template <class Case>
 void live(SmoothLevel level, bool disturbed) {
-  using M = typename Case::Machine;
-  const M machine = Case::machine();
-  const auto program = read_text(Case::text(), machine, Case::options(level));
-  REQUIRE_FALSE(program.failed());
+  const auto program = program_of<Case>(level);
   const auto blocks = program.blocks();
-  using Runner = Executor<M, 64>;
-  const auto runner = std::make_unique<Runner>(
-      machine, typename Runner::LevelOptions{.tolerance = tolerance, .level = level});
+  const auto runner = leveled<Case>(level);
   constexpr double period = 1e-3;
   Watch<Case> watch(period);
   test::Random random;
@@ -234,14 +243,9 @@ void live(SmoothLevel level, bool disturbed) {
 // limits.
 template <class Case>
 void holds(SmoothLevel level) {
-  using M = typename Case::Machine;
-  const M machine = Case::machine();
-  const auto program = read_text(Case::text(), machine, Case::options(level));
-  REQUIRE_FALSE(program.failed());
+  const auto program = program_of<Case>(level);
   const auto blocks = program.blocks();
-  using Runner = Executor<M, 64>;
-  const auto runner = std::make_unique<Runner>(
-      machine, typename Runner::LevelOptions{.tolerance = tolerance, .level = level, .hold_factor = 1.5});
+  const auto runner = leveled<Case>(level);
   constexpr double period = 1e-3;
   Watch<Case> watch(period);
   test::Random random;
@@ -273,8 +277,7 @@ void holds(SmoothLevel level) {
 template <class Case>
 void given() {
   const auto machine = Case::machine();
-  const auto program = read_text(Case::text(), machine, Case::options(SmoothLevel::good));
-  REQUIRE_FALSE(program.failed());
+  const auto program = program_of<Case>(SmoothLevel::good);
   const auto trajectory = plan_program(program, machine, Case::options(SmoothLevel::good));
   REQUIRE(trajectory);
   TrajectoryExecutor executor(*trajectory, machine);
@@ -321,13 +324,6 @@ struct FiveAxesJogs : FiveAxes {
     return result;
   }
 };
-
-template <class Case>
-auto leveled(SmoothLevel level) {
-  using Runner = Executor<typename Case::Machine, 64>;
-  return std::make_unique<Runner>(Case::machine(),
-                                  typename Runner::LevelOptions{.tolerance = tolerance, .level = level});
-}
 
 }  // namespace
 

@@ -80,36 +80,20 @@ class BrakePlanner {
       const S bound = most(least);
       const S wait =
           std::max(std::clamp(bound - next.duration, shortest_wait * bound, longest_wait * bound), tick);
-      auto before = find_before(next, wait, from);
-      const auto start = [&] { return before ? before->time : from; };
-      Hold hold = hold_from(start(), next, least);
-      for (const S share : {S(0.7), S(0.4), S(0.2)})
-        if (const S time = next.time - share * wait; hold.late && time > start())
-          if (const auto nearer = find_at(time)) {
-            before = nearer;
-            hold = hold_from(start(), next, least);
-          }
-      longest_ = std::max(longest_, hold.duration);
-      times_least_ = std::max(times_least_, hold.times_least);
-      if (hold.late) add_late({start(), next.time + least / S(2)});
+      const auto before = find_before(next, wait, from);
+      const S start = before ? before->time : from, hold = next.time - start + next.duration;
+      longest_ = std::max(longest_, hold);
+      const bool keeps = !(hold > bound * (S(1) + S(1e-6)));
+      const S times = keeps ? (hold - tick) / least : times_least_between(start, next, least);
+      times_least_ = std::max(times_least_, times);
+      if (!keeps && (hold > bound_.longest || times > bound_.times_least))
+        add_late({start, next.time + least / S(2)});
       brakes_.push_back(next);
       if (!before) return;
       next = *before;
     }
   }
   [[nodiscard]] S least_at(S time) { return clock_.least_brake(time).duration(); }
-  // The longest that is asked for from a time on and waits for a brake.
-  struct Hold {
-    S duration{}, times_least{};
-    bool late{};
-  };
-  [[nodiscard]] Hold hold_from(S start, const Brake& brake, S least) {
-    Hold hold{brake.time - start + brake.duration};
-    const bool keeps = !(hold.duration > most(least) * (S(1) + S(1e-6)));
-    hold.times_least = keeps ? (hold.duration - tick) / least : times_least_between(start, brake, least);
-    hold.late = !keeps && (hold.duration > bound_.longest || hold.times_least > bound_.times_least);
-    return hold;
-  }
   // How many times the least, at the place where it is asked for or where the brake begins, a hold takes at
   // most that waits for a brake from a time on. The least is known at some places. From one to the next the
   // hold gets shorter, and so does the least from the planned speed, but no faster where the limits along the
@@ -130,11 +114,14 @@ class BrakePlanner {
     }
     return most;
   }
-  // The brake before another one: as far before it as the wait allows if there is one that keeps the bound;
-  // else the next that is at rest sooner. Nothing where none is needed from a time on.
+  // The brake before another one: so far before it as can be, but no farther than the wait, if there is one
+  // that keeps the bound; else the next that is at rest sooner. Nothing where none is needed from a time on.
+  // Those at shares of the wait are seldom found, but brakes that are only at rest sooner take longer and
+  // longer: without the shares, or with finer steps to a sooner one, plans of whole programs break the bound.
   [[nodiscard]] std::optional<Brake> find_before(const Brake& next, S wait, S from) {
     if (!(next.time - wait > from)) return std::nullopt;
-    if (const auto brake = find_at(next.time - wait)) return brake;
+    for (const S share : {S(1), S(0.7), S(0.4), S(0.2)})
+      if (const auto brake = find_at(next.time - share * wait)) return brake;
     return find_sooner(next, wait, from);
   }
   // One that begins at a time, and keeps the bound with a short wait for it.
@@ -150,7 +137,7 @@ class BrakePlanner {
     S way = S(0.2) * wait;
     for (S time = next.time - way; time > from; time -= way) {
       if (const auto brake = clock_.find_brake(time, next.time - time + next.duration)) return brake;
-      way *= S(1.1);  // the work is bounded where there is none for long
+      way *= S(1.25);  // the work is bounded where there is none for long
     }
     return std::nullopt;
   }
