@@ -360,33 +360,20 @@ class BlockBuilder {
     result.path = *path;
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
     if (motion.synchronised)
-      if (const Scalar fastest = fastest_along(*programmed, *path); result.feed > fastest)
+      if (const Scalar fastest = fastest_along(*path); result.feed > fastest)
         return tl::unexpected(Error{ErrorCode::above_limit, "speed of a thread",
                                     static_cast<double>(result.feed), static_cast<double>(fastest)});
     return result;
   }
 
-  // The speed along a line that the tool's limits and those of the axes allow; `path`: of the axes.
-  [[nodiscard]] Scalar fastest_along(const Programmed& line, const typename Block::Path& path) const {
+  // The speed along a path of the axes that its planner takes, where it is straight for the tool.
+  [[nodiscard]] Scalar fastest_along(const typename Block::Path& path) const {
     Scalar fastest = machine_.limits.velocity;
     if (machine_.feed_limit > Scalar(0)) fastest = std::min(fastest, machine_.feed_limit);
-    const auto keep = [&](Scalar limit, Scalar way_of_axis) {
-      if (way_of_axis > Scalar(0)) fastest = std::min(fastest, limit / way_of_axis);
-    };
-    if constexpr (MappedModel<M>) {
-      const auto most = path.bounds(Scalar(0), path.length()).first;
-      for (std::size_t i = 0; i < machine_.axes.size(); ++i) {  // a joint may turn back
-        const Scalar up = machine_.axes[i].velocity, down = machine_.axes[i].velocity_down;
-        keep(down > Scalar(0) ? std::min(up, down) : up, most[static_cast<Eigen::Index>(i)]);
-      }
-    } else {
-      for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        const Scalar step = line.end()[k] - line.start()[k], down = machine_.axes[i].velocity_down;
-        keep(step < Scalar(0) && down > Scalar(0) ? down : machine_.axes[i].velocity,
-             std::abs(step) / line.length());
-      }
-    }
+    const auto most = path.bounds(Scalar(0), path.length()).first;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i)
+      if (const Scalar way = most[static_cast<Eigen::Index>(i)]; way > Scalar(0))
+        fastest = std::min(fastest, least_velocity(machine_.axes[i]) / way);
     return fastest;
   }
 

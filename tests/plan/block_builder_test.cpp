@@ -116,13 +116,21 @@ TEST_CASE("a thread that the axes cannot follow is refused") {
     const auto program = read_text(text, lathe);
     return program.failed() ? to_text(*program.first_error()) : std::string();
   };
-  // K 2 mm at S 2000: 66.7 mm/s.
+  // K 2 mm at S 2000: 66.7 mm/s. Plans along a path take the lower limit of both ways.
   CHECK(error("S2000 M3\nG0 Z20\nG33 Z30 K2\n") ==
-        "3:5: error: speed of a thread: 66.66666666666667 is above the limit 30");
+        "3:5: error: speed of a thread: 66.66666666666667 is above the limit 20");
   CHECK(error("S2000 M3\nG0 Z20\nG33 Z10 K2\n") ==
         "3:5: error: speed of a thread: 66.66666666666667 is above the limit 20");
-  CHECK(error("S890 M3\nG0 Z20\nG33 Z30 K2\n").empty());
-  CHECK(error("S590 M3\nG0 Z20\nG33 Z10 K2\n").empty());
+  CHECK(error("S890 M3\nG0 Z20\nG33 Z30 K2\n") ==
+        "3:5: error: speed of a thread: 29.666666666666668 is above the limit 20");
+  for (const char* text : {"S590 M3\nG0 Z20\nG33 Z30 K2\n", "S590 M3\nG0 Z20\nG33 Z10 K2\n"}) {
+    const auto planned = plan_text(text, lathe);  // it has the speed of the spindle
+    REQUIRE(planned);
+    double fastest = 0;
+    for (const auto& point : planned->samples(0.001))
+      if (point.line == 3) fastest = std::max(fastest, point.along.velocity);
+    CHECK(fastest == Approx(590.0 / 30));
+  }
   CHECK(error("S2000 M3\nG0 Z20\nG33 X10 K2\n").empty());
   CHECK(error("S4000 M3\nG0 Z20\nG33 X10 K2\n") ==
         "3:5: error: speed of a thread: 133.33333333333334 is above the limit 100");
