@@ -146,9 +146,13 @@ template <class M>
     result.junctions_limited = count_limited(cells, machine, program);
     phases = phases_of(options, cells);
   }
-  result.motion = std::make_unique<PlannedOn<M, Block>>(
-      file, Trajectory(machine, std::move(driven), std::move(phases), std::move(smoothing)),
-      options.interpolator == Interpolator::taylor);
+  auto beside_ends = cncplan::detail::rests_for_travel(std::span<const Block>(driven), smoothing,
+                                                       driven.get_allocator().resource());
+  Trajectory trajectory(machine, std::move(driven), std::move(phases), std::move(smoothing));
+  trajectory.set_fallbacks(std::move(beside_ends));
+  result.other_levels = other_levels(trajectory);
+  result.motion = std::make_unique<PlannedOn<M, Block>>(file, std::move(trajectory),
+                                                        options.interpolator == Interpolator::taylor);
   return result;
 }
 

@@ -238,3 +238,19 @@ TEST_CASE("a program without motion has its one sample") {
       CHECK(test::Table(folder / "b.csv").rows() == 0);
     }
 }
+
+TEST_CASE("at the level fast a corner rests where it could leave the travel, and the summary tells it") {
+  const test::Folder folder;
+  folder.write("m.toml", "[[axis]]\nletter = \"X\"\n[[axis]]\nletter = \"Y\"\ntravel = [0.0, 300.0]\n");
+  const std::string program = "F1800 G1 X10 Y0\nX11 Y0.005\nX12 Y0\nX20\nY10\n";
+  for (const std::string events : {"", " --events e.csv"}) {
+    folder.write("e.csv", "t,event,value\n0.2,hold,\n0.5,resume,\n");
+    const auto run = folder.run_text(program, "--smooth fast --machine m.toml --json" + events);
+    INFO(events << run.err);
+    REQUIRE(run.exit == 0);
+    const auto fallbacks = run.json()["fallbacks"];
+    REQUIRE(fallbacks.size() == 1);
+    CHECK(fallbacks[0]["lines"] == std::vector<int>{2, 3});
+    CHECK(fallbacks[0]["level"] == "exact");
+  }
+}

@@ -51,11 +51,11 @@ template <MachineModel M>
   return room;
 }
 
-/// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over, at
-/// least `more`; so are axes that stay in a room that is `known`.
+/// Nothing, or the first axis that leaves its travel, and to where. What rounding adds is passed over; so are
+/// axes that stay in a room that is `known`.
 template <MachineModel M, Path P>
 [[nodiscard]] Expected<void> within_travel(
-    const P& path, const M& machine, typename M::Scalar more = 0,
+    const P& path, const M& machine,
     const std::optional<BasicBox<typename M::Scalar, M::axis_count>>& known = std::nullopt) {
   using S = typename M::Scalar;
   const auto box = path.box();
@@ -65,7 +65,7 @@ template <MachineModel M, Path P>
     if (box.low[i] >= axis.low && box.high[i] <= axis.high && reach <= std::numeric_limits<S>::max())
       continue;
     if (known && box.low[i] >= known->low[i] && box.high[i] <= known->high[i]) continue;
-    const S rounding = std::max(more, S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1)));
+    const S rounding = S(64) * std::numeric_limits<S>::epsilon() * std::max(reach, S(1));
     const auto refuse = [&](ErrorCode code, S value, S bound) {
       return tl::unexpected(axis_error(axis, code, value, bound));
     };
@@ -143,7 +143,7 @@ template <MachineModel M, BlockModel B>
   using S = typename M::Scalar;
   const S length = block.path.length();
   auto ok = valid_numbers(length, block.pause);
-  if (ok) ok = within_travel(block.path, machine, S(0), known);
+  if (ok) ok = within_travel(block.path, machine, known);
   if (!ok || !(length > S(0))) return ok;
   ok = valid_feed(requested_speed(block, machine, length_of(block.path, machine)));
   return ok ? limited(block, machine) : ok;

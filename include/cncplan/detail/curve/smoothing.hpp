@@ -105,6 +105,7 @@ template <MachineModel M, BlockModel B>
         result.blocks[i] = own;
         own.start += blocks[i].path.length();
         own.junction_mode = JunctionMode::smooth;
+        own.rests_for_travel = false;
         leave_out_far(std::span<const Correction>(result.corrections), own.start, result.blocks[i]);
       }
     }

@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 
 #include "cncplan/block.hpp"
+#include "cncplan/core/box.hpp"
 #include "cncplan/core/detail/long_length.hpp"
 #include "cncplan/core/detail/ring_places.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
+#include "cncplan/core/interval.hpp"
+#include "cncplan/detail/block_checks.hpp"
 #include "cncplan/detail/curve/correction.hpp"
 #include "cncplan/detail/curve/junction_mode.hpp"
 #include "cncplan/detail/curve/kernel_sizes.hpp"
@@ -27,7 +31,25 @@ struct BasicBlockSmoothing {
   std::size_t count{};    ///< of them
   LongLength<S> start{};  ///< mm from the start of the program
   JunctionMode junction_mode = JunctionMode::exact;
+  bool rests_for_travel{};  ///< at its start, where a correction could leave the travel of an axis
 };
+
+/// Where the axes are between two lengths of a block, or of the merged line that begins with it.
+template <BlockModel B, std::floating_point S>
+[[nodiscard]] auto positions_between(const B& block, S from, S to) {
+  constexpr int n = B::Path::Vector::RowsAtCompileTime;
+  std::array<BasicInterval<S>, static_cast<std::size_t>(n)> positions;
+  if (block.straight_on) {
+    const auto start = block.path.point_at(S(0));
+    for (int i = 0; i < n; ++i)
+      positions[static_cast<std::size_t>(i)] = BasicInterval<S>::hull(
+          start.position[i] + from * start.first[i], start.position[i] + to * start.first[i]);
+    return positions;
+  }
+  const auto enclosed = block.path.enclosure(from, to);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = enclosed[i].value;
+  return positions;
+}
 
 /// The corrections of a program, for blocks of which only the last ones are kept. Kernels reach over no more
 /// than `neighbours` blocks on each side, so a block's path is known once `4 neighbours + 2` blocks that move
@@ -49,6 +71,7 @@ class SmoothingAhead {
   using OfBlock = BasicBlockSmoothing<Scalar>;
   /// A block that moves, and the junction at its start.
   struct Mover {
+    const B* block{};
     std::int64_t number{};
     OfBlock own;
     Scalar tolerance{}, left{};
@@ -69,6 +92,8 @@ class SmoothingAhead {
   SmoothingAhead(const Rules& rules, const M& machine, const Memory& memory)
       : rules_(rules),
         axes_(axis_tolerances(machine, rules)),
+        has_ends_(has_ends(machine)),
+        travel_(travel(machine)),
         memory_(memory),
         places_(memory.movers.size()) {}
 
@@ -128,10 +153,16 @@ class SmoothingAhead {
   void for_each_sizing(std::int64_t at, Visit&& visit);
   void find_widest(std::int64_t at);
   void correct(std::int64_t at);
+  template <class Visit>
+  void for_each_reached(const Correction& correction, std::int64_t behind, Visit&& visit) const;
   void reach_blocks(const Correction& correction, std::size_t slot, std::int64_t behind);
+  [[nodiscard]] bool may_leave_travel(const Correction& correction, Scalar tolerance,
+                                      std::int64_t behind) const;
 
   Rules rules_;
   BasicAxisTolerances<Scalar, M::axis_count> axes_;
+  bool has_ends_;
+  BasicBox<Scalar, M::axis_count> travel_;
   Memory memory_;
   RingPlaces places_;           // of movers
   const B* last_ = nullptr;     // that moves
@@ -211,7 +242,8 @@ template <MachineModel M, BlockModel B>
 void SmoothingAhead<M, B>::add(const B& block, JunctionMode junction_mode, const M& machine, Scalar line) {
   if (end_ > begin_ && last_->straight_on) line = std::max(line, mover(end_ - 1).beside.length);
   Mover& own = mover(end_);
-  own = {pushed_,
+  own = {&block,
+         pushed_,
          {0, 0, place_, junction_mode},
          tolerance_of(block, rules_),
          Scalar(1) - block.merged,
@@ -309,11 +341,18 @@ void SmoothingAhead<M, B>::find_widest(std::int64_t at) {
 template <MachineModel M, BlockModel B>
 void SmoothingAhead<M, B>::correct(std::int64_t at) {
   Mover& own = mover(at);
-  for (std::size_t k = own.sizing; k < own.sizing + own.sizing_count; ++k) {
-    const Sizing& sizing = memory_.sizings[k];
-    if (faster_at_rest(sizing, mover(at - 1).beside, own.beside)) own.own.junction_mode = JunctionMode::stop;
+  const auto sizings = std::span<const Sizing>(memory_.sizings).subspan(own.sizing, own.sizing_count);
+  const auto correction_of = [](const Sizing& sizing) {
+    return Correction{sizing.at, sizing.size, sizing.jump, sizing.step};
+  };
+  own.own.rests_for_travel = std::any_of(sizings.begin(), sizings.end(), [&](const Sizing& sizing) {
+    return may_leave_travel(correction_of(sizing), sizing.tolerance, at);
+  });
+  for (const Sizing& sizing : sizings) {
+    if (own.own.rests_for_travel || faster_at_rest(sizing, mover(at - 1).beside, own.beside))
+      own.own.junction_mode = JunctionMode::stop;
     if (own.own.junction_mode == JunctionMode::stop) continue;  // jumps do no harm at rest
-    const Correction correction{sizing.at, sizing.size, sizing.jump, sizing.step};
+    const Correction correction = correction_of(sizing);
     // Twice, so that any of them that follow each other stand side by side.
     const std::size_t room = memory_.corrections.size() / 2, slot = corrected_;
     corrected_ = slot + 1 < room ? slot + 1 : 0;
@@ -322,24 +361,62 @@ void SmoothingAhead<M, B>::correct(std::int64_t at) {
   }
 }
 
+// Calls visit(block) for those on which a correction acts; `behind`: the one behind its junction.
 template <MachineModel M, BlockModel B>
-void SmoothingAhead<M, B>::reach_blocks(const Correction& correction, std::size_t slot, std::int64_t behind) {
+template <class Visit>
+void SmoothingAhead<M, B>::for_each_reached(const Correction& correction, std::int64_t behind,
+                                            Visit&& visit) const {
   const LongLength<Scalar> from = correction.at - correction.support(),
                            to = correction.at + correction.support();
-  const auto use = [&](std::int64_t i) {
-    OfBlock& block = mover(i).own;
-    if (block.count == 0) block.first = slot;
-    const std::size_t room = memory_.corrections.size() / 2;
-    block.count = (slot < block.first ? slot + room : slot) + 1 - block.first;
-  };
   for (std::int64_t i = behind - 1; i >= begin_; --i) {
-    use(i);
+    visit(i);
     if (!(mover(i).own.start > from)) break;
   }
   for (std::int64_t i = behind; i < end_; ++i) {
     if (i > behind && !(mover(i).own.start < to)) break;
-    use(i);
+    visit(i);
   }
+}
+
+template <MachineModel M, BlockModel B>
+void SmoothingAhead<M, B>::reach_blocks(const Correction& correction, std::size_t slot, std::int64_t behind) {
+  for_each_reached(correction, behind, [&](std::int64_t i) {
+    OfBlock& block = mover(i).own;
+    if (block.count == 0) block.first = slot;
+    const std::size_t room = memory_.corrections.size() / 2;
+    block.count = (slot < block.first ? slot + room : slot) + 1 - block.first;
+  });
+}
+
+// Whether a correction pushes an axis towards an end of its travel where the path is no farther from that
+// than corrections may take it: a direction's pushes one way, a curvature's both ways.
+template <MachineModel M, BlockModel B>
+bool SmoothingAhead<M, B>::may_leave_travel(const Correction& correction, Scalar tolerance,
+                                            std::int64_t behind) const {
+  if (!has_ends_) return false;
+  constexpr Scalar rounding =
+      std::max(Scalar(1e-11), Scalar(4) * std::numeric_limits<Scalar>::epsilon());  // mm or rad
+  const bool curvature = correction.jump == Jump::curvature;
+  const Scalar deviates =
+      correction.size * (curvature ? correction.size : Scalar(1)) * largest<Scalar>(correction.jump);
+  bool leaves = false;
+  for_each_reached(correction, behind, [&](std::int64_t i) {
+    if (leaves) return;
+    const LongLength<Scalar>& start = mover(i).own.start;
+    const Scalar length = (i + 1 < end_ ? mover(i + 1).own.start : place_) - start;
+    const Scalar from = std::max(correction.at - correction.support() - start, Scalar(0));
+    const Scalar to = std::min(correction.at + correction.support() - start, length);
+    const auto positions = positions_between(*mover(i).block, from, to);
+    for (int axis = 0; axis < M::axis_count; ++axis) {
+      const Scalar step = correction.step[axis], per_angle = axes_.per_angle[axis];
+      if (!(std::abs(step) * deviates > rounding)) continue;
+      const Scalar most = per_angle > Scalar(0) ? Scalar(1) / per_angle : tolerance;
+      const auto& [low, high] = positions[static_cast<std::size_t>(axis)];
+      leaves = leaves || ((curvature || step < Scalar(0)) && low - most < travel_.low[axis]) ||
+               ((curvature || step > Scalar(0)) && high + most > travel_.high[axis]);
+    }
+  });
+  return leaves;
 }
 
 }  // namespace cncplan::detail

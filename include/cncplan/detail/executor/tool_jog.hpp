@@ -197,7 +197,7 @@ class ToolJog<M> {
     if (!path) return tl::unexpected(path.error());
     if (auto ok = joined(std::optional<Vector>(place), path->position_at(S(0)), machine); !ok)
       return tl::unexpected(ok.error());
-    if (auto ok = within_travel(*path, machine, S(0), travel_and(place, machine)); !ok)
+    if (auto ok = within_travel(*path, machine, travel_and(place, machine)); !ok)
       return tl::unexpected(ok.error());
     const S length = path->length();
     BasicAxis<S> axis{.velocity = S(1), .acceleration = S(1), .jerk = S(1), .low = S(0), .high = length};

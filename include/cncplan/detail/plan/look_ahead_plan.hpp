@@ -13,6 +13,7 @@
 
 #include "cncplan/core/progress.hpp"
 #include "cncplan/detail/curve/merge_lines.hpp"
+#include "cncplan/detail/plan/add_fallback.hpp"
 #include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/detail/speed/motion_table.hpp"
 #include "cncplan/detail/speed/span_planner.hpp"
@@ -63,22 +64,21 @@ template <MachineModel M, BlockModel B, profile::RampLaw<typename M::Scalar> Law
   return Trajectory<M, B>(machine, std::move(blocks), std::move(phases), std::move(smoothing));
 }
 
-/// Makes blocks exact whose smoothed path leaves the travel of an axis although their own does not; which.
-template <MachineModel M, BlockModel B>
-[[nodiscard]] std::pmr::vector<Fallback> make_exact_at_ends(
-    std::span<B> blocks, const M& machine, const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing,
-    std::pmr::memory_resource* memory) {
-  using S = typename M::Scalar;
-  std::pmr::vector<Fallback> made(memory);
-  const auto tool = tool_axes(machine);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto driven = smoothing.path(blocks[i].path, i, tool);
-    if (driven.exact() || within_travel(driven, machine, S(1e-9)) || !within_travel(blocks[i].path, machine))
-      continue;
-    blocks[i].exact_path = true;
-    made.push_back({i, i, SmoothLevel::exact, FallbackReason::travel});
+/// The blocks on both sides of rests for the sake of the travel, which are driven as programmed there.
+template <BlockModel B, std::floating_point S, int N>
+[[nodiscard]] std::pmr::vector<Fallback> rests_for_travel(std::span<const B> blocks,
+                                                          const BasicSmoothing<S, N>& smoothing,
+                                                          std::pmr::memory_resource* memory) {
+  std::pmr::vector<Fallback> beside(memory);
+  std::size_t last = 0;  // that moves
+  for (std::size_t i = 0; i < smoothing.blocks.size(); ++i) {
+    if (!(blocks[i].path.length() > S(0))) continue;
+    if (smoothing.blocks[i].rests_for_travel)
+      for (const std::size_t block : {last, i})
+        add_fallback(beside, block, SmoothLevel::exact, FallbackReason::travel);
+    last = i;
   }
-  return made;
+  return beside;
 }
 
 /// Whether the options ask for curves of their own in place of corrections: at the levels `good` and `best`,
@@ -130,16 +130,9 @@ template <MachineModel M, BlockModel B>
   } else if constexpr (!MappedModel<M> && !without_smoothing<M, B>()) {
     const auto within = smoothing_rules<S>(options);
     merge_lines(std::span(blocks), machine, within);
-    for (bool again = true; again;) {
-      smoothing = detail::smoothing(given, machine, within, memory, progress.part(0.0, smoothed));
-      cells = cut();
-      if (cells) break;
-      const auto exact = make_exact_at_ends(std::span(blocks), machine, smoothing, memory);
-      fallbacks.insert(fallbacks.end(), exact.begin(), exact.end());
-      again = !exact.empty();
-    }
-    std::sort(fallbacks.begin(), fallbacks.end(),
-              [](const Fallback& a, const Fallback& b) { return a.first < b.first; });
+    smoothing = detail::smoothing(given, machine, within, memory, progress.part(0.0, smoothed));
+    cells = cut();
+    fallbacks = rests_for_travel(given, smoothing, memory);
   }
   if (!cells) return tl::unexpected(error_in(given, cells.error()));
   auto planned = trajectory(std::move(blocks), machine, *cells, profile::SevenPhase{}, std::move(smoothing));

@@ -256,9 +256,7 @@ class CellMaker {
     if (auto ok = joined(end_, ends.start.position, machine_); !ok) return ok;
     if (!travel_.contains(path.box()))
       if (auto ok = within_travel(path, machine_); !ok) return ok;
-    if constexpr (EnclosedPath<typename B::Path>)
-      if (!driven.exact() && has_ends(machine_))
-        if (auto ok = within_travel(driven, machine_, Scalar(1e-9)); !ok) return ok;  // sums of its box
+    // What is driven in its place stays in the travel, too: see `SmoothingAhead`.
     end_ = length > Scalar(0) ? ends.end.position : ends.start.position;
     paused_ = std::exchange(pause_, Scalar(0));
     if (length > Scalar(0)) {
