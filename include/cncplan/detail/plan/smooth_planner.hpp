@@ -380,9 +380,9 @@ class SmoothPlanner {
   // Plans brakes, and a run slower where they come late, as long as that works; what is behind it.
   template <class BehindIt>
   std::optional<Behind> make_holdable(Run& run, RunPlan& planned, const Given& given, BehindIt&& behind_it) {
-    constexpr int most_rounds = 16;
-    constexpr int rounds_at_ends = 6;  // more hardly help next to an end with a speed
-    constexpr S share = S(0.95);       // of the limits of acceleration, from round to round
+    const int most_rounds = std::isinf(ahead_) ? 32 : 16;  // who drives what is planned ahead waits for it
+    constexpr int rounds_at_ends = 6;                      // more hardly help next to an end with a speed
+    constexpr S share = S(0.95);  // of the limits of acceleration, from round to round
     auto next = behind_it(planned);
     for (int round = 0;; ++round) {
       const Part part = part_of(planned, given);
