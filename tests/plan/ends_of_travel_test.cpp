@@ -83,7 +83,9 @@ TEST_CASE("at the level fast corners beside an end of travel rest where smoothin
 TEST_CASE("at the level fast corners into the room beside an end of travel are smoothed", "[levels]") {
   Machine<3> machine = at_wall();
   machine.axes[0].low = machine.axes[2].low = machine.axes[2].high = 0;
-  const std::string text = "F1800\nG1 X20 Y0\nY10\nX0\nY0.02\nX1\n";
+  // The arc ends 0.3 mm from the wall, and turns on towards it.
+  const std::string text =
+      "F1800\nG1 X20 Y0\nY10\nX0\nY0.02\nX1\nG0 X22.9289 Y3.2289\nG3 X30 Y0.3 R10\nG1 X32 Y0.1\n";
   Machine<3> free = machine;
   for (auto& axis : free.axes) axis.low = -1, axis.high = 100;
   const auto planned = plan_text(text, machine, {.level = SmoothLevel::fast});

@@ -46,8 +46,16 @@ template <BlockModel B, std::floating_point S>
           start.position[i] + from * start.first[i], start.position[i] + to * start.first[i]);
     return positions;
   }
+  // Near where an axis turns, what its derivative allows from the middle on is closer than its enclosure.
   const auto enclosed = block.path.enclosure(from, to);
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = enclosed[i].value;
+  const S half = (to - from) / S(2);
+  const auto middle = block.path.position_at(from + half);
+  for (int i = 0; i < n; ++i) {
+    const auto& jet = enclosed[static_cast<std::size_t>(i)];
+    const S far = half > S(0) ? half * jet.first.largest() : S(0);
+    positions[static_cast<std::size_t>(i)] = {std::max(jet.value.low, middle[i] - far),
+                                              std::min(jet.value.high, middle[i] + far)};
+  }
   return positions;
 }
 
@@ -368,11 +376,12 @@ void SmoothingAhead<M, B>::for_each_reached(const Correction& correction, std::i
                                             Visit&& visit) const {
   const LongLength<Scalar> from = correction.at - correction.support(),
                            to = correction.at + correction.support();
-  for (std::int64_t i = behind - 1; i >= begin_; --i) {
+  // No farther than the room of its size, whatever rounding does: those before may have been let go.
+  for (std::int64_t i = behind - 1; i >= std::max(begin_, behind - reach()); --i) {
     visit(i);
     if (!(mover(i).own.start > from)) break;
   }
-  for (std::int64_t i = behind; i < end_; ++i) {
+  for (std::int64_t i = behind; i < std::min(end_, behind + reach()); ++i) {
     if (i > behind && !(mover(i).own.start < to)) break;
     visit(i);
   }

@@ -1,7 +1,6 @@
 // Plans blocks by look-ahead, at the levels `exact` and `fast` of smoothing (set-up).
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <iterator>
@@ -74,7 +73,7 @@ template <BlockModel B, std::floating_point S, int N>
   for (std::size_t i = 0; i < smoothing.blocks.size(); ++i) {
     if (!(blocks[i].path.length() > S(0))) continue;
     if (smoothing.blocks[i].rests_for_travel)
-      for (const std::size_t block : {last, i})
+      for (std::size_t block = last; block <= i; ++block)
         add_fallback(beside, block, SmoothLevel::exact, FallbackReason::travel);
     last = i;
   }
