@@ -366,7 +366,7 @@ class BlockBuilder {
     return result;
   }
 
-  // The speed along a path of the axes that its planner takes, where it is straight for the tool.
+  // The highest speed that a plan gives to a path along which the tool goes straight.
   [[nodiscard]] Scalar fastest_along(const typename Block::Path& path) const {
     Scalar fastest = machine_.limits.velocity;
     if (machine_.feed_limit > Scalar(0)) fastest = std::min(fastest, machine_.feed_limit);

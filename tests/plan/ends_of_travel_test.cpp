@@ -1,8 +1,7 @@
 // The level fast beside ends of travel: what smoothing could take beyond them is left out, in plans and live.
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <memory>
-#include <span>
 #include <string>
 
 #include "cncplan/executor.hpp"
@@ -14,14 +13,15 @@ using namespace cncplan;
 
 namespace {
 
-Machine<3> at_wall() {
+// The wall is Y0; the room is on one side of it: 1 or -1.
+Machine<3> at_wall(int side) {
   Machine<3> machine{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-  machine.axes[1].low = 0;
+  (side > 0 ? machine.axes[1].low : machine.axes[1].high) = 0;
   return machine;
 }
 
 // Lines of one jump of direction next to another, and arcs, all of them from the wall inwards.
-std::string along_wall(test::Random& random) {
+std::string along_wall(test::Random& random, int side) {
   std::string text = "F1800\n";
   double x = 0, y = 0;
   for (int i = 0; i < 40; ++i) {
@@ -29,23 +29,24 @@ std::string along_wall(test::Random& random) {
     x += step;
     const bool arc = random.integer(0, 3) == 0;
     if (!arc) y = random.coin() ? 0 : random.log_uniform(1e-4, 1);
-    text += arc ? "G2 R" + std::to_string(step) : "G1";
-    text += " X" + std::to_string(x) + " Y" + std::to_string(y) + "\n";
+    text += arc ? (side > 0 ? "G2 R" : "G3 R") + std::to_string(step) : "G1";
+    text += " X" + std::to_string(x) + " Y" + std::to_string(side * y) + "\n";
   }
   return text;
 }
 
 struct Live {
-  double lowest = 0, seconds = 0;
+  double lowest = std::numeric_limits<double>::infinity();  // mm into the room
+  double seconds = 0;
 };
 
-Live run(const Machine<3>& machine, const Program<Machine<3>>& program) {
+Live run(const Machine<3>& machine, const Program<Machine<3>>& program, int side) {
   const auto executor = std::make_unique<Executor<Machine<3>, 128>>(machine);
   for (const auto& block : program.blocks()) REQUIRE(executor->push(block));
   executor->end_of_program();
   Live live;
   for (; !executor->finished() && live.seconds < 100; live.seconds += 1e-3)
-    live.lowest = std::min(live.lowest, executor->tick(1e-3).position[1]);
+    live.lowest = std::min(live.lowest, side * executor->tick(1e-3).position[1]);
   CAPTURE(executor->error() ? to_text(*executor->error()) : std::string());
   CHECK_FALSE(executor->error());
   CHECK(executor->finished());
@@ -55,33 +56,34 @@ Live run(const Machine<3>& machine, const Program<Machine<3>>& program) {
 }  // namespace
 
 TEST_CASE("at the level fast corners beside an end of travel rest where smoothing has no room", "[levels]") {
-  const Machine<3> machine = at_wall();
   test::Random random;
   std::size_t rests = 0;
   for (int i = 0; i < 60; ++i) {
-    const std::string text = along_wall(random);
+    const int side = i % 2 == 0 ? 1 : -1;
+    const Machine<3> machine = at_wall(side);
+    const std::string text = along_wall(random, side);
     const auto program = read_text(text, machine);
     REQUIRE_FALSE(program.failed());
     const auto planned = plan_program(program, machine, {.level = SmoothLevel::fast});
     INFO((planned ? "" : to_text(planned.error())) << "\n" << text);
     REQUIRE(planned);
     double lowest = 0;
-    for (const auto& point : planned->samples(1e-3)) lowest = std::min(lowest, point.position[1]);
+    for (const auto& point : planned->samples(1e-3)) lowest = std::min(lowest, side * point.position[1]);
     CHECK(lowest > -1e-9);
     for (const Fallback& fallback : planned->fallbacks()) {
       CHECK(fallback.level == SmoothLevel::exact);
       CHECK(fallback.reason == FallbackReason::travel);
       ++rests;
     }
-    const Live live = run(machine, program);
+    const Live live = run(machine, program, side);
     CHECK(live.lowest > -1e-9);
-    CHECK(live.seconds == Approx(planned->duration()).epsilon(0.01));
+    CHECK(live.seconds == Approx(planned->duration()).epsilon(0.05));  // live it sees less ahead
   }
   CHECK(rests > 60);
 }
 
 TEST_CASE("at the level fast corners into the room beside an end of travel are smoothed", "[levels]") {
-  Machine<3> machine = at_wall();
+  Machine<3> machine = at_wall(1);
   machine.axes[0].low = machine.axes[2].low = machine.axes[2].high = 0;
   // The arc ends 0.3 mm from the wall, and turns on towards it.
   const std::string text =

@@ -64,6 +64,9 @@ template <BlockModel B, std::floating_point S>
 /// have followed, or none will without a rest. Bounded work in each call: the sums over `4 neighbours`
 /// kernels, and the limits of one block.
 ///
+/// Where the programmed paths stay in the travel of the axes, so do those that are driven: a junction at
+/// which that is not certain is passed at rest, on the programmed path.
+///
 /// One thread pushes. What it has told as known stays as it is while the block is kept.
 template <MachineModel M, BlockModel B>
 class SmoothingAhead {
@@ -376,7 +379,7 @@ void SmoothingAhead<M, B>::for_each_reached(const Correction& correction, std::i
                                             Visit&& visit) const {
   const LongLength<Scalar> from = correction.at - correction.support(),
                            to = correction.at + correction.support();
-  // No farther than the room of its size, whatever rounding does: those before may have been let go.
+  // Rounding must not take it farther than its neighbours: the blocks before them may have been let go.
   for (std::int64_t i = behind - 1; i >= std::max(begin_, behind - reach()); --i) {
     visit(i);
     if (!(mover(i).own.start > from)) break;

@@ -380,9 +380,10 @@ class SmoothPlanner {
   // Plans brakes, and a run slower where they come late, as long as that works; what is behind it.
   template <class BehindIt>
   std::optional<Behind> make_holdable(Run& run, RunPlan& planned, const Given& given, BehindIt&& behind_it) {
-    const int most_rounds = std::isinf(ahead_) ? 32 : 16;  // who drives what is planned ahead waits for it
-    constexpr int rounds_at_ends = 6;                      // more hardly help next to an end with a speed
-    constexpr S share = S(0.95);  // of the limits of acceleration, from round to round
+    // While a machine is driven, it may wait for a plan; the plan of a whole program has more time.
+    const int most_rounds = std::isinf(ahead_) ? 32 : 16;
+    constexpr int rounds_at_ends = 6;  // more hardly help next to an end with a speed
+    constexpr S share = S(0.95);       // of the limits of acceleration, from round to round
     auto next = behind_it(planned);
     for (int round = 0;; ++round) {
       const Part part = part_of(planned, given);
