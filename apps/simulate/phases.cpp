@@ -5,13 +5,12 @@
 #include <iterator>
 #include <utility>
 
-#include "ask.hpp"
-#include "cncplan/detail/executor/simulate_motion.hpp"
 #include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "cncplan/published/constant_speed.hpp"
+#include "simulate_motion.hpp"
 #include "support/failure.hpp"
 
 namespace simulate {
@@ -59,13 +58,7 @@ std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
 std::pmr::vector<cncplan::BasicPiecePhase<double>> simulated(
     const Options& options, const cncplan::detail::BasicCells<double>& cells,
     const std::vector<cncplan::detail::MotionBlock>& blocks, const std::vector<Event>& events) {
-  std::vector<cncplan::detail::TimedRequest> requests;
-  for (const Event& event : events)
-    requests.push_back(
-        {event.time, [&event](cncplan::detail::MotionExecutor& executor) { ask(executor, event); }});
-  auto phases = cncplan::detail::simulate_motion(
-      std::span<const cncplan::detail::MotionBlock>(blocks), std::span<const std::size_t>(cells.blocks),
-      std::span<const cncplan::detail::TimedRequest>(requests), options.period, most_periods);
+  auto phases = simulate_motion(blocks, cells.blocks, events, options.period);
   if (!phases) refuse_periods(options.period);
   return *phases;
 }

@@ -12,7 +12,6 @@
 
 #include "cncplan/compiled.hpp"
 #include "cncplan/detail/curve/merge_lines.hpp"
-#include "cncplan/detail/executor/simulate_motion.hpp"
 #include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/gcode/work_coordinates.hpp"
 #include "cncplan/plan_blocks.hpp"
@@ -24,6 +23,7 @@
 #include "plan.hpp"
 #include "planned_on.hpp"
 #include "progress.hpp"
+#include "simulate_motion.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
 
@@ -138,8 +138,7 @@ template <class M>
       if (block.rapid) return rapid_speed(machine);
       return std::isfinite(block.feed) ? block.feed : feed_speed(machine);
     };
-    const auto blocks =
-        cncplan::detail::motion_blocks(std::span<const Block>(program.blocks), cells, feed_of);
+    const auto blocks = motion_blocks(std::span<const Block>(program.blocks), cells, feed_of);
     phases = simulated(options, cells, blocks, events);
   } else {
     const auto cells = cells_of(options, machine, program, std::span<const Block>(driven), smoothing);

@@ -2,8 +2,8 @@
 #   - A part (core/, gcode/, path/, ...) includes the standard library, Eigen, tl::expected, core/, itself and its own instances
 #     (compiled/FOLDER.hpp). What joins the parts includes all: the headers at the top, detail/, published/, tire_mold/, compiled/.
 #   - detail/curve/ and detail/speed/ know of what joins the parts only the machine, its blocks, its tool and the levels of smoothing.
-#   - The umbrella, cncplan.hpp, lags behind nothing: it includes every header there is, but definitions (NAME-inl.hpp),
-#     which NAME.hpp includes where the library is not compiled.
+#   - The umbrella, cncplan.hpp, lags behind nothing: it includes every public header, but definitions (NAME-inl.hpp), which
+#     NAME.hpp includes where the library is not compiled. What is in a detail/ folder is included by some other header.
 #   - A header has #pragma once, and a first line that says what it holds. If that line says "(set-up)", the header is for
 #     code that runs before the machine moves, and may use the heap; all others may not even include what needs it.
 #   - No file is longer than 600 lines.
@@ -69,6 +69,7 @@ foreach(header IN LISTS headers)
       if(header STREQUAL "cncplan/cncplan.hpp")
         list(APPEND umbrella ${target})
       endif()
+      list(APPEND included ${target})
     elseif(NOT target MATCHES "^([a-z_]+|Eigen/[A-Z][A-Za-z]+|tl/expected\\.hpp)$")
       complain("includes <${target}>: only the standard library, Eigen and tl::expected are allowed")
     elseif(target IN_LIST needs_heap AND NOT first_line MATCHES "\\(set-up\\)")
@@ -78,10 +79,17 @@ foreach(header IN LISTS headers)
 endforeach()
 
 set(missing ${headers})
-list(REMOVE_ITEM missing cncplan/cncplan.hpp ${umbrella})
 list(FILTER missing EXCLUDE REGEX "-inl\\.hpp$|^cncplan_tools/")
+set(unused ${missing})
+list(FILTER missing EXCLUDE REGEX "/detail/")
+list(REMOVE_ITEM missing cncplan/cncplan.hpp ${umbrella})
 foreach(header IN LISTS missing)
   complain("is not included by cncplan.hpp: tools/umbrella writes it anew")
+endforeach()
+list(FILTER unused INCLUDE REGEX "/detail/")
+list(REMOVE_ITEM unused ${included})
+foreach(header IN LISTS unused)
+  complain("is included by no header: it is no part of the library")
 endforeach()
 
 if(found OR NOT headers)

@@ -1,6 +1,6 @@
 // Whole runs of a motion executor without requests against the plan of the whole, within a tolerance, where
 // cells are short.
-#include "cncplan/detail/executor/simulate_motion.hpp"
+#include "../../../apps/simulate/simulate_motion.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -42,11 +42,10 @@ std::pair<double, double> durations(const std::string& text, double tolerance) {
   const detail::JunctionRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
   auto cells = detail::make_cells(all, mill, rules, smoothing);
   REQUIRE(cells);
-  const auto of_blocks = detail::motion_blocks(all, *cells, [](const Block& block) {
+  const auto of_blocks = simulate::motion_blocks(all, *cells, [](const Block& block) {
     return block.rapid ? rapid_speed(mill) : std::isfinite(block.feed) ? block.feed : feed_speed(mill);
   });
-  const auto played =
-      detail::simulate_motion(std::span<const detail::MotionBlock>(of_blocks), cells->blocks, {}, 1e-3);
+  const auto played = simulate::simulate_motion(of_blocks, cells->blocks, {}, 1e-3);
   REQUIRE(played);
   const auto& last = played->back().phase;
   return {planned->duration(), last.time + last.duration};

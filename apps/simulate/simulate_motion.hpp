@@ -1,40 +1,36 @@
-// A whole run of a motion executor, with requests on the way, as the phases of a trajectory (set-up).
+// A whole run of a motion executor, with events on the way, as the phases of a trajectory.
 #pragma once
 
 #include <concepts>
 #include <cstddef>
-#include <functional>
 #include <memory_resource>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "cncplan/core/compiled.hpp"
 #include "cncplan/core/error.hpp"
-#include "cncplan/detail/executor/motion_executor.hpp"
+#include "cncplan/detail/executor/block_ring.hpp"
 #include "cncplan/detail/speed/cells.hpp"
 #include "cncplan/detail/speed/motion_table.hpp"
+#include "events.hpp"
 
-namespace cncplan::detail {
+namespace simulate {
 
-/// What is asked of a motion executor, and when.
-struct TimedRequest {
-  double time{};  ///< s from the start
-  std::function<void(MotionExecutor&)> ask;
-};
+using cncplan::detail::MotionBlock;
 
 /// Runs the cells of blocks with a tick each `period` (s, > 0) and looks as far ahead as a controller would;
-/// requests, in order of time, come at their exact times. It ends where the program does, where it is
+/// events, in order of time, come at their exact times. It ends where the program does, where it is
 /// stopped, or where it rests and nothing is to come. `blocks` are those of the cells. Error: above_limit for
-/// what takes more than `most_ticks`.
-[[nodiscard]] Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_motion(
-    std::span<const MotionBlock> cells, std::span<const std::size_t> blocks,
-    std::span<const TimedRequest> requests, double period, double most_ticks = 1e10);
+/// what takes more than `most_periods`.
+[[nodiscard]] cncplan::Expected<std::pmr::vector<cncplan::BasicPiecePhase<double>>> simulate_motion(
+    std::span<const MotionBlock> cells, std::span<const std::size_t> blocks, std::span<const Event> events,
+    double period);
 
 /// Cells as a motion executor takes them, of the blocks that they were cut from; `feed_of` gives a block's
 /// own feed (mm/s). A rest before anything moves becomes a cell of its own.
-template <BlockModel B, std::invocable<const B&> Feed>
-[[nodiscard]] std::vector<MotionBlock> motion_blocks(std::span<const B> blocks, BasicCells<double>& cells,
+template <cncplan::BlockModel B, std::invocable<const B&> Feed>
+[[nodiscard]] std::vector<MotionBlock> motion_blocks(std::span<const B> blocks,
+                                                     cncplan::detail::BasicCells<double>& cells,
                                                      Feed&& feed_of) {
   if (!cells.pauses.empty() && cells.pauses.front().cells == 0) {
     double rest = 0.0;
@@ -57,8 +53,4 @@ template <BlockModel B, std::invocable<const B&> Feed>
   return cells_of_blocks;
 }
 
-}  // namespace cncplan::detail
-
-#ifndef CNCPLAN_COMPILED
-#include "cncplan/detail/executor/simulate_motion-inl.hpp"
-#endif
+}  // namespace simulate

@@ -1,5 +1,4 @@
-// Definitions of simulate_motion.hpp.
-#pragma once
+#include "simulate_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +6,18 @@
 #include <limits>
 #include <utility>
 
+#include "ask.hpp"
 #include "cncplan/core/phase.hpp"
-#include "cncplan/detail/executor/simulate_motion.hpp"
+#include "cncplan/detail/executor/motion_executor.hpp"
 
-namespace cncplan::detail {
+namespace simulate {
+
+using cncplan::BasicPiecePhase;
+using cncplan::Phase;
+using cncplan::detail::MotionExecutor;
+using cncplan::detail::MotionSetPoint;
+
+namespace {
 
 // Writes down what a motion executor does: phases, cut where cells begin.
 class SimulationRecord {
@@ -56,7 +63,7 @@ class SimulationRecord {
         break;
       }
       const double tau = open_.tau_at(length);
-      const State then = open_.at(tau);
+      const cncplan::State then = open_.at(tau);
       Phase first = open_;
       first.duration = tau;
       if (tau > 0.0) push(first);
@@ -79,36 +86,39 @@ class SimulationRecord {
   Phase open_{};
 };
 
-CNCPLAN_INLINE Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_motion(
-    std::span<const MotionBlock> cells, std::span<const std::size_t> blocks,
-    std::span<const TimedRequest> requests, double period, double most_ticks) {
+}  // namespace
+
+cncplan::Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_motion(
+    std::span<const MotionBlock> cells, std::span<const std::size_t> blocks, std::span<const Event> events,
+    double period) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr std::size_t most_ahead = 8192;  // within a tolerance cells are short
   const std::size_t window = std::clamp<std::size_t>(cells.size(), 1, most_ahead);
   std::vector<MotionBlock> memory(window + 1);
-  std::vector<SegmentLimits> ahead(window);
-  std::vector<ConstrainedJunction> junctions(window + 1), spare_junctions(window + 1);
+  std::vector<cncplan::detail::SegmentLimits> ahead(window);
+  std::vector<cncplan::detail::ConstrainedJunction> junctions(window + 1), spare_junctions(window + 1);
   MotionExecutor motion_executor({memory, ahead, junctions, spare_junctions});
   SimulationRecord record(cells, blocks);
   double time = 0.0;
   std::int64_t ticks = 1;  // the next one ends at so many periods
   std::size_t fed = 0;
-  auto request = requests.begin();
+  auto event = events.begin();
   for (;;) {
-    for (; request != requests.end() && request->time <= time; ++request) request->ask(motion_executor);
+    for (; event != events.end() && event->time <= time; ++event) ask(motion_executor, *event);
     while (fed < cells.size() && motion_executor.push(cells[fed])) ++fed;
     const MotionSetPoint now = motion_executor.tick(0.0);  // what is asked for takes effect
     const bool done = fed == cells.size() && motion_executor.finished();
     const double lasts = motion_executor.until_change();
-    if (done || motion_executor.stopped() || (std::isinf(lasts) && request == requests.end())) break;
-    const double next_request = request != requests.end() ? request->time : infinity;
-    if (std::min(time + lasts, next_request) > most_ticks * period)
-      return tl::unexpected(Error{ErrorCode::above_limit, "periods", time / period, most_ticks});
+    if (done || motion_executor.stopped() || (std::isinf(lasts) && event == events.end())) break;
+    const double next_event = event != events.end() ? event->time : infinity;
+    if (std::min(time + lasts, next_event) > most_periods * period)
+      return tl::unexpected(
+          cncplan::Error{cncplan::ErrorCode::above_limit, "periods", time / period, most_periods});
     if (std::isinf(lasts))
-      ticks = static_cast<std::int64_t>(next_request / period);  // at rest nothing is ticked
+      ticks = static_cast<std::int64_t>(next_event / period);  // at rest nothing is ticked
     while (!(static_cast<double>(ticks) * period > time)) ++ticks;
     const double next_tick = static_cast<double>(ticks) * period;
-    const double due = std::isinf(lasts) ? next_request : std::min(next_tick, next_request);
+    const double due = std::isinf(lasts) ? next_event : std::min(next_tick, next_event);
     const bool edge = lasts < due - time;
     const double step = edge ? lasts : due - time;
     record.add(now, time, step);
@@ -118,4 +128,4 @@ CNCPLAN_INLINE Expected<std::pmr::vector<BasicPiecePhase<double>>> simulate_moti
   return record.finish();
 }
 
-}  // namespace cncplan::detail
+}  // namespace simulate

@@ -1,2 +1,0 @@
-// Whole runs of a motion executor.
-#include "cncplan/detail/executor/simulate_motion-inl.hpp"
