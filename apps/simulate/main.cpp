@@ -87,19 +87,16 @@ int run(Options options) {
       return execute(options, file, machine);
     }
     case Kinematics::polar:
-      file.map = support::table_map(file);
-      break;
     case Kinematics::mapped:
       break;
   }
+  const support::Machine mapped = support::with_table_map(file);
+  file.map = mapped.map;
   return std::visit(
       [&]<class Map>(const Map& map) {
-        auto machine = with_axes(Mapped<Map>{.map = map}, file, options.limits);
-        if (const double least = least_radius(file); least > 0.0)
-          machine.axes[0].low = std::max(machine.axes[0].low, least);
-        return execute(options, file, machine);
+        return execute(options, file, with_axes(Mapped<Map>{.map = map}, mapped, options.limits));
       },
-      file.map.map);
+      mapped.map.map);
 }
 
 }  // namespace

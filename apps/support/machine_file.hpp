@@ -12,7 +12,7 @@ namespace support {
 using cncplan::tools::beyond_travel;
 using cncplan::tools::Kinematics;
 using cncplan::tools::MachineAxis;
-using cncplan::tools::table_map;
+using cncplan::tools::with_table_map;
 using Machine = cncplan::tools::MachineFile;
 
 /// Throws `Failure` for a file that cannot be read or has an unknown or wrong entry.

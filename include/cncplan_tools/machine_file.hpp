@@ -105,8 +105,10 @@ struct MachineFile {
   }
 };
 
-/// The map of a machine with a rotary table (`Kinematics::polar`), at X0 Y0 Z0.
-[[nodiscard]] MapEntry table_map(const MachineFile& machine);
+/// A machine whose programs name X, Y, Z over a rotary table (`polar`) as one behind a map (`mapped`), at X0
+/// Y0 Z0: its slide keeps `smallest_radius` from the table's axis, 1 mm where none is given. Others as they
+/// are.
+[[nodiscard]] MachineFile with_table_map(MachineFile machine);
 
 /// Reads a machine file. The error, of one that cannot be read or has an unknown or wrong entry, is a line as
 /// programs print it: "mill.toml:3:1: error: ...".

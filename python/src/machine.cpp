@@ -27,15 +27,13 @@ namespace {
 AnyMachine read_machine(const std::string& text, const std::string& name, const Limits& limits) {
   const auto parsed = tools::parse_machine(text, name);
   if (!parsed) refuse(parsed.error(), name);
-  const tools::MachineFile& file = *parsed;
-  const bool mapped = file.kinematics == tools::Kinematics::mapped;
-  if (file.kinematics != tools::Kinematics::cartesian && !mapped)
-    refuse(name +
-               ": error: machines that turn the work on a rotary table are not known to Python but by "
-               "kinematics",
+  const tools::MachineFile file = tools::with_table_map(*parsed);
+  if (file.kinematics == tools::Kinematics::tire_mold)
+    refuse(name + ": error: machines whose programs are rows of their four axes are not known to Python",
            name);
 #ifndef CNCPLAN_PYTHON_MAPS
-  if (mapped) refuse(name + ": error: this module is built without kinematics (CNCPLAN_PYTHON_MAPS)", name);
+  if (file.kinematics == tools::Kinematics::mapped)
+    refuse(name + ": error: this module is built without kinematics (CNCPLAN_PYTHON_MAPS)", name);
 #endif
   AnyMachine machine;
   machine.limits = limits;

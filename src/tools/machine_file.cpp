@@ -522,10 +522,15 @@ std::string beyond_travel(const MachineAxis& axis, double place, bool at_start) 
                      at_start ? "starts at" : "would move to", place / axis.unit(), axis.low, axis.high);
 }
 
-MapEntry table_map(const MachineFile& machine) {
+MachineFile with_table_map(MachineFile machine) {
+  if (machine.kinematics != Kinematics::polar) return machine;
   const kinematics::PolarMap map{.center = machine.table_center};
   const auto start = map.joints(std::array<double, 3>{});
-  return {"polar", kinematics::ThreeJoints(map), {start.begin(), start.end()}, Orientation::joints};
+  machine.kinematics = Kinematics::mapped;
+  machine.map = {"polar", kinematics::ThreeJoints(map), {start.begin(), start.end()}, Orientation::joints};
+  double& low = machine.axes[0].low;  // it is no rotary one
+  low = std::max(low, machine.smallest_radius.value_or(1.0));
+  return machine;
 }
 
 tl::expected<MachineFile, std::string> read_machine(const std::string& file) {

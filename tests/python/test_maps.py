@@ -82,5 +82,21 @@ def test_five_axes_equal_simulate(simulate, tmp_path, level):
     assert trajectory.sample(0.01).position.shape[1] == 5
 
 
+def test_a_rotary_table_equals_simulate(simulate, tmp_path):
+    """Two slides and a table by their machine file; a path nearer to the table's axis than the file says is refused."""
+    program = tmp_path / "square.ngc"
+    program.write_text("G21 G90 F1200\nG1 X20\nY30\nX-20\nY0\n")
+    machine_file = ROOT / "examples/machines/kk22.toml"
+    done = subprocess.run([simulate, program, "--machine", machine_file, "--json", "--quiet", "--tolerance", "0"], check=True,
+                          capture_output=True, text=True)
+    machine = Machine(machine_file, **LIMITS)
+    trajectory = cncplan.plan_file(program, machine, tolerance=0)
+    assert trajectory.duration == json.loads(done.stdout)["time_s"]
+    q = trajectory.at(trajectory.duration / 2)
+    assert (q.position[0] * math.cos(q.position[2]) - 150, q.position[0] * math.sin(q.position[2])) == pytest.approx(q.tool[:2])
+    problems = cncplan.read_program(text="G1 X-150 Y4 F600", machine=machine).problems
+    assert [(problem.code, problem.field, problem.bound) for problem in problems] == [("below_limit", "axis Y", 5)]
+
+
 def test_machine_files():
     assert Machine(ROOT / "examples/machines/table_table_ac.toml", **LIMITS).coordinates == "XYZAC"
