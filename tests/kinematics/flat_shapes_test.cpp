@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "cncplan/plan_program.hpp"
 #include "support/catch.hpp"
+#include "support/plan_exactly.hpp"
 
 using namespace cncplan;
 
@@ -37,7 +37,7 @@ struct Turned {
 TEST_CASE("a map of two coordinates follows arcs", "[maps]") {
   const MappedMachine<Turned> machine{.axes = {{{.letter = 'U'}, {.letter = 'V'}}},
                                       .limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000}};
-  const auto trajectory = plan_text("G2 X20 Y20 R20 F1200\n", machine, {.tolerance = 0});
+  const auto trajectory = test::plan_exactly("G2 X20 Y20 R20 F1200\n", machine);
   REQUIRE(trajectory);
   double worst = 0;
   for (const auto& point : trajectory->samples(0.001)) {
@@ -51,7 +51,7 @@ TEST_CASE("a map of two coordinates follows arcs", "[maps]") {
 TEST_CASE("a map of three coordinates to two joints plans what the joints can do", "[maps]") {
   const MappedMachine<Planar> machine{.axes = {{{.letter = 'U'}, {.letter = 'V'}}},
                                       .limits = {.velocity = 100, .acceleration = 1000, .jerk = 20000}};
-  const auto trajectory = plan_text("G1 X30 Y40 Z7 F3000\nG0 X0 Y80\n", machine, {.tolerance = 0});
+  const auto trajectory = test::plan_exactly("G1 X30 Y40 Z7 F3000\nG0 X0 Y80\n", machine);
   REQUIRE(trajectory);
   const auto end = trajectory->at(trajectory->duration());
   CHECK(end.position[0] == Approx(80));
