@@ -218,7 +218,7 @@ void check_mapped(const M& map, const P& path, double unit, const char* what) {
 TEST_CASE("paths through a machine's map keep the laws of paths", "[path]") {
   const Line<3> line({250, -180, 0}, {120, 200, 30});
   check_mapped(test::Scara{}, line, 60, "a line, scara");
-  check_mapped(test::Polar{}, line, 60, "a line, polar");
+  check_mapped(test::TurningTable{}, line, 60, "a line, polar");
   ArcGeometry<double> g{
       .start = {250, 0, 0}, .end = {150, 0, 10}, .center = {200, 0, 0}, .radial = {50, 0, 0}};
   g.start_radius = g.end_radius = 50;
@@ -226,7 +226,7 @@ TEST_CASE("paths through a machine's map keep the laws of paths", "[path]") {
   for (const Turn turn : {Turn::clockwise, Turn::counterclockwise}) {
     g.turn = turn;
     check_mapped(test::Scara{}, Arc(g), 30, "a helix, scara");
-    check_mapped(test::Polar{}, Segment<3>(Arc(g)), 30, "a helix, polar");
+    check_mapped(test::TurningTable{}, Segment<3>(Arc(g)), 30, "a helix, polar");
     auto spiral = g;
     spiral.end = {170, 0, 10};
     spiral.end_radius = 30;
@@ -263,7 +263,7 @@ TEST_CASE("rapids straight in joints keep the laws of paths", "[path]") {
   };
   check(test::Scara{}, {250, -180, 0}, {120, 200, 30}, "scara");
   check(test::Scara{}, {250, -180, 0}, {251, -180, 0}, "scara, a short way");
-  check(test::Polar{}, {250, -180, 0}, {120, 200, 30}, "polar");
+  check(test::TurningTable{}, {250, -180, 0}, {120, 200, 30}, "polar");
 }
 
 TEST_CASE("a rapid in joints that goes nowhere has no length", "[path]") {

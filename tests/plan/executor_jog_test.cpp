@@ -8,7 +8,7 @@
 #include "support/small_mill.hpp"
 
 using namespace cncplan;
-using test::Lines, test::load, test::period, test::run, test::Runner;
+using test::Lines, test::load, test::tick_time, test::run, test::SmallRunner;
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr Machine<3> mill = test::small_mill;
 }  // namespace
 
 TEST_CASE("hold, jog away, return, resume", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   load(executor, {"G1 X20 F1200", "Y20"});
   CHECK_FALSE(executor.jog({0, 0, 5}));
   run(executor, 0.5);
@@ -40,14 +40,14 @@ TEST_CASE("hold, jog away, return, resume", "[executor]") {
   }
   executor.resume();
   // continuous, and each axis in its limits all the way
-  auto before = executor.tick(period);
+  auto before = executor.tick(tick_time);
   while (!executor.finished()) {
-    point = executor.tick(period);
+    point = executor.tick(tick_time);
     for (int i = 0; i < 3; ++i) {
       const auto& axis = mill.axes[static_cast<std::size_t>(i)];
-      CHECK(std::abs(point.position[i] - before.position[i]) <= axis.velocity * period * (1 + 1e-9));
+      CHECK(std::abs(point.position[i] - before.position[i]) <= axis.velocity * tick_time * (1 + 1e-9));
       if (point.line != before.line) continue;
-      CHECK(std::abs(point.velocity[i] - before.velocity[i]) <= axis.acceleration * period * (1 + 1e-9));
+      CHECK(std::abs(point.velocity[i] - before.velocity[i]) <= axis.acceleration * tick_time * (1 + 1e-9));
     }
     before = point;
   }
@@ -64,14 +64,14 @@ TEST_CASE("axes go back to where the program was left though more words follow t
   lines.insert(lines.end(), static_cast<std::size_t>(words), "M8");
   lines.emplace_back("Y20");
   const auto blocks = test::blocks_of(lines, mill);
-  Runner executor(mill, {.tolerance = tolerance});
+  SmallRunner executor(mill, {.tolerance = tolerance});
   std::size_t pushed = 0;
   SetPoint<3> point;
   const auto run_up_to = [&](std::size_t last, double seconds) {
-    for (int tick = 0; tick < seconds / period; ++tick) {
+    for (int tick = 0; tick < seconds / tick_time; ++tick) {
       while (pushed < last && executor.push(blocks[pushed]))
         if (++pushed == blocks.size()) executor.end_of_program();
-      point = executor.tick(period);
+      point = executor.tick(tick_time);
     }
   };
   run_up_to(blocks.size() - 1, 2.0);
@@ -108,12 +108,12 @@ TEST_CASE("a program that ends with words is not over while the axes are away", 
   Lines lines{"G1 X20 F1200"};
   lines.insert(lines.end(), static_cast<std::size_t>(words), "M8");
   const auto blocks = test::blocks_of(lines, mill);
-  Runner executor(mill);
+  SmallRunner executor(mill);
   std::size_t pushed = 0;
   for (int tick = 0; tick < 3000; ++tick) {
     while (pushed < blocks.size() && executor.push(blocks[pushed]))
       if (++pushed == blocks.size()) executor.end_of_program();
-    executor.tick(period);
+    executor.tick(tick_time);
   }
   REQUIRE(executor.finished());
   REQUIRE(executor.jog({0, 0, 5}));
@@ -129,10 +129,10 @@ TEST_CASE("axes are jogged from the start of a program that has not begun", "[ex
   PlanOptions options;
   std::copy(start.begin(), start.end(), options.start.begin());
   const auto blocks = test::blocks_of({"G1 X60 F1200", "Y0"}, mill, options);
-  Runner executor(mill);
+  SmallRunner executor(mill);
   for (const auto& block : blocks) REQUIRE(executor.push(block));
   REQUIRE(executor.jog({0, 0, 5}));
-  CHECK((executor.tick(period).position - start).norm() < 0.01);
+  CHECK((executor.tick(tick_time).position - start).norm() < 0.01);
   executor.end_of_program();
   run(executor, 0.3);
   executor.resume();
@@ -144,7 +144,7 @@ TEST_CASE("blocks that wait for others go on soon behind a restart or a jog too"
   const bool restarts = GENERATE(false, true);
   CAPTURE(restarts);
   const auto blocks = test::blocks_of({"F1200", "G1 X5", "Y5"}, mill);
-  Runner executor(mill, {.tolerance = 0.05});
+  SmallRunner executor(mill, {.tolerance = 0.05});
   if (restarts) {
     REQUIRE(executor.restart(0, {0, 0, 0}));
   } else {
@@ -157,7 +157,7 @@ TEST_CASE("blocks that wait for others go on soon behind a restart or a jog too"
 }
 
 TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "[executor]") {
-  Runner executor(mill, {.quick_stop_share = 3});
+  SmallRunner executor(mill, {.quick_stop_share = 3});
   load(executor, {"G1 X20 F1200", "Y20"});
   run(executor, 0.5);
   executor.feed_hold();
@@ -188,18 +188,19 @@ TEST_CASE("a jog that goes on for ever is ended by resume, and by every stop", "
     for (; ticks < 1000 && !before.velocity.isZero(); ++ticks) {
       CHECK_FALSE(executor.finished());
       executor.feed_hold();  // asked again and again: no less for it
-      const auto point = executor.tick(period);
-      CHECK(std::abs(point.acceleration[2] - before.acceleration[2]) <= share * 5000 * period * (1 + 1e-9));
+      const auto point = executor.tick(tick_time);
+      CHECK(std::abs(point.acceleration[2] - before.acceleration[2]) <=
+            share * 5000 * tick_time * (1 + 1e-9));
       before = point;
     }
     // from v under J, with an acceleration that peaks at sqrt(v J)
-    CHECK(ticks * period == Approx(2 * std::sqrt(10 / (share * 5000))).margin(1.01 * period));
+    CHECK(ticks * tick_time == Approx(2 * std::sqrt(10 / (share * 5000))).margin(1.01 * tick_time));
     CHECK(executor.finished() == (how == 1));
   }
 }
 
 TEST_CASE("axes are jogged before a program, which waits until they are at its start", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   REQUIRE(executor.jog_to({1, 2, 3}));
   CHECK(run(executor, 3.0).position == Vector3(1, 2, 3));
   load(executor, {"G1 X20 F1200"});
@@ -211,15 +212,16 @@ TEST_CASE("axes are jogged before a program, which waits until they are at its s
 
 TEST_CASE("a jog to a place keeps the speeds that it is given, of the tool or of each axis", "[executor]") {
   const bool tool = GENERATE(true, false);
-  Runner executor(mill);
+  SmallRunner executor(mill);
   const Vector3 place(12, -9, 4);
   const Vector3 axes(3, 2, 1), way = place.normalized();
-  REQUIRE(executor.jog_to(place, tool ? Runner::JogSpeed{.tool = 4} : Runner::JogSpeed{.axes = axes}));
+  REQUIRE(
+      executor.jog_to(place, tool ? SmallRunner::JogSpeed{.tool = 4} : SmallRunner::JogSpeed{.axes = axes}));
   double fastest = 0, off = 0;
   Vector3 most = Vector3::Zero();
   SetPoint<3> point;
   for (int tick = 0; tick < 20'000 && !(tick > 10 && executor.state() != ExecutorState::jogging); ++tick) {
-    point = executor.tick(period);
+    point = executor.tick(tick_time);
     fastest = std::max(fastest, point.velocity.norm());
     most = most.cwiseMax(point.velocity.cwiseAbs());
     off = std::max(off, (point.position - point.position.dot(way) * way).norm());
@@ -235,7 +237,7 @@ TEST_CASE("a jog to a place keeps the speeds that it is given, of the tool or of
 }
 
 TEST_CASE("increments of a jog add up, however fast they come", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   for (int click = 0; click < 5; ++click) {
     REQUIRE(executor.jog_by({1, 0, -0.5}, {.tool = 3}));
     run(executor, 0.02);
@@ -249,7 +251,7 @@ TEST_CASE("increments of a jog add up, however fast they come", "[executor]") {
 }
 
 TEST_CASE("a jog of no speed is refused", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   CHECK(executor.jog_to({1, 0, 0}, {.tool = 0}).error().code == ErrorCode::not_positive);
   CHECK(executor.jog_to({1, 0, 0}, {.axes = {1, -1, 1}}).error().code == ErrorCode::not_positive);
   CHECK(executor.jog_by({1, 0, 0}, {.tool = std::nan("")}).error().code == ErrorCode::not_finite);
@@ -261,7 +263,7 @@ TEST_CASE("what is asked for during a quick stop of a jog begins at rest behind 
   const int request = GENERATE(0, 1, 2, 3, 4);
   const int ticks_before = GENERATE(1, 10, 20);
   CAPTURE(request, ticks_before);
-  Runner executor(mill, {.quick_stop_share = share});
+  SmallRunner executor(mill, {.quick_stop_share = share});
   load(executor, {"G1 X20 F1200"});
   run(executor, 0.3);
   executor.feed_hold();
@@ -270,7 +272,7 @@ TEST_CASE("what is asked for during a quick stop of a jog begins at rest behind 
   REQUIRE(executor.jog({20, 10, 0}));
   const Vector3 from = run(executor, 1.0).position;
   executor.quick_stop();
-  const auto braking = run(executor, ticks_before * period);
+  const auto braking = run(executor, ticks_before * tick_time);
   REQUIRE(!braking.velocity.isZero());
   if (request == 0) REQUIRE(executor.jog({0, 0, 0}));
   if (request == 1) REQUIRE(executor.jog({-20, -10, 5}));
@@ -280,14 +282,14 @@ TEST_CASE("what is asked for during a quick stop of a jog begins at rest behind 
   bool rested = false;
   auto before = braking;
   for (int tick = 0; tick < 6000; ++tick) {
-    const auto point = executor.tick(period);
+    const auto point = executor.tick(tick_time);
     const double most = rested ? 1 : share;
     for (int i = 0; i < 3; ++i) {
       const auto& axis = mill.axes[static_cast<std::size_t>(i)];
       CHECK(std::abs(point.velocity[i]) <= axis.velocity * (1 + 1e-9));
       CHECK(std::abs(point.acceleration[i]) <= most * axis.acceleration * (1 + 1e-9));
       CHECK(std::abs(point.acceleration[i] - before.acceleration[i]) <=
-            most * axis.jerk * period * (1 + 1e-9));
+            most * axis.jerk * tick_time * (1 + 1e-9));
       if (!rested) CHECK(point.velocity[i] * braking.velocity[i] >= 0);
     }
     rested = rested || point.velocity.isZero();
@@ -302,7 +304,7 @@ TEST_CASE("what is asked for during a quick stop of a jog begins at rest behind 
 }
 
 TEST_CASE("a stop takes back what waits for the end of a quick stop of a jog", "[executor]") {
-  Runner executor(mill, {.quick_stop_share = 5});
+  SmallRunner executor(mill, {.quick_stop_share = 5});
   REQUIRE(executor.jog({20, 0, 0}));
   run(executor, 1.0);
   executor.quick_stop();

@@ -24,21 +24,21 @@ TEST_CASE("executor levels: a hold comes soon, and the time goes on where it was
   for (double at = 0.1; at < time - 0.3; at += 0.37) {
     const auto executor = runner();
     std::size_t fed = 0;
-    for (double t = 0; t < at; t += period) {
+    for (double t = 0; t < at; t += tick_time) {
       feed(*executor, blocks, fed);
-      executor->tick(period);
+      executor->tick(tick_time);
     }
     executor->feed_hold();
     double hold = 0;
-    while (executor->tick(period).velocity.norm() > 0 && hold < 10) hold += period;
+    while (executor->tick(tick_time).velocity.norm() > 0 && hold < 10) hold += tick_time;
     CHECK(hold < 0.4);
     CHECK(executor->state() == ExecutorState::held);
     executor->resume();
     double rest = 0;
     while (!executor->finished() && rest < 100) {
       feed(*executor, blocks, fed);
-      executor->tick(period);
-      rest += period;
+      executor->tick(tick_time);
+      rest += tick_time;
     }
     CHECK(at + hold + rest < time + 1);
   }
@@ -55,25 +55,25 @@ TEST_CASE("executor levels: a quick stop is no later than a hold, also where one
     std::array<Vector3, 4> p;
     p.fill(Vector3::Zero());
     double acceleration = 0, jerk = 0;
-    int tick = 0, asked = static_cast<int>(at / period);
+    int tick = 0, asked = static_cast<int>(at / tick_time);
     for (; tick < asked || executor->state() != ExecutorState::held; ++tick) {
       REQUIRE(tick < asked + 5000);
       feed(*executor, blocks, fed);
       if (tick == asked) executor->feed_hold();
       if (quick >= 0 && tick == asked + quick) executor->quick_stop();
-      p = {executor->tick(period).position, p[0], p[1], p[2]};
+      p = {executor->tick(tick_time).position, p[0], p[1], p[2]};
       acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).norm());
       jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
     }
     const double most = quick < 0 ? 1 : share;
-    CHECK(acceleration <= most * mill.limits.acceleration * period * period * (1 + 1e-5));
-    CHECK(jerk <= most * mill.limits.jerk * period * period * period * (1 + 1e-3));
-    return (tick - asked) * period;
+    CHECK(acceleration <= most * mill.limits.acceleration * tick_time * tick_time * (1 + 1e-5));
+    CHECK(jerk <= most * mill.limits.jerk * tick_time * tick_time * tick_time * (1 + 1e-3));
+    return (tick - asked) * tick_time;
   };
   for (double at = 0.1; at < 1.2; at += 0.21) {
     INFO("hold at " << at);
     const double held = hold(at, -1);
-    for (const int quick : {0, 2, 8}) CHECK(hold(at, quick) <= held + 1.5 * period);
+    for (const int quick : {0, 2, 8}) CHECK(hold(at, quick) <= held + 1.5 * tick_time);
   }
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("executor levels: single steps and a pause rest just before the next b
   executor->single_step(true);
   int pauses = 0;
   for (int tick = 0; !executor->finished() && tick < 20000; ++tick) {
-    const auto point = executor->tick(period);
+    const auto point = executor->tick(tick_time);
     if (executor->state() != ExecutorState::held) continue;
     ++pauses;
     const auto& path = blocks[static_cast<std::size_t>(pauses) - 1].path;
@@ -102,7 +102,7 @@ TEST_CASE("executor levels: single steps and a pause rest just before the next b
   paused->pause_at(3);
   int held = 0;
   for (int tick = 0; !paused->finished() && tick < 20000; ++tick) {
-    const auto point = paused->tick(period);
+    const auto point = paused->tick(tick_time);
     if (paused->state() != ExecutorState::held) continue;
     ++held;
     CHECK((Vector3(30, 10, 0) - point.position).norm() < 0.3);
@@ -131,7 +131,7 @@ TEST_CASE("executor levels: single steps rest once before every block, however h
     executor->single_step(true);
     std::size_t pauses = 0;
     for (int tick = 0; !executor->finished() && tick < 60000; ++tick) {
-      const auto point = executor->tick(period);
+      const auto point = executor->tick(tick_time);
       if (executor->state() != ExecutorState::held) continue;
       REQUIRE(pauses < blocks.size());
       const auto& path = blocks[pauses++].path;
@@ -149,15 +149,15 @@ TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]")
   const auto executor = runner();
   std::size_t fed = 0;
   feed(*executor, blocks, fed);
-  for (int tick = 0; tick < 2000; ++tick) executor->tick(period);
+  for (int tick = 0; tick < 2000; ++tick) executor->tick(tick_time);
   executor->reverse(true);
-  for (int tick = 0; tick < 4000; ++tick) executor->tick(period);
-  CHECK(executor->tick(period).position.norm() < 1e-9);
+  for (int tick = 0; tick < 4000; ++tick) executor->tick(tick_time);
+  CHECK(executor->tick(tick_time).position.norm() < 1e-9);
   CHECK_FALSE(executor->finished());
   executor->reverse(false);
-  for (int tick = 0; tick < 10000 && !executor->finished(); ++tick) executor->tick(period);
+  for (int tick = 0; tick < 10000 && !executor->finished(); ++tick) executor->tick(tick_time);
   CHECK(executor->finished());
-  CHECK((executor->tick(period).position - Vector3(10, 30, 0)).norm() < 1e-9);
+  CHECK((executor->tick(tick_time).position - Vector3(10, 30, 0)).norm() < 1e-9);
 }
 
 TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks that come above it",
@@ -171,9 +171,9 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   std::size_t fed = 0;
   std::vector<Vector3> places;
   const auto drive = [&](double seconds, auto&& look) {
-    for (int i = 0; i * period < seconds && !executor->finished(); ++i) {
+    for (int i = 0; i * tick_time < seconds && !executor->finished(); ++i) {
       feed(*executor, blocks, fed);
-      const auto point = executor->tick(period);
+      const auto point = executor->tick(tick_time);
       places.push_back(point.position);
       look(point.velocity.norm());
     }
@@ -185,7 +185,7 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   test::Random random;
   for (int i = 0; i < 1500; ++i) {  // more changes than are kept at once
     executor->feed_override(random.uniform(1.05, 1.3));
-    drive(2 * period, watch);
+    drive(2 * tick_time, watch);
   }
   executor->feed_override(1.5);
   drive(10, watch);
@@ -205,7 +205,7 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   Vector3 jerk = Vector3::Zero();
   for (std::size_t i = 3; i < places.size(); ++i)
     jerk = jerk.cwiseMax((places[i] - 3 * places[i - 1] + 3 * places[i - 2] - places[i - 3]).cwiseAbs());
-  CHECK(jerk.maxCoeff() <= 1e4 * period * period * period * (1 + 1e-4));
+  CHECK(jerk.maxCoeff() <= 1e4 * tick_time * tick_time * tick_time * (1 + 1e-4));
 }
 
 TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, however many blocks are held",
@@ -224,9 +224,9 @@ TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, how
     double most = 0;
     const auto drive = [&](double seconds) {
       double last = 0;
-      for (int i = 0; i * period < seconds && !executor->finished(); ++i) {
+      for (int i = 0; i * tick_time < seconds && !executor->finished(); ++i) {
         feed(*executor, blocks, fed);
-        const auto point = executor->tick(period);
+        const auto point = executor->tick(tick_time);
         last = point.velocity.norm();
         most = std::max(most, last);
         if (last > 0) CHECK(point.feed == Approx(20));
@@ -249,7 +249,7 @@ TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, how
     run_to_end(*executor, {});
     CHECK(executor->finished());
     CHECK_FALSE(executor->error());
-    CHECK((executor->tick(period).position - blocks.back().path.position_at(blocks.back().path.length()))
+    CHECK((executor->tick(tick_time).position - blocks.back().path.position_at(blocks.back().path.length()))
               .norm() < 1e-9);
   }
 }
@@ -273,9 +273,9 @@ TEST_CASE("executor levels: a share of the feed above 1 acts at once, and no fee
       double jerk = 0;
       const auto tick = [&] {
         feed(*executor, blocks, fed);
-        p = {executor->tick(period).position, p[0], p[1], p[2]};
+        p = {executor->tick(tick_time).position, p[0], p[1], p[2]};
         jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
-        return (p[0] - p[1]).norm() / period;
+        return (p[0] - p[1]).norm() / tick_time;
       };
       for (int i = 0; i < 1000; ++i) tick();
       const double before = tick();
@@ -285,11 +285,11 @@ TEST_CASE("executor levels: a share of the feed above 1 acts at once, and no fee
       const double least = 2 * std::sqrt((share - 1) * 20 / machine.limits.jerk);
       int ticks = 2;
       while (tick() < 20 * share * (1 - 2e-3) && ticks < 10000) ++ticks;
-      CHECK(ticks * period < least + 0.02);
+      CHECK(ticks * tick_time < least + 0.02);
       double most = 0;
       for (int i = 0; i < 5000; ++i) most = std::max(most, tick());  // where parts are planned anew, too
       CHECK(most <= 20 * share * (1 + 1e-6));
-      CHECK(jerk <= machine.limits.jerk * std::pow(period, 3) * (1 + 1e-4));
+      CHECK(jerk <= machine.limits.jerk * std::pow(tick_time, 3) * (1 + 1e-4));
     }
   }
 }
@@ -302,9 +302,9 @@ TEST_CASE("executor levels: a share of the feed takes as long as that feed does"
         *executor, blocks_of("F" + std::to_string(feed) + " G1 X20\nX30 Y10\nX30 Y30\nX10\n", with_axes()));
   };
   for (const double share : {0.1, 0.5, 0.9})
-    CHECK(time_at(1800, share) == Approx(time_at(1800 * share, 1)).margin(3 * period));
+    CHECK(time_at(1800, share) == Approx(time_at(1800 * share, 1)).margin(3 * tick_time));
   // Below the least that is planned the clock is slower, and ramps are too.
-  CHECK(time_at(1800, 0.05) == Approx(2 * time_at(1800, 0.1)).margin(3 * period));
+  CHECK(time_at(1800, 0.05) == Approx(2 * time_at(1800, 0.1)).margin(3 * tick_time));
 }
 
 TEST_CASE("executor levels: a rapid behind a feed begins at its own share, and a feed behind a rapid",
@@ -327,7 +327,7 @@ TEST_CASE("executor levels: a rapid behind a feed begins at its own share, and a
         for (; tick < 60000 && !executor->finished(); ++tick) {
           feed(*executor, blocks, fed);
           if (tick == asked) executor->feed_override(shares.feed), executor->rapid_override(shares.rapid);
-          const auto now = executor->tick(period);
+          const auto now = executor->tick(tick_time);
           const double most = now.line == 3 ? 30 * shares.rapid : 20 * shares.feed;
           if (tick > asked + 400) above = std::max(above, now.velocity.norm() - most);
           if (shares.rapid == 0 && tick == 6000) {
@@ -377,19 +377,19 @@ TEST_CASE("executor levels: the way back ends at rest where what is kept begins"
     const Machine<3> machine = with_axes();
     std::size_t fed = 0;
     double time = 0;
-    for (; time < at; time += period) {
+    for (; time < at; time += tick_time) {
       feed(*executor, blocks, fed);
-      executor->tick(period);
+      executor->tick(tick_time);
     }
     REQUIRE_FALSE(executor->finished());
     executor->reverse(true);
-    Vector3 before = executor->tick(period).position, change = Vector3::Zero();
+    Vector3 before = executor->tick(tick_time).position, change = Vector3::Zero();
     double fastest = 0, hardest = 0;
     for (int tick = 0; tick < 40000 && executor->state() != ExecutorState::held; ++tick) {
-      const auto now = executor->tick(period);
-      const Vector3 velocity = (now.position - before) / period;
+      const auto now = executor->tick(tick_time);
+      const Vector3 velocity = (now.position - before) / tick_time;
       fastest = std::max(fastest, velocity.norm());
-      if (tick > 1) hardest = std::max(hardest, (velocity - change).norm() / period);
+      if (tick > 1) hardest = std::max(hardest, (velocity - change).norm() / tick_time);
       before = now.position;
       change = velocity;
     }
@@ -399,9 +399,9 @@ TEST_CASE("executor levels: the way back ends at rest where what is kept begins"
     CHECK(hardest <= machine.limits.acceleration * (1 + 1e-3));
     executor->reverse(false);
     executor->resume();
-    for (double more = 0; more < 200 && !executor->finished(); more += period) {
+    for (double more = 0; more < 200 && !executor->finished(); more += tick_time) {
       feed(*executor, blocks, fed);
-      before = executor->tick(period).position;
+      before = executor->tick(tick_time).position;
     }
     CHECK(executor->finished());
     CHECK(before.isApprox(blocks.back().path.end()));
@@ -418,7 +418,7 @@ TEST_CASE("executor levels: what stands before a rapid without speed goes on onc
   for (int tick = 0; tick < 60000 && !executor->finished(); ++tick) {
     feed(*executor, blocks, fed);
     if (tick == 4000) executor->rapid_override(1);
-    x = executor->tick(period).position.x();
+    x = executor->tick(tick_time).position.x();
     if (tick < 4000) CHECK(x <= 40);
   }
   CHECK(executor->finished());
@@ -459,7 +459,7 @@ TEST_CASE("executor levels: single steps rest at each of many short blocks", "[e
     double latest = 0;
     for (int tick = 0; tick < 60'000 && !executor->finished(); ++tick) {
       test::feed(*executor, blocks, fed);
-      const auto point = executor->tick(period);
+      const auto point = executor->tick(tick_time);
       if (executor->state() != ExecutorState::held) continue;
       REQUIRE(rests + 1 < blocks.size());
       latest = std::max(latest, point.along.position - ends[rests++]);

@@ -58,10 +58,10 @@ TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
   }
   const auto whole = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::good, within));
   REQUIRE(whole);
-  CHECK(last == Approx(whole->duration()).margin(2 * period));
+  CHECK(last == Approx(whole->duration()).margin(2 * tick_time));
   const auto best = runner({.level = SmoothLevel::best, .reserve = 0, .hold_factor = 0});
   const auto whole_best = plan_blocks(blocks, with_axes(), at_level(SmoothLevel::best, within));
-  CHECK(run_to_end(*best, blocks) == Approx(whole_best->duration()).margin(5 * period));
+  CHECK(run_to_end(*best, blocks) == Approx(whole_best->duration()).margin(5 * tick_time));
 }
 
 TEST_CASE("executor levels: a part behind a cut that comes up to its feed is no slower for it",
@@ -111,10 +111,11 @@ TEST_CASE("executor levels: starved, it drives the proven way to rest, and goes 
       const std::size_t most = pause < 1000 ? blocks.size() * 2 / 3 : blocks.size();
       while (fed < most && executor->push(blocks[fed]))
         if (++fed == blocks.size()) executor->end_of_program();
-      const auto point = executor->tick(period);
+      const auto point = executor->tick(tick_time);
       p = {point.position, p[0], p[1], p[2]};
-      CHECK((p[0] - 2 * p[1] + p[2]).norm() <= 1000 * period * period * (1 + 1e-5));
-      CHECK((p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm() <= 10000 * period * period * period * (1 + 1e-3));
+      CHECK((p[0] - 2 * p[1] + p[2]).norm() <= 1000 * tick_time * tick_time * (1 + 1e-5));
+      CHECK((p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm() <=
+            10000 * tick_time * tick_time * tick_time * (1 + 1e-3));
       const bool stands = point.velocity.norm() == 0;
       rests += stands && !stood ? 1 : 0;
       stood = stands;
@@ -126,7 +127,7 @@ TEST_CASE("executor levels: starved, it drives the proven way to rest, and goes 
     }
     CHECK(executor->finished());
     CHECK(rests >= 2);  // one for want of blocks, one at the end
-    CHECK((executor->tick(period).position - blocks.back().path.position_at(blocks.back().path.length()))
+    CHECK((executor->tick(tick_time).position - blocks.back().path.position_at(blocks.back().path.length()))
               .norm() < 1e-9);
   }
 }
@@ -173,7 +174,7 @@ TEST_CASE("executor levels: what it is doing, at every change", "[executor-level
     if (tick == 1800) executor->feed_hold();
     if (tick == 2400) REQUIRE(executor->jog_to({10, 10, 5}));
     if (tick == 5000) executor->resume();
-    executor->tick(period);
+    executor->tick(tick_time);
     if (const auto now = to_text(executor->state()); states.empty() || states.back() != now)
       states.push_back(now);
   }
@@ -193,14 +194,14 @@ TEST_CASE("executor levels: a block that is refused ends the motion where it beg
   CHECK(executor->error()->error().code == ErrorCode::discontinuous);
   CHECK(executor->error()->about.line == 77);
   CHECK(executor->state() == ExecutorState::fault);
-  CHECK((executor->tick(period).position - Vector3(30, 10, 0)).norm() < 1e-9);
+  CHECK((executor->tick(tick_time).position - Vector3(30, 10, 0)).norm() < 1e-9);
   // It begins anew on a line, and goes to its start first.
   blocks.pop_back();
   REQUIRE(executor->restart(2, Vector3(30, 10, 0)));
   run_to_end(*executor, blocks, 20);
   CHECK(executor->finished());
   CHECK_FALSE(executor->error());
-  CHECK((executor->tick(period).position - Vector3(30, 10, 0)).norm() < 1e-9);
+  CHECK((executor->tick(tick_time).position - Vector3(30, 10, 0)).norm() < 1e-9);
 }
 
 TEST_CASE("executor levels: a tick allocates nothing where blocks are planned elsewhere",
@@ -214,7 +215,7 @@ TEST_CASE("executor levels: a tick allocates nothing where blocks are planned el
     if (tick == 1000) executor->feed_hold();
     if (tick == 1500) REQUIRE(executor->jog_to({1, 1, 1}));
     if (tick == 2500) executor->resume();
-    allocations += heap_allocations_of([&] { executor->tick(period); });
+    allocations += heap_allocations_of([&] { executor->tick(tick_time); });
   }
   CHECK(executor->finished());
   CHECK(allocations == 0);
@@ -254,7 +255,7 @@ TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[e
     if (random.integer(0, 300) == 0) executor->feed_override(random.uniform(0.2, 1));
     if (random.integer(0, 500) == 0) executor->feed_hold();
     if (random.integer(0, 100) == 0) executor->resume();
-    p = {executor->tick(period).position, p[0], p[1], p[2]};
+    p = {executor->tick(tick_time).position, p[0], p[1], p[2]};
     jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm());
     if (executor->state() == ExecutorState::waiting)  // however slow the other thread is
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -262,7 +263,7 @@ TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[e
   over = true;
   planner.join();
   CHECK(executor->finished());
-  CHECK(jerk <= 10000 * period * period * period * (1 + 1e-3));
+  CHECK(jerk <= 10000 * tick_time * tick_time * tick_time * (1 + 1e-3));
   CHECK((p[0] - blocks.back().path.position_at(blocks.back().path.length())).norm() < 1e-9);
 }
 
@@ -276,11 +277,11 @@ TEST_CASE("executor levels: options that are none run nothing, and that is told"
     REQUIRE(executor->error());
     CHECK(executor->error()->error().field == field);
     CHECK(executor->state() == ExecutorState::fault);
-    CHECK(executor->tick(period).position.norm() == 0);
+    CHECK(executor->tick(tick_time).position.norm() == 0);
     CHECK(executor->restart(0, Vector3::Zero()));
     run_to_end(*executor, blocks, 2);
     CHECK(executor->error());
-    CHECK(executor->tick(period).position.norm() == 0);
+    CHECK(executor->tick(tick_time).position.norm() == 0);
   };
   for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good}) {
     for (const double reserve : {-0.5, 1.0, 2.0, nan})
@@ -302,7 +303,7 @@ TEST_CASE("executor levels: no time of a long tick is lost", "[executor-levels]"
   feed(*executor, blocks, fed);
   executor->tick(10);  // 20 rests on the way
   CHECK(executor->finished());
-  CHECK((executor->tick(period).position - Vector3(20, 0, 0)).norm() < 1e-9);
+  CHECK((executor->tick(tick_time).position - Vector3(20, 0, 0)).norm() < 1e-9);
 }
 
 TEST_CASE("executor levels: a part comes while the rate changes", "[executor-levels]") {
@@ -323,16 +324,17 @@ TEST_CASE("executor levels: a part comes while the rate changes", "[executor-lev
       executor->feed_override(before);
       std::array<Vector3, 4> p;
       p.fill(Vector3::Zero());
-      for (double t = 0; t < at + 0.5; t += period) {
-        if (std::abs(t - at) < period / 2) executor->feed_override(behind);
-        if (std::abs(t - at - 0.01) < period / 2) {
+      for (double t = 0; t < at + 0.5; t += tick_time) {
+        if (std::abs(t - at) < tick_time / 2) executor->feed_override(behind);
+        if (std::abs(t - at - 0.01) < tick_time / 2) {
           if (p[0] != p[1]) latest = at;
           feed(*executor, blocks, fed);
           executor->plan();
         }
-        p = {executor->tick(period).position, p[0], p[1], p[2]};
-        acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).norm() / (period * period));
-        jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm() / (period * period * period));
+        p = {executor->tick(tick_time).position, p[0], p[1], p[2]};
+        acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).norm() / (tick_time * tick_time));
+        jerk =
+            std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).norm() / (tick_time * tick_time * tick_time));
       }
     }
     CAPTURE(latest);
@@ -358,7 +360,7 @@ TEST_CASE("executor levels: step edges are where the axes are, at every tick", "
       feed(*executor, blocks, fed);
       if (tick % 333 == 100) executor->feed_hold();
       if (tick % 333 == 250) executor->resume();
-      const auto point = steps.tick(period);
+      const auto point = steps.tick(tick_time);
       while (const auto edge = steps.next()) {
         counts[static_cast<std::size_t>(edge->axis)] += edge->direction;
         in_order = in_order && edge->time >= last;

@@ -36,7 +36,7 @@ double top_speed(E& executor, const MillBlocks& blocks) {
   double most = 0;
   for (int tick = 0; tick < 60'000 && !executor.finished(); ++tick) {
     feed(executor, blocks, fed);
-    most = std::max(most, executor.tick(period).velocity.norm());
+    most = std::max(most, executor.tick(tick_time).velocity.norm());
   }
   CHECK(executor.finished());
   return most;
@@ -75,7 +75,7 @@ TEST_CASE("executor overrides: options out of their domain are refused", "[execu
     REQUIRE(executor.error());
     CHECK(executor.error()->error().field == field);
     CHECK(executor.error()->error().code == code);
-    CHECK(executor.tick(period).velocity.norm() == 0);
+    CHECK(executor.tick(tick_time).velocity.norm() == 0);
   };
   for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good}) {
     refuses({.level = level, .most_override = 0.9}, "highest override", ErrorCode::below_limit);
@@ -116,19 +116,19 @@ TEST_CASE("executor overrides: a higher feed is driven soon through bends, and l
     for (; tick < 60'000 && !executor->finished(); ++tick) {
       feed(*executor, blocks, fed);
       if (tick == asked) executor->feed_override(2);
-      p = {executor->tick(period).position, p[0], p[1], p[2]};
+      p = {executor->tick(tick_time).position, p[0], p[1], p[2]};
       acceleration = std::max(acceleration, (p[0] - 2 * p[1] + p[2]).cwiseAbs().maxCoeff());
       jerk = std::max(jerk, (p[0] - 3 * p[1] + 3 * p[2] - p[3]).cwiseAbs().maxCoeff());
-      fast = (p[0] - p[1]).norm() > 20 * 0.97 * period ? fast + 1 : 0;
+      fast = (p[0] - p[1]).norm() > 20 * 0.97 * tick_time ? fast + 1 : 0;
       if (effect == 0 && fast >= 200) effect = tick - fast - asked;
     }
     CHECK(executor->finished());
     CHECK_FALSE(executor->error());
-    CHECK(acceleration <= 1000 * period * period * (1 + 1e-5));
-    CHECK(jerk <= 1e4 * period * period * period * (1 + 1e-4));
+    CHECK(acceleration <= 1000 * tick_time * tick_time * (1 + 1e-5));
+    CHECK(jerk <= 1e4 * tick_time * tick_time * tick_time * (1 + 1e-4));
     CHECK((p[0] - blocks.back().path.position_at(blocks.back().path.length())).norm() < 1e-9);
     CHECK(effect > 0);
-    return effect * period;
+    return effect * tick_time;
   };
   for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best})
     for (const double horizon : {0.3, 1.0, 5.0}) {
@@ -172,7 +172,7 @@ double excess(const Machine& machine, const LevelExecutorOptions& options, const
       }
       if (one.tick <= tick) last = &one;
     }
-    const auto point = executor->tick(period);
+    const auto point = executor->tick(tick_time);
     if (last == nullptr || last != &asked.back() || tick < last->tick + 500) continue;
     const MillBlock& block = blocks[point.block];
     const double share = block.rapid ? last->rapid : last->feed;
@@ -253,10 +253,10 @@ TEST_CASE("executor overrides: a lower feed is planned, and leaves corners and r
         machine, LevelExecutorOptions{.level = level, .horizon = 1});
     std::size_t fed = 0;
     double time = 0, fastest = 0;
-    for (; !executor->finished() && time < 300; time += period) {
+    for (; !executor->finished() && time < 300; time += tick_time) {
       executor->feed_override(time >= from && time < until ? share : 1);
       feed(*executor, blocks, fed);
-      const double speed = executor->tick(period).velocity.norm();
+      const double speed = executor->tick(tick_time).velocity.norm();
       if (time > from + 1 && time < until) fastest = std::max(fastest, speed);
     }
     CHECK(executor->finished());

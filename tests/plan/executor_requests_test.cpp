@@ -18,7 +18,7 @@
 #include "support/small_mill.hpp"
 
 using namespace cncplan;
-using test::Lines, test::load, test::period, test::run, test::Runner;
+using test::Lines, test::load, test::tick_time, test::run, test::SmallRunner;
 
 namespace {
 
@@ -27,16 +27,16 @@ constexpr Machine<3> mill = test::small_mill;
 }  // namespace
 
 TEST_CASE("without a program an executor is over once it is told so", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   CHECK_FALSE(executor.finished());
   executor.end_of_program();
   CHECK(executor.finished());
-  CHECK(executor.tick(period).position.isZero());
+  CHECK(executor.tick(tick_time).position.isZero());
   CHECK_FALSE(executor.error());
 }
 
 TEST_CASE("what was pushed is run to its end though nothing follows", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   for (const auto& block : test::blocks_of({"G1 X5 F600"}, mill)) REQUIRE(executor.push(block));
   const auto point = run(executor, 2.0);
   CHECK(point.position[0] == 5.0);
@@ -46,11 +46,11 @@ TEST_CASE("what was pushed is run to its end though nothing follows", "[executor
 }
 
 TEST_CASE("a block that cannot be planned ends the motion before it, and is told", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   auto blocks = test::blocks_of({"G1 X5 F600", "Y5", "X50", "Y0"}, mill);
   blocks[2].path = path::Line<3>({5, 5, 0}, {150, 5, 0});
   blocks[2].column = 4;
-  for (int tick = 0; tick < 3; ++tick) executor.tick(period);
+  for (int tick = 0; tick < 3; ++tick) executor.tick(tick_time);
   for (const auto& block : blocks) REQUIRE(executor.push(block));
   for (int i = 0; i < 100; ++i) REQUIRE(executor.push(blocks[3]));  // dropped: it never is full
   const auto point = run(executor);
@@ -67,11 +67,11 @@ TEST_CASE("a block that cannot be planned ends the motion before it, and is told
 
 TEST_CASE("a gap in the path, no feed and a bad machine are errors", "[executor]") {
   const auto code = [](const Machine<3>& machine, const Block<3>& block) {
-    Runner executor(machine);
+    SmallRunner executor(machine);
     CHECK(executor.push({.path = path::Line<3>({0, 0, 0}, {1, 0, 0})}));
     CHECK(executor.push(block));
     executor.end_of_program();
-    while (!executor.finished()) executor.tick(period);
+    while (!executor.finished()) executor.tick(tick_time);
     REQUIRE(executor.error());
     return executor.error()->error().code;
   };
@@ -89,12 +89,12 @@ TEST_CASE("a gap in the path, no feed and a bad machine are errors", "[executor]
 }
 
 TEST_CASE("words are told where they stand, stops at rest", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   load(executor, {"G1 X5 F1200", "M3 S1000", "X10", "M0", "X12", "T2 M6", "X14 M8", "M30"});
   std::string told;
   bool stops_at_rest = true, in_place = true;
   while (!executor.finished()) {
-    const auto point = executor.tick(period);
+    const auto point = executor.tick(tick_time);
     if (executor.rested() > 0) executor.resume();  // at M0
     for (const auto& word : point.words) {
       told += word.letter + std::to_string(static_cast<int>(word.number)) + ' ';
@@ -113,11 +113,11 @@ TEST_CASE("words are told where they stand, stops at rest", "[executor]") {
 TEST_CASE("more words than a set point has room for come one after another", "[executor]") {
   Lines lines;
   for (int i = 0; i < 12; ++i) lines.push_back(i % 2 == 0 ? "M7" : "M9");
-  Runner executor(mill);
+  SmallRunner executor(mill);
   load(executor, lines);
   int words = 0, ticks = 0;
   for (; !executor.finished() && ticks < 10; ++ticks)
-    for (const auto& word : executor.tick(period).words) CHECK(word.number == (words++ % 2 == 0 ? 7 : 9));
+    for (const auto& word : executor.tick(tick_time).words) CHECK(word.number == (words++ % 2 == 0 ? 7 : 9));
   CHECK(words == 12);
   CHECK(ticks == 2);
 }
@@ -127,7 +127,7 @@ TEST_CASE(
     "[executor]") {
   const Lines lines{"G1 X5 F1200", "M0", "X10", "M1", "X15", "M60", "X20", "X25"};
   const auto places = [&](auto ask) {
-    Runner executor(mill);
+    SmallRunner executor(mill);
     ask(executor);
     load(executor, lines);
     std::vector<double> held;
@@ -137,17 +137,17 @@ TEST_CASE(
     }
     return held;
   };
-  CHECK(places([](Runner&) {}) == std::vector{5.0, 15.0, 25.0});
-  CHECK(places([](Runner& e) { e.program_stop(false); }) == std::vector{25.0});
-  CHECK(places([](Runner& e) { e.optional_stop(true); }) == std::vector{5.0, 10.0, 15.0, 25.0});
+  CHECK(places([](SmallRunner&) {}) == std::vector{5.0, 15.0, 25.0});
+  CHECK(places([](SmallRunner& e) { e.program_stop(false); }) == std::vector{25.0});
+  CHECK(places([](SmallRunner& e) { e.optional_stop(true); }) == std::vector{5.0, 10.0, 15.0, 25.0});
   const auto only = [](auto ask) {
-    return [ask](Runner& e) {
+    return [ask](SmallRunner& e) {
       e.program_stop(false);
       ask(e);
     };
   };
-  CHECK(places(only([](Runner& e) { e.pause_at(8); })) == std::vector{20.0, 25.0});
-  const auto steps = places(only([](Runner& e) { e.single_step(true); }));
+  CHECK(places(only([](SmallRunner& e) { e.pause_at(8); })) == std::vector{20.0, 25.0});
+  const auto steps = places(only([](SmallRunner& e) { e.single_step(true); }));
   for (const double place : {5.0, 10.0, 15.0, 20.0, 25.0})
     CHECK(std::count(steps.begin(), steps.end(), place) >= 1);
 }
@@ -160,7 +160,7 @@ TEST_CASE("words without end do not stop the blocks behind them", "[executor]") 
   for (int i = 0; i < 200; ++i) lines.push_back(i % 2 == 0 ? "M7" : "M9");
   for (const char* line : {"X10", "Y0", "M8", "X0"}) lines.emplace_back(line);
   if (begins_away) std::rotate(lines.begin(), lines.begin() + 2, lines.begin() + 202);
-  Runner executor(mill, {.tolerance = tolerance});
+  SmallRunner executor(mill, {.tolerance = tolerance});
   if (begins_away) REQUIRE(executor.restart(0, Vector3::Zero()));
   const auto blocks = test::blocks_of(lines, mill);
   std::size_t pushed = 0, told = 0;
@@ -168,7 +168,7 @@ TEST_CASE("words without end do not stop the blocks behind them", "[executor]") 
   for (int tick = 0; tick < 20000 && !executor.finished(); ++tick) {
     while (pushed < blocks.size() && executor.push(blocks[pushed]))
       if (++pushed == blocks.size()) executor.end_of_program();
-    point = executor.tick(period);
+    point = executor.tick(tick_time);
     for (const auto& word : point.words) {
       CHECK(word.number == (told == 200 ? 8 : told % 2 == 0 ? 7 : 9));
       ++told;
@@ -182,7 +182,7 @@ TEST_CASE("words without end do not stop the blocks behind them", "[executor]") 
 TEST_CASE("a single step backwards ends where a block begins", "[executor]") {
   const double tolerance = GENERATE(0.0, 0.05);
   INFO("tolerance " << tolerance);
-  Runner executor(mill, {.tolerance = tolerance});
+  SmallRunner executor(mill, {.tolerance = tolerance});
   load(executor, {"G1 X5 F1200", "X10 Y1", "X15", "X20 Y1"});
   run(executor);
   executor.reverse(true);
@@ -190,8 +190,8 @@ TEST_CASE("a single step backwards ends where a block begins", "[executor]") {
   std::vector<double> steps;
   for (int i = 0; i < 8; ++i) {
     executor.resume();
-    for (int tick = 0; tick < 2000; ++tick) executor.tick(period);
-    steps.push_back(executor.tick(period).position[0]);
+    for (int tick = 0; tick < 2000; ++tick) executor.tick(tick_time);
+    steps.push_back(executor.tick(tick_time).position[0]);
   }
   std::vector<double> wanted{15, 10, 5, 0, 0, 0, 0, 0};
   for (std::size_t i = 0; i < steps.size(); ++i) CHECK(steps[i] == Approx(wanted[i]).margin(tolerance));
@@ -199,7 +199,7 @@ TEST_CASE("a single step backwards ends where a block begins", "[executor]") {
 
 TEST_CASE("a quick stop is harder than a hold, and goes on when resumed", "[executor]") {
   const auto way = [](auto stop) {
-    Runner executor(mill, {.quick_stop_share = 10});
+    SmallRunner executor(mill, {.quick_stop_share = 10});
     load(executor, {"G1 X50 F1800"});
     const double from = run(executor, 0.5).position[0];
     stop(executor);
@@ -208,14 +208,14 @@ TEST_CASE("a quick stop is harder than a hold, and goes on when resumed", "[exec
     CHECK(run(executor).position[0] == 50.0);
     return rest - from;
   };
-  const double held = way([](Runner& e) { e.feed_hold(); });
+  const double held = way([](SmallRunner& e) { e.feed_hold(); });
   CHECK(held == Approx(30 * std::sqrt(30.0 / 10000)).epsilon(0.02));  // v sqrt(v / j)
-  CHECK(way([](Runner& e) { e.quick_stop(); }) < held / 3);
+  CHECK(way([](SmallRunner& e) { e.quick_stop(); }) < held / 3);
 }
 
 TEST_CASE("the share of a quick stop is one to a thousand, whatever is asked", "[executor]") {
   const double share = GENERATE(-1.0, 0.0, 0.5, NAN, 1e300, INFINITY);
-  Runner executor(mill, {.quick_stop_share = share});
+  SmallRunner executor(mill, {.quick_stop_share = share});
   load(executor, {"G1 X20 F1200"});
   run(executor, 0.5);
   executor.quick_stop();
@@ -233,13 +233,13 @@ TEST_CASE("the share of a quick stop is one to a thousand, whatever is asked", "
 TEST_CASE("the tool keeps the feed limit on smoothed paths too", "[executor]") {
   auto slow = mill;
   slow.feed_limit = 5;
-  Runner executor(slow, {.tolerance = 0.05});
+  SmallRunner executor(slow, {.tolerance = 0.05});
   for (const auto& block :
        test::blocks_of({"G17 F3000", "G3 X1 Y1 R0.8", "G3 X0 Y2 R0.8", "G1 Y2.3 X-0.3"}, slow))
     REQUIRE(executor.push(block));
   executor.end_of_program();
   double fastest = 0;
-  while (!executor.finished()) fastest = std::max(fastest, executor.tick(period).velocity.norm());
+  while (!executor.finished()) fastest = std::max(fastest, executor.tick(tick_time).velocity.norm());
   CHECK(fastest <= 5 * (1 + 1e-9));
   CHECK(fastest > 4.9);
 }
@@ -248,7 +248,7 @@ TEST_CASE("a program that was stopped begins anew at a line, from a place on it"
   const Lines lines{"F1200", "G1 X10", "M8", "Y10", "G2 X20 Y20 I10", "G1 X30", "M9"};
   const auto whole = test::blocks_of(lines, mill);
   for (const double share : {0.0, 0.3, 1.0}) {
-    Runner executor(mill);
+    SmallRunner executor(mill);
     load(executor, lines);
     run(executor, 0.4);
     executor.stop();
@@ -258,18 +258,18 @@ TEST_CASE("a program that was stopped begins anew at a line, from a place on it"
     const Vector3 place = arc.position_at(share * arc.length());
     REQUIRE(executor.restart(5, place));
     load(executor, lines);
-    const auto first = executor.tick(period);
+    const auto first = executor.tick(tick_time);
     CHECK((first.position - place).norm() < 1e-4);
     CHECK(first.words.empty());
     std::string told;
     while (!executor.finished())
-      for (const auto& word : executor.tick(period).words)
+      for (const auto& word : executor.tick(tick_time).words)
         told += std::to_string(static_cast<int>(word.number));
     CHECK(told == "9");
-    CHECK(executor.tick(period).position[0] == 30.0);
+    CHECK(executor.tick(tick_time).position[0] == 30.0);
     CHECK_FALSE(executor.error());
   }
-  Runner executor(mill);
+  SmallRunner executor(mill);
   REQUIRE(executor.restart(5, {10, 10, 1}));
   load(executor, lines);
   run(executor);
@@ -286,12 +286,12 @@ TEST_CASE("set points show the start of a program before it begins", "[executor]
   PlanOptions options;
   std::copy(start.begin(), start.end(), options.start.begin());
   const auto blocks = test::blocks_of({first, "G1 X60 F1200", "Y0"}, mill, options);
-  Runner executor(mill, {.tolerance = tolerance, .background = late});
-  CHECK(executor.tick(period).position.isZero());  // nobody has said yet
+  SmallRunner executor(mill, {.tolerance = tolerance, .background = late});
+  CHECK(executor.tick(tick_time).position.isZero());  // nobody has said yet
   bool there = true;
   for (int tick = 0; tick < 30; ++tick) {
     if (tick < 2) REQUIRE(executor.push(blocks[static_cast<std::size_t>(tick)]));
-    const auto point = executor.tick(period);
+    const auto point = executor.tick(tick_time);
     there = there && (point.position - start).norm() < 1 && point.tool == point.position;
     if (tick == 0 && tolerance > 0) there = there && point.position == start && point.velocity.isZero();
   }
@@ -306,7 +306,7 @@ TEST_CASE("behind a map set points show the start of a program, and its tool", "
   Polar executor(test::polar, {.background = true});
   REQUIRE(executor.push(blocks[0]));
   executor.feed_hold();
-  const auto point = executor.tick(period);
+  const auto point = executor.tick(tick_time);
   CHECK((point.position - Vector3(50, std::atan2(4, 3), 0)).norm() < 1e-12);
   CHECK((point.tool - Vector3(30, 40, 0)).norm() < 1e-12);
   const auto refused = executor.jog_to({45, 0, 0}, {.tool = 4});  // it would bound no joint
@@ -315,9 +315,9 @@ TEST_CASE("behind a map set points show the start of a program, and its tool", "
 }
 
 TEST_CASE("a program that begins nowhere shows no such place", "[executor]") {
-  Runner executor(mill);
+  SmallRunner executor(mill);
   REQUIRE(executor.push({.path = path::Line<3>({NAN, 0, 0}, {3, 0, 0}), .feed = 10}));
-  CHECK(executor.tick(period).position.isZero());
+  CHECK(executor.tick(tick_time).position.isZero());
 }
 
 TEST_CASE("a program is over only behind the last cell of its last block", "[executor]") {
@@ -330,30 +330,32 @@ TEST_CASE("a program is over only behind the last cell of its last block", "[exe
   executor->end_of_program();
   for (int tick = 0; tick < 100'000 && !executor->finished(); ++tick) {
     if (tick % 300 == 299) executor->plan(4);  // the thread that plans is late
-    executor->tick(period);
+    executor->tick(tick_time);
   }
   CHECK(executor->finished());
-  CHECK(executor->tick(period).along.position == Approx(wave->length()));
+  CHECK(executor->tick(tick_time).along.position == Approx(wave->length()));
 }
 
 TEST_CASE("a push plans in as many steps as it is given, and what is left is planned later", "[executor]") {
   const auto blocks = test::blocks_of({"G1 X60 F1200", "Y20", "X0"}, mill);
-  const auto at_once = std::make_unique<Runner>(mill, Runner::Options{.tolerance = 0, .background = true});
-  const auto later = std::make_unique<Runner>(mill, Runner::Options{.tolerance = 0, .background = true});
+  const auto at_once =
+      std::make_unique<SmallRunner>(mill, SmallRunner::Options{.tolerance = 0, .background = true});
+  const auto later =
+      std::make_unique<SmallRunner>(mill, SmallRunner::Options{.tolerance = 0, .background = true});
   for (const auto& block : blocks) {
     REQUIRE(at_once->push(block));
     REQUIRE(later->push(block, 0));
   }
-  for (Runner* executor : {at_once.get(), later.get()}) executor->end_of_program();
+  for (SmallRunner* executor : {at_once.get(), later.get()}) executor->end_of_program();
   CHECK(later->plan(0));
-  for (int tick = 0; tick < 10; ++tick) CHECK(later->tick(period).position.isZero());
+  for (int tick = 0; tick < 10; ++tick) CHECK(later->tick(tick_time).position.isZero());
   while (at_once->plan(1)) {
   }
   while (later->plan(1)) {
   }
   double apart = 0;
   for (int tick = 0; tick < 100'000 && !at_once->finished(); ++tick)
-    apart = std::max(apart, (at_once->tick(period).position - later->tick(period).position).norm());
+    apart = std::max(apart, (at_once->tick(tick_time).position - later->tick(tick_time).position).norm());
   CHECK(at_once->finished());
   CHECK(later->finished());
   CHECK(apart == 0);
@@ -361,7 +363,7 @@ TEST_CASE("a push plans in as many steps as it is given, and what is left is pla
 
 TEST_CASE("nothing is allocated once an executor and a reader are made", "[executor]") {
   BlockReader reader(mill);
-  const auto executor = std::make_unique<Runner>(mill);
+  const auto executor = std::make_unique<SmallRunner>(mill);
   std::array<std::string, 6> lines{
       "G21 G90 F1200 M3 S100", "G1 X20", "G3 X25 Y5 R5", "G4 P0.05", "G1 X0", "M30"};
   const auto before = test::heap_allocations();
@@ -370,17 +372,17 @@ TEST_CASE("nothing is allocated once an executor and a reader are made", "[execu
       const auto blocks = reader.read_line(line);
       if (!blocks) break;
       for (const auto& block : *blocks)
-        while (!executor->push(block)) executor->tick(period);
+        while (!executor->push(block)) executor->tick(tick_time);
     }
     executor->end_of_program();
     for (int tick = 0; !executor->finished(); ++tick) {
       if (tick == 100) executor->feed_override(1.7);
       if (tick == 200) executor->feed_hold();
       if (tick == 300) executor->resume();
-      executor->tick(period);
+      executor->tick(tick_time);
     }
     if (!executor->jog_to({1, 1, 1})) break;
-    for (int tick = 0; tick < 2000; ++tick) executor->tick(period);
+    for (int tick = 0; tick < 2000; ++tick) executor->tick(tick_time);
     if (!executor->restart(0, {1, 1, 1})) break;
   }
   CHECK(test::heap_allocations() == before);
@@ -394,7 +396,7 @@ TEST_CASE("blocks come from another thread", "[executor]") {
                                    : test::random_lines(random, 300, {0, 0, 0}, 20, "");
   const auto blocks = test::blocks_of(lines, mill);
   const auto executor =
-      std::make_unique<Runner>(mill, Runner::Options{.tolerance = tolerance, .background = true});
+      std::make_unique<SmallRunner>(mill, SmallRunner::Options{.tolerance = tolerance, .background = true});
   executor->program_stop(false);
   std::atomic<bool> over{false};
   std::thread feeder([&] {
@@ -412,11 +414,11 @@ TEST_CASE("blocks come from another thread", "[executor]") {
   test::TickCheck<Machine<3>, SetPoint<3>, ProgramBlock<Machine<3>>> check(
       mill, blocks,
       {.restless = 1,
-       .period = period,
+       .period = tick_time,
        .rounding = tolerance > 0 ? 1e-9 : 1e-12,
        .tolerance = tolerance * (1 + 1e-5)});
   for (int tick = 0; tick < 10'000'000 && !executor->finished(); ++tick) {
-    const auto point = executor->tick(period);
+    const auto point = executor->tick(tick_time);
     if (executor->pushed() > 0) check.take(point);
     if (tick == 300) executor->feed_override(1.5);
     if (tick % 64 == 0) std::this_thread::yield();

@@ -6,11 +6,11 @@
 
 #include "cncplan/executor_levels.hpp"
 #include "plan/rows_program.hpp"
+#include "support/small_mill.hpp"
 
 namespace cncplan::test {
 
 using Runner = Executor<Machine<3>, 64>;
-inline constexpr double period = 1e-3;  // s
 
 /// With limits of axes, which jogs need.
 inline Machine<3> with_axes() {
@@ -36,8 +36,8 @@ double run_to_end(E& executor, const MillBlocks& blocks, double most = 600) {
   double time = 0;
   while (!executor.finished() && time < most) {
     feed(executor, blocks, fed);
-    executor.tick(period);
-    time += period;
+    executor.tick(tick_time);
+    time += tick_time;
   }
   return time;
 }

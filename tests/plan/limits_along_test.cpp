@@ -55,7 +55,7 @@ void draw_limits(test::Random& random, Limited& of) {
   of.jerk = kind == 1 ? infinity : random.log_uniform(100, 1e6);
 }
 
-Mill draw_machine(test::Random& random) {
+Mill draw_mill(test::Random& random) {
   Mill machine;
   draw_limits(random, machine.limits);
   for (Axis& axis : machine.axes) {
@@ -130,7 +130,7 @@ TEST_CASE("no state within the limits along a path exceeds a limit of the tool o
   test::Random random;
   for (int draws = 0; draws < 5000; ++draws) {
     const Bounds bounds = draw_bounds(random);
-    const Mill machine = draw_machine(random);
+    const Mill machine = draw_mill(random);
     const double speed = random.log_uniform(0.1, 1000);
     const double tool_speed = machine.limits.velocity * random.uniform(0.5, 2);
     const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e3);
@@ -166,7 +166,7 @@ TEST_CASE("the limits along a path use up a limit of some axis or of the tool") 
   int cases = 0;
   for (int draws = 0; draws < 2000; ++draws) {
     const Bounds bounds = draw_bounds(random);
-    const Mill machine = draw_machine(random);
+    const Mill machine = draw_mill(random);
     if (bounds.first.isZero() && bounds.tool.first == 0) continue;
     const double speed = random.log_uniform(0.1, 1000), tool_speed = machine.limits.velocity;
     const double length = random.coin() ? infinity : random.log_uniform(1e-3, 1e3);

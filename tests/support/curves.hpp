@@ -77,7 +77,7 @@ struct Standing {
 };
 
 /// A table that turns under a slide: radius (mm), angle (rad), height (mm).
-struct Polar {
+struct TurningTable {
   using Scalar = double;
   static constexpr int axis_count = 3;
 

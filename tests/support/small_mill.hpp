@@ -15,19 +15,20 @@ inline constexpr Machine<3> small_mill{
               {.letter = 'Y', .velocity = 50, .acceleration = 1000, .jerk = 20000},
               {.letter = 'Z', .velocity = 20, .acceleration = 300, .jerk = 5000}}},
     .limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
-inline constexpr double period = 1e-3;
-using Runner = Executor<Machine<3>, 16>;
+inline constexpr double tick_time = 1e-3;  // s
+using SmallRunner = Executor<Machine<3>, 16>;
 using Lines = std::vector<std::string>;
 
-inline void load(Runner& executor, const Lines& lines) {
+inline void load(SmallRunner& executor, const Lines& lines) {
   for (const auto& block : blocks_of(lines, small_mill)) REQUIRE(executor.push(block));
   executor.end_of_program();
 }
 
 // Ticks until it is over, or for so long; the last set point.
-inline SetPoint<3> run(Runner& executor, double seconds = 1e3) {
+inline SetPoint<3> run(SmallRunner& executor, double seconds = 1e3) {
   SetPoint<3> point;
-  for (int tick = 0; tick < seconds / period && !executor.finished(); ++tick) point = executor.tick(period);
+  for (int tick = 0; tick < seconds / tick_time && !executor.finished(); ++tick)
+    point = executor.tick(tick_time);
   return point;
 }
 
