@@ -107,7 +107,7 @@ TEST_CASE("stream: plans that look ahead over seconds make short parts, and take
   for (const auto level : {SmoothLevel::good, SmoothLevel::best}) {
     std::string text = "F1800\n";
     Vector3 at = Vector3::Zero();
-    for (int i = 0; i < (level == SmoothLevel::good ? 150 : 25); ++i) {
+    for (int i = 0; i < (level == SmoothLevel::good ? 60 : 15); ++i) {
       at += Vector3(random.uniform(3, 25), random.uniform(-10, 10), 0);
       const bool arc = random.integer(0, 3) == 0, rapid = random.integer(0, 9) == 0;
       text += rapid ? "G0 X" : arc ? "G2 R60 X" : "G1 X";
