@@ -20,18 +20,16 @@ target_link_libraries(cncplan_development INTERFACE cncplan_warnings cncplan::co
 add_library(cncplan_header_only INTERFACE)
 target_link_libraries(cncplan_header_only INTERFACE cncplan_warnings cncplan::cncplan)
 
-# Programs and examples take the compiled library: they are optimised little themselves, and parse its headers once for all.
-function(cncplan_builds_fast)
+# Programs and examples take the compiled library, and parse its headers once for all.
+function(cncplan_precompiled_headers)
   if(NOT TARGET cncplan_program_precompiled)
     set(empty ${PROJECT_BINARY_DIR}/program_precompiled.cpp)
     file(CONFIGURE OUTPUT ${empty} CONTENT "")
     add_library(cncplan_program_precompiled OBJECT ${empty})
     target_link_libraries(cncplan_program_precompiled PRIVATE cncplan_development)
-    target_compile_options(cncplan_program_precompiled PRIVATE $<$<CONFIG:Release>:-O1>)
     target_precompile_headers(cncplan_program_precompiled PRIVATE <cncplan/cncplan.hpp>)
   endif()
   foreach(target IN LISTS ARGN)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
     target_precompile_headers(${target} REUSE_FROM cncplan_program_precompiled)
   endforeach()
 endfunction()
