@@ -27,11 +27,6 @@ using Mill = cncplan::Machine<N>;
 template <class Map>
 using Mapped = cncplan::MappedMachine<Map>;
 
-/// mm from a table's axis: nothing nearer is driven; 0 for other machines.
-[[nodiscard]] inline double least_radius(const support::Machine& file) {
-  return file.kinematics == Kinematics::polar ? file.smallest_radius.value_or(1.0) : 0.0;
-}
-
 /// A row of the four-axis machine, by the way of the tool's tip.
 struct RowCurve {
   using Scalar = double;

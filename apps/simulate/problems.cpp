@@ -63,7 +63,7 @@ std::pair<std::string, std::string> texts(const cncplan::Problem& problem, const
                                           std::span<const double> start) {
   const Error& error = problem.error();
   const bool beyond = error.code == ErrorCode::above_limit || error.code == ErrorCode::below_limit;
-  const double least = least_radius(machine);  // of the first axis
+  const double least = machine.least_radius();  // of the first axis
   const bool unreachable = error.code == ErrorCode::unreachable && least > 0.0;
   if ((beyond || unreachable) && error.field.starts_with("axis ")) {
     const auto found = std::ranges::find(machine.axes, error.field.back(), &support::MachineAxis::letter);

@@ -83,6 +83,10 @@ struct MachineFile {
   std::optional<double> smallest_radius;  ///< mm from a rotary table's axis; nothing nearer is driven
   std::array<double, 2> table_center{};   ///< X, Y of a polar machine's table axis, mm
 
+  /// mm from the table's axis of a polar machine: nothing nearer is driven; 0 for others.
+  [[nodiscard]] double least_radius() const {
+    return kinematics == Kinematics::polar ? smallest_radius.value_or(1.0) : 0.0;
+  }
   /// An axis' position, speed ... in mm or degrees.
   [[nodiscard]] double shown(std::size_t axis, double joint) const { return joint / axes[axis].unit(); }
 
@@ -106,8 +110,7 @@ struct MachineFile {
 };
 
 /// A machine whose programs name X, Y, Z over a rotary table (`polar`) as one behind a map (`mapped`), at X0
-/// Y0 Z0: its slide keeps `smallest_radius` from the table's axis, 1 mm where none is given. Others as they
-/// are.
+/// Y0 Z0, whose slide keeps the `least_radius`. Others as they are.
 [[nodiscard]] MachineFile with_table_map(MachineFile machine);
 
 /// Reads a machine file. The error, of one that cannot be read or has an unknown or wrong entry, is a line as

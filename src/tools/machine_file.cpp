@@ -526,10 +526,10 @@ MachineFile with_table_map(MachineFile machine) {
   if (machine.kinematics != Kinematics::polar) return machine;
   const kinematics::PolarMap map{.center = machine.table_center};
   const auto start = map.joints(std::array<double, 3>{});
+  double& low = machine.axes[0].low;  // of the slide, mm
+  low = std::max(low, machine.least_radius());
   machine.kinematics = Kinematics::mapped;
   machine.map = {"polar", kinematics::ThreeJoints(map), {start.begin(), start.end()}, Orientation::joints};
-  double& low = machine.axes[0].low;  // it is no rotary one
-  low = std::max(low, machine.smallest_radius.value_or(1.0));
   return machine;
 }
 
