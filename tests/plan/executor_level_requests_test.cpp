@@ -18,7 +18,7 @@ using namespace cncplan;
 using namespace cncplan::test;
 
 TEST_CASE("executor levels: a hold comes soon, and the time goes on where it was", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of(rows(3, 50));
+  const MillBlocks blocks = blocks_of_text(rows(3, 50));
   const auto undisturbed = runner();
   const double time = run_to_end(*undisturbed, blocks);
   for (double at = 0.1; at < time - 0.3; at += 0.37) {
@@ -47,7 +47,7 @@ TEST_CASE("executor levels: a hold comes soon, and the time goes on where it was
 TEST_CASE("executor levels: a quick stop is no later than a hold, also where one waits for its brake",
           "[executor-levels]") {
   constexpr double share = 2;
-  const MillBlocks blocks = blocks_of(rows(2, 50));
+  const MillBlocks blocks = blocks_of_text(rows(2, 50));
   // s from a hold to rest; so many ticks behind it a quick stop is asked for, none if that is below 0.
   const auto hold = [&](double at, int quick) {
     const auto executor = runner({.level = SmoothLevel::good, .quick_stop_share = share});
@@ -78,7 +78,7 @@ TEST_CASE("executor levels: a quick stop is no later than a hold, also where one
 }
 
 TEST_CASE("executor levels: single steps and a pause rest just before the next block", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
+  const MillBlocks blocks = blocks_of_text("F1800 G1 X20\nX30 Y10\nX30 Y30\nX10\n");
   const LevelExecutorOptions good{.level = SmoothLevel::good};
   const auto executor = std::make_unique<Runner>(mill, good);
   std::size_t fed = 0;
@@ -124,7 +124,7 @@ TEST_CASE("executor levels: single steps rest once before every block, however h
               std::to_string(y) + "\n";
     }
     INFO(text);
-    const MillBlocks blocks = blocks_of(text);
+    const MillBlocks blocks = blocks_of_text(text);
     const auto executor = std::make_unique<Runner>(mill, LevelExecutorOptions{.level = SmoothLevel::good});
     std::size_t fed = 0;
     feed(*executor, blocks, fed);
@@ -145,7 +145,7 @@ TEST_CASE("executor levels: single steps rest once before every block, however h
 }
 
 TEST_CASE("executor levels: back to the last rest, and on", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of("F1800 G1 X20\nG4 P0.1\nX30 Y10\nX30 Y30\nX10\n");
+  const MillBlocks blocks = blocks_of_text("F1800 G1 X20\nG4 P0.1\nX30 Y10\nX30 Y30\nX10\n");
   const auto executor = runner();
   std::size_t fed = 0;
   feed(*executor, blocks, fed);
@@ -166,7 +166,7 @@ TEST_CASE("executor levels: a share of the feed acts at once below 1, on blocks 
   for (int i = 1; i <= 900; ++i)
     text += "G1 X" + std::to_string(0.5 * i) + " Y" + std::to_string(0.2 * std::sin(0.1 * i)) + "\n";
   text += "G0 X460\n";
-  const MillBlocks blocks = blocks_of(text);
+  const MillBlocks blocks = blocks_of_text(text);
   const auto executor = runner();
   std::size_t fed = 0;
   std::vector<Vector3> places;
@@ -217,7 +217,7 @@ TEST_CASE("executor levels: a share of the feed above 1 acts within seconds, how
     std::string text = "F1200\n";
     for (int i = 1; i <= (length < 5 ? 300 : 60); ++i)
       text += "G1 X" + std::to_string(length * i) + " Y" + std::to_string(0.03 * length * (i % 3)) + "\n";
-    const MillBlocks blocks = blocks_of(text, machine);
+    const MillBlocks blocks = blocks_of_text(text, machine);
     const auto executor = std::make_unique<Executor<Machine<3>, 300>>(
         machine, LevelExecutorOptions{.level = SmoothLevel::good});
     std::size_t fed = 0;
@@ -262,7 +262,7 @@ TEST_CASE("executor levels: a share of the feed above 1 acts at once, and no fee
   for (const double length : {0.5, 3.0, 40.0}) {
     std::string text = "F1200\n";
     for (int i = 1; i * length < 400; ++i) text += "G1 X" + std::to_string(length * i) + "\n";
-    const MillBlocks blocks = blocks_of(text, machine);
+    const MillBlocks blocks = blocks_of_text(text, machine);
     for (const double share : {1.01, 1.2, 2.0}) {
       CAPTURE(length, share);
       const auto executor = std::make_unique<Executor<Machine<3>, 300>>(
@@ -299,7 +299,8 @@ TEST_CASE("executor levels: a share of the feed takes as long as that feed does"
     const auto executor = runner();
     executor->feed_override(share);
     return run_to_end(
-        *executor, blocks_of("F" + std::to_string(feed) + " G1 X20\nX30 Y10\nX30 Y30\nX10\n", with_axes()));
+        *executor,
+        blocks_of_text("F" + std::to_string(feed) + " G1 X20\nX30 Y10\nX30 Y30\nX10\n", with_axes()));
   };
   for (const double share : {0.1, 0.5, 0.9})
     CHECK(time_at(1800, share) == Approx(time_at(1800 * share, 1)).margin(3 * tick_time));
@@ -319,7 +320,7 @@ TEST_CASE("executor levels: a rapid behind a feed begins at its own share, and a
            {Shares{1, 0.2}, {1, 0.5}, {0.3, 1}, {0.5, 1}, {0.2, 0.6}, {1, 0}, {0.8, 0.1}}) {
         const int asked = random.integer(0, 1) == 0 ? 0 : static_cast<int>(random.integer(1, 1200));
         CAPTURE(level, corner, shares.feed, shares.rapid, asked);
-        const MillBlocks blocks = blocks_of("F1200\nG1 X40\nG0 " + corner + "\nG1 X120 Y50\n");
+        const MillBlocks blocks = blocks_of_text("F1200\nG1 X40\nG0 " + corner + "\nG1 X120 Y50\n");
         const auto executor = runner({.level = level});
         std::size_t fed = 0;
         double above = 0, x = 0;
@@ -352,7 +353,7 @@ TEST_CASE("executor levels: what rests before a slower block goes on, however sh
       for (const double share : {0.085, 0.1, 0.25, 0.3, 0.4, 0.6})
         for (const double tick : {0.001, 0.01}) {
           CAPTURE(level, way, share, tick);
-          const MillBlocks blocks = blocks_of("F1800\nG1 X" + std::string(way) + "\nG0 X8\n");
+          const MillBlocks blocks = blocks_of_text("F1800\nG1 X" + std::string(way) + "\nG0 X8\n");
           const auto executor = runner({.level = level});
           executor->rapid_override(share);
           std::size_t fed = 0;
@@ -370,7 +371,7 @@ TEST_CASE("executor levels: the way back ends at rest where what is kept begins"
   std::string text = "F1800\n";
   for (int i = 1; i <= 1500; ++i)  // one curve without a rest
     text += "G1 X" + std::to_string(0.5 * i) + " Y" + std::to_string(3 * std::sin(0.05 * i)) + "\n";
-  const MillBlocks blocks = blocks_of(text);
+  const MillBlocks blocks = blocks_of_text(text);
   for (const double at : {5.0, 12.0, 20.0}) {
     CAPTURE(at);
     const auto executor = runner();
@@ -410,7 +411,7 @@ TEST_CASE("executor levels: the way back ends at rest where what is kept begins"
 
 TEST_CASE("executor levels: what stands before a rapid without speed goes on once it has one",
           "[executor-levels]") {
-  const MillBlocks blocks = blocks_of("F1200\nG1 X40\nG0 X80\nG1 X120\n");
+  const MillBlocks blocks = blocks_of_text("F1200\nG1 X40\nG0 X80\nG1 X120\n");
   const auto executor = runner();
   std::size_t fed = 0;
   executor->rapid_override(0);

@@ -47,7 +47,8 @@ void check(const LiveFaults& faults, double tolerance) {
 }  // namespace
 
 TEST_CASE("executor levels: one option is the level", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of("F1800 G1 X10\nX10.7 Y0.7\nX11.4 Y0\nX20\nX20.5 Y0.5\nX21 Y0\nX30\n");
+  const MillBlocks blocks =
+      blocks_of_text("F1800 G1 X10\nX10.7 Y0.7\nX11.4 Y0\nX20\nX20.5 Y0.5\nX21 Y0\nX30\n");
   double last = std::numeric_limits<double>::infinity();
   for (const auto level : {SmoothLevel::fast, SmoothLevel::good}) {
     const auto executor = runner({.level = level, .reserve = 0, .hold_factor = 0});
@@ -85,7 +86,7 @@ TEST_CASE("executor levels: a part behind a cut that comes up to its feed is no 
 
 TEST_CASE("executor levels: a long run in parts goes through the cuts, within limits and tolerance",
           "[executor-levels]") {
-  const MillBlocks blocks = blocks_of(rows(12, 50));
+  const MillBlocks blocks = blocks_of_text(rows(12, 50));
   const auto executor = runner({.level = SmoothLevel::good, .reserve = 0, .hold_factor = 0});
   test::Random random;
   const Machine<3> machine = with_axes();
@@ -97,7 +98,7 @@ TEST_CASE("executor levels: a long run in parts goes through the cuts, within li
 }
 
 TEST_CASE("executor levels: starved, it drives the proven way to rest, and goes on", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of(rows(6, 50));
+  const MillBlocks blocks = blocks_of_text(rows(6, 50));
   for (const double wait : {0.05, 100.0}) {  // with the second one only the way to rest is there
     const auto executor = runner({.level = SmoothLevel::good, .longest_wait = wait});
     std::size_t fed = 0;
@@ -165,7 +166,7 @@ TEST_CASE("executor levels: random programs, random requests, random feeding", "
 }
 
 TEST_CASE("executor levels: what it is doing, at every change", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of("G21 G90 F1200\nG1 X20\nG4 P0.2\nG1 Y20\nG1 X0\nM30\n");
+  const MillBlocks blocks = blocks_of_text("G21 G90 F1200\nG1 X20\nG4 P0.2\nG1 Y20\nG1 X0\nM30\n");
   const auto executor = runner();
   std::size_t fed = 0;
   feed(*executor, blocks, fed);
@@ -183,7 +184,7 @@ TEST_CASE("executor levels: what it is doing, at every change", "[executor-level
 }
 
 TEST_CASE("executor levels: a block that is refused ends the motion where it begins", "[executor-levels]") {
-  MillBlocks blocks = blocks_of("F1800 G1 X20\nX30 Y10\n");
+  MillBlocks blocks = blocks_of_text("F1800 G1 X20\nX30 Y10\n");
   MillBlock apart = blocks.back();
   apart.path = path::Line<3>(Vector3(5, 5, 5), Vector3(6, 5, 5));
   apart.line = 77;
@@ -206,7 +207,7 @@ TEST_CASE("executor levels: a block that is refused ends the motion where it beg
 
 TEST_CASE("executor levels: a tick allocates nothing where blocks are planned elsewhere",
           "[executor-levels]") {
-  const MillBlocks blocks = blocks_of(rows(6, 50));
+  const MillBlocks blocks = blocks_of_text(rows(6, 50));
   const auto executor = runner({.level = SmoothLevel::good, .background = true});
   std::size_t fed = 0, allocations = 0;
   for (int tick = 0; !executor->finished() && tick < 100000; ++tick) {
@@ -222,7 +223,7 @@ TEST_CASE("executor levels: a tick allocates nothing where blocks are planned el
 }
 
 TEST_CASE("executor levels: all memory is that of a resource that it is given", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of(rows(6, 50));
+  const MillBlocks blocks = blocks_of_text(rows(6, 50));
   std::vector<std::byte> room(64 << 20);
   std::pmr::monotonic_buffer_resource all(room.data(), room.size(), std::pmr::null_memory_resource());
   std::pmr::unsynchronized_pool_resource memory({0, 4 << 20}, &all);  // what is given back is used again
@@ -235,7 +236,7 @@ TEST_CASE("executor levels: all memory is that of a resource that it is given", 
 }
 
 TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of(rows(10, 50));
+  const MillBlocks blocks = blocks_of_text(rows(10, 50));
   const auto executor = runner({.level = SmoothLevel::good, .background = true});
   std::atomic<bool> over = false;
   std::thread planner([&] {
@@ -269,7 +270,7 @@ TEST_CASE("executor levels: one thread pushes and plans, another one ticks", "[e
 
 TEST_CASE("executor levels: options that are none run nothing, and that is told", "[executor-levels]") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const MillBlocks blocks = blocks_of("F1800 G1 X20\n");
+  const MillBlocks blocks = blocks_of_text("F1800 G1 X20\n");
   const auto refused = [&](const auto& options, std::string_view field) {
     CAPTURE(field);
     const auto executor = std::make_unique<Runner>(mill, options);
@@ -297,7 +298,7 @@ TEST_CASE("executor levels: options that are none run nothing, and that is told"
 TEST_CASE("executor levels: no time of a long tick is lost", "[executor-levels]") {
   std::string text = "F1800 G61.1\n";
   for (int i = 1; i <= 20; ++i) text += "G1 X" + std::to_string(i) + "\n";
-  const MillBlocks blocks = blocks_of(text);
+  const MillBlocks blocks = blocks_of_text(text);
   const auto executor = runner();
   std::size_t fed = 0;
   feed(*executor, blocks, fed);
@@ -309,7 +310,7 @@ TEST_CASE("executor levels: no time of a long tick is lost", "[executor-levels]"
 TEST_CASE("executor levels: a part comes while the rate changes", "[executor-levels]") {
   // The first part with its way to rest is there; a change of the rate begins, and then the next part comes.
   // Wherever the cut is, one of these changes leads beyond it.
-  const MillBlocks blocks = blocks_of(rows(10, 50));
+  const MillBlocks blocks = blocks_of_text(rows(10, 50));
   for (const auto& [before, behind] : {std::pair(0.3, 1.0), std::pair(1.0, 0.2)}) {
     CAPTURE(before, behind);
     double acceleration = 0, jerk = 0, latest = 0;
@@ -345,7 +346,8 @@ TEST_CASE("executor levels: a part comes while the rate changes", "[executor-lev
 }
 
 TEST_CASE("executor levels: step edges are where the axes are, at every tick", "[executor-levels]") {
-  const MillBlocks blocks = blocks_of("F1800\nG1 X10\nX20 Y1\nG4 P0.2\nG3 X30 Y11 J10\nG1 Y20\nX10\nX0 Y0\n");
+  const MillBlocks blocks =
+      blocks_of_text("F1800\nG1 X10\nX20 Y1\nG4 P0.2\nG3 X30 Y11 J10\nG1 Y20\nX10\nX0 Y0\n");
   Machine<3> machine = with_axes();
   for (auto& axis : machine.axes) axis.motors = {step::Drive{.steps_per_unit = 200}};
   for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good, SmoothLevel::best}) {

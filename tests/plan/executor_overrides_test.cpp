@@ -47,7 +47,7 @@ double top_speed(E& executor, const MillBlocks& blocks) {
 TEST_CASE("executor overrides: a share of the feed is cut at the highest, at every door",
           "[executor-overrides]") {
   const Machine<3> machine = fast_machine();
-  const MillBlocks blocks = blocks_of("F600\nG1 X200\nX400 Y1\n", machine);
+  const MillBlocks blocks = blocks_of_text("F600\nG1 X200\nX400 Y1\n", machine);
   const auto planned = plan_blocks(blocks, machine, {.level = SmoothLevel::good, .hold_factor = 2});
   REQUIRE(planned);
   for (const double most : {1.0, 1.5, 2.0, 5.0}) {
@@ -86,7 +86,7 @@ TEST_CASE("executor overrides: options out of their domain are refused", "[execu
     refuses({.level = level, .horizon = no_number}, "horizon", ErrorCode::not_finite);
     refuses({.level = level, .horizon = infinity}, "horizon", ErrorCode::not_finite);
   }
-  const auto planned = plan_blocks(blocks_of("F600\nG1 X10\n"), mill, {.level = SmoothLevel::good});
+  const auto planned = plan_blocks(blocks_of_text("F600\nG1 X10\n"), mill, {.level = SmoothLevel::good});
   REQUIRE(planned);
   const TrajectoryExecutor<Machine<3>, MillBlock> executor(*planned, mill, {.most_override = 0.5});
   CHECK(executor.error());
@@ -99,7 +99,7 @@ TEST_CASE("executor overrides: a higher feed is driven soon through bends, and l
   std::string text = "F600\n";
   for (int i = 1; i < 900; ++i)
     text += "G1 X" + std::to_string(0.3 * i) + " Y" + std::to_string(2 * std::sin(0.12 * i)) + "\n";
-  const MillBlocks blocks = blocks_of(text, machine);
+  const MillBlocks blocks = blocks_of_text(text, machine);
   Random random;
   const int asked = static_cast<int>(random.integer(1500, 4000));
   CAPTURE(asked);
@@ -152,7 +152,7 @@ struct Asked {
 template <class Machine>
 double excess(const Machine& machine, const LevelExecutorOptions& options, const std::string& text,
               const std::vector<Asked>& asked, bool slowly = false) {
-  const MillBlocks blocks = blocks_of(text, machine);
+  const MillBlocks blocks = blocks_of_text(text, machine);
   const auto executor = std::make_unique<Runner>(machine, options);
   std::size_t fed = 0;
   double worst = 0;
@@ -245,7 +245,8 @@ TEST_CASE("executor overrides: a lower feed is planned, and leaves corners and r
   for (int i = 0; i < 100; ++i)
     legs += "G1 X" + std::to_string(1.7320508 * (i + 1)) + " Y" + std::to_string(i % 2 == 0 ? 1 : 0) + "\n";
   const Machine<3> machine = with_axes();
-  const MillBlocks at_30 = blocks_of("F1800\n" + legs, machine), at_12 = blocks_of("F720\n" + legs, machine);
+  const MillBlocks at_30 = blocks_of_text("F1800\n" + legs, machine),
+                   at_12 = blocks_of_text("F720\n" + legs, machine);
   // s until the end; from a time on a share of the feed is asked for, from another one on all of it.
   const auto takes = [&](const MillBlocks& blocks, SmoothLevel level, double share = 1, double from = 0,
                          double until = 1e9) {

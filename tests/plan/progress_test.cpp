@@ -128,7 +128,7 @@ TEST_CASE("a stream that was interrupted goes on, and nothing is lost", "[progre
   Random random;
   // Short lines on the exact path would be passed with jumps of the velocity.
   const MillBlocks blocks =
-      blocks_of(rows(4, 60) + "M8\nG4 P0.1\nG61\n" + rows(2, 20) + "G64 P0.01\n" + rows(4, 100));
+      blocks_of_text(rows(4, 60) + "M8\nG4 P0.1\nG61\n" + rows(2, 20) + "G64 P0.01\n" + rows(4, 100));
   for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best}) {
     CAPTURE(to_text(level), test::seed());
     int interruptions = 0, in_turn = 0;

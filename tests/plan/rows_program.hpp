@@ -21,7 +21,7 @@ using MillBlocks = std::vector<MillBlock>;
 inline const Machine<3> mill{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
 inline const PlanOptions within{.tolerance = 0.01};
 
-inline MillBlocks blocks_of(const std::string& text, const Machine<3>& machine = mill) {
+inline MillBlocks blocks_of_text(const std::string& text, const Machine<3>& machine = mill) {
   auto program = read_text(text, machine, within);
   REQUIRE_FALSE(program.failed());
   return std::move(program).take_blocks();

@@ -62,7 +62,7 @@ std::string mixed() {
 }  // namespace
 
 TEST_CASE("a stream lives in the memory of its caller", "[smooth-memory]") {
-  const MillBlocks blocks = blocks_of(mixed());
+  const MillBlocks blocks = blocks_of_text(mixed());
   for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best}) {
     std::vector<std::byte> buffer(std::size_t{8} << 20);
     double time = 0;
@@ -90,7 +90,7 @@ TEST_CASE("a stream lives in the memory of its caller", "[smooth-memory]") {
 }
 
 TEST_CASE("a plan as a whole lives in the memory of its caller", "[smooth-memory]") {
-  const MillBlocks blocks = blocks_of(rows(3, 60));
+  const MillBlocks blocks = blocks_of_text(rows(3, 60));
   RefusingMemory memory;
   {
     std::size_t requests = 0;
@@ -111,7 +111,7 @@ TEST_CASE("a plan as a whole lives in the memory of its caller", "[smooth-memory
 }
 
 TEST_CASE("a plan as a whole for which memory gives out is an error", "[smooth-memory]") {
-  const MillBlocks blocks = blocks_of(rows(1, 12));
+  const MillBlocks blocks = blocks_of_text(rows(1, 12));
   RefusingMemory memory;
   int granted = 0, refused = 0;
   for (int most = 0; refused == most; ++most) {
@@ -128,7 +128,7 @@ TEST_CASE("a plan as a whole for which memory gives out is an error", "[smooth-m
 
 TEST_CASE("where memory gives out at times nothing is lost", "[smooth-memory]") {
   test::Random random;
-  const MillBlocks blocks = blocks_of(mixed());
+  const MillBlocks blocks = blocks_of_text(mixed());
   for (int round = 0; round < 2; ++round) {
     RefusingMemory memory;
     const int odds = random.integer(200, 4000);  // about 5000 requests in all
@@ -170,7 +170,7 @@ TEST_CASE("where memory gives out at times nothing is lost", "[smooth-memory]") 
 }
 
 TEST_CASE("with little memory a plan is slower, with less there is none", "[smooth-memory]") {
-  const MillBlocks blocks = blocks_of(rows(3, 60));
+  const MillBlocks blocks = blocks_of_text(rows(3, 60));
   RefusingMemory ample;
   // The duration of a plan in so many bytes; 0 where there is none.
   const auto duration_in = [&](std::size_t bytes, RefusingMemory& memory) {

@@ -47,7 +47,7 @@ TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the t
     CAPTURE(feed, held);
     Machine<3> machine = mill;
     machine.limits.velocity = feed / 60;
-    const MillBlocks blocks = blocks_of(rows(8, 50, feed), machine);
+    const MillBlocks blocks = blocks_of_text(rows(8, 50, feed), machine);
     const auto whole = plan_blocks(blocks, machine, at_level(level, within));
     REQUIRE(whole);
     std::vector<double> ends;
@@ -62,7 +62,7 @@ TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the t
 }
 
 TEST_CASE("stream: the level best", "[smooth-stream]") {
-  const MillBlocks blocks = blocks_of(rows(4, 50));
+  const MillBlocks blocks = blocks_of_text(rows(4, 50));
   std::vector<double> ends;
   const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::best, 80, &ends);
   REQUIRE(parts);
@@ -71,7 +71,7 @@ TEST_CASE("stream: the level best", "[smooth-stream]") {
 }
 
 TEST_CASE("stream: a part goes on as the one before ended", "[smooth-stream]") {
-  const MillBlocks blocks = blocks_of(rows(6, 60));
+  const MillBlocks blocks = blocks_of_text(rows(6, 60));
   Stream stream(mill, at_level(SmoothLevel::good, within), 80);
   Vector3 position = Vector3::Zero(), velocity = Vector3::Zero(), acceleration = Vector3::Zero();
   int parts = 0;
@@ -114,7 +114,7 @@ TEST_CASE("stream: plans that look ahead over seconds make short parts, and take
       text += std::to_string(at.x()) + " Y" + std::to_string(at.y()) +
               (random.integer(0, 14) == 0 ? "\nG4 P0.1\n" : "\n");
     }
-    const MillBlocks blocks = blocks_of(text);
+    const MillBlocks blocks = blocks_of_text(text);
     const auto whole = plan_blocks(blocks, mill, at_level(level, within));
     REQUIRE(whole);
     Stream stream(mill, at_level(level, within), 300);
@@ -158,7 +158,7 @@ TEST_CASE("stream: where feeds are raised behind a cut the motion goes on", "[sm
       "G1 X-0.39106 Y2.92340 Z-0.43369\nG1 X-2.82634 Y3.36672 Z-1.36351\nG1 X-1.56806 Y1.77250 Z-0.70422\n"
       "G0 X-1.78832 Y3.76106 Z-1.33240\nG0 X-2.20918 Y2.59644 Z-0.63006\nM3 S1000\n"
       "G0 X-3.76304 Y2.63373 Z-0.97827\nG1 X-2.33247 Y0.95459 Z-0.93821\n";
-  const MillBlocks blocks = blocks_of(text, machine);
+  const MillBlocks blocks = blocks_of_text(text, machine);
   std::size_t raised = 0;
   for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best})
     for (const double reserve : {0.0, 0.02})
@@ -198,7 +198,7 @@ TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]")
   // Runs, a long stretch on the exact path, and one without any motion.
   std::string text = rows(3, 60) + "G61\n" + rows(3, 60) + "G64\n";
   for (int i = 0; i < 200; ++i) text += "M8\n";
-  const MillBlocks blocks = blocks_of(text + rows(3, 60));
+  const MillBlocks blocks = blocks_of_text(text + rows(3, 60));
   Stream stream(mill, at_level(SmoothLevel::good, within), held);
   std::size_t pushed = 0, out = 0;
   for (const MillBlock& block : blocks) {
@@ -216,7 +216,7 @@ TEST_CASE("stream: no more blocks are held than it was told", "[smooth-stream]")
 }
 
 TEST_CASE("stream: words behind every line are told once", "[smooth-stream]") {
-  const MillBlocks lines = blocks_of(rows(3, 60));
+  const MillBlocks lines = blocks_of_text(rows(3, 60));
   for (const int words : {1, 7}) {
     MillBlocks blocks;
     for (const MillBlock& line : lines) {
@@ -257,7 +257,7 @@ TEST_CASE("stream: words behind every line are told once", "[smooth-stream]") {
 TEST_CASE("stream: stops, pauses, words and exact blocks are those of the whole", "[smooth-stream]") {
   std::string text = rows(2, 60) + "M8\nG4 P0.25\n" + rows(2, 60) + "M0\nG61.1\n" + rows(1, 10) + "G61\n" +
                      rows(1, 10) + "G64\nM9\n" + rows(1, 80) + "G1 X3\nX9 Y4\nM5\nX0\nM30\n";
-  const MillBlocks blocks = blocks_of(text);
+  const MillBlocks blocks = blocks_of_text(text);
   const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
   const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, 50);
   REQUIRE(whole);
@@ -292,7 +292,7 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
   for (int i = 1; i <= 300; ++i) text << "G1 X" << 0.4 * i << " Y" << 0.2 * std::sin(i) << "\n";
   // A place where a word is told, behind each second block: what is held ends with one as often as not.
   MillBlocks blocks;
-  for (const MillBlock& block : blocks_of(text.str())) {
+  for (const MillBlock& block : blocks_of_text(text.str())) {
     blocks.push_back(block);
     if (blocks.size() % 3 != 2) continue;
     MillBlock word = block;
@@ -320,7 +320,7 @@ TEST_CASE("stream: a word without a stop is no reason for one", "[smooth-stream]
 }
 
 TEST_CASE("stream: merged lines", "[smooth-stream]") {
-  const MillBlocks blocks = blocks_of("G64 P0.01 Q0.004\n" + rows(4, 200));
+  const MillBlocks blocks = blocks_of_text("G64 P0.01 Q0.004\n" + rows(4, 200));
   const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, 60);
   const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
   REQUIRE(parts);
@@ -343,7 +343,7 @@ TEST_CASE("stream: a wall that is touched behind a cut is not passed", "[smooth-
   std::ostringstream text;
   text << rows(3, 60) << "G1 X0 Y2 Z0\nX-3 Y-0.5\nX-6\nX-9 Y0\n";
   for (int i = 0; i < 100; ++i) text << "G1 X" << -9 - 0.2 * i << " Y" << 0.1 * std::sin(i) << "\n";
-  const MillBlocks blocks = blocks_of(text.str(), machine);
+  const MillBlocks blocks = blocks_of_text(text.str(), machine);
   for (const std::size_t held : {40u, 70u, 100u, 130u}) {
     CAPTURE(held);
     std::vector<double> ends;
@@ -366,7 +366,7 @@ TEST_CASE("stream: the way to rest behind a cut keeps to the travel too", "[smoo
       const double d = std::abs(i - touch), down = std::clamp(0.08 * (24 - d), 0.0, 0.5);
       text << "G1 X" << 0.3 * i << " Y" << (d > 24 ? 0.05 * std::sin(i) : -down) << "\n";
     }
-    const MillBlocks blocks = blocks_of(text.str(), machine);
+    const MillBlocks blocks = blocks_of_text(text.str(), machine);
     CAPTURE(touch);
     const auto parts = plan_in_parts(blocks, machine, within, SmoothLevel::good, 40);
     REQUIRE(parts);
@@ -381,7 +381,7 @@ TEST_CASE("stream: cuts do not become slower from part to part", "[smooth-stream
     std::ostringstream text;
     text << std::fixed << "F1800\n";
     for (int i = 1; i <= lines; ++i) text << "G1 X" << step * i << " Y" << bend * std::sin(0.3 * i) << "\n";
-    const MillBlocks blocks = blocks_of(text.str());
+    const MillBlocks blocks = blocks_of_text(text.str());
     const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
     const auto whole = plan_blocks(blocks, mill, at_level(SmoothLevel::good, within));
     REQUIRE(parts);
@@ -394,7 +394,7 @@ TEST_CASE("stream: cuts do not become slower from part to part", "[smooth-stream
 TEST_CASE("stream: a block that is refused leaves those before it", "[smooth-stream]") {
   Machine<3> machine = mill;
   machine.axes[0].high = 20;
-  MillBlocks blocks = blocks_of(rows(1, 60), machine);
+  MillBlocks blocks = blocks_of_text(rows(1, 60), machine);
   Stream stream(machine, at_level(SmoothLevel::good, within), 40);
   for (const MillBlock& block : blocks) REQUIRE(stream.push(block));
   MillBlock apart = blocks.back();
@@ -431,7 +431,7 @@ TEST_CASE("stream: nothing, and more behind a finish", "[smooth-stream]") {
   Stream stream(mill, at_level(SmoothLevel::good, within), 60);
   REQUIRE(stream.finish());
   CHECK(!stream.ready());
-  const MillBlocks blocks = blocks_of(rows(4, 60));
+  const MillBlocks blocks = blocks_of_text(rows(4, 60));
   double time = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     REQUIRE(stream.push(blocks[i]));
@@ -463,7 +463,7 @@ TEST_CASE("stream: random programs, random memory", "[smooth-stream]") {
     }
     const auto held = static_cast<std::size_t>(random.integer(40, 120));
     INFO("seed " << test::seed() << " round " << round << " held " << held << "\n" << text.str());
-    const MillBlocks blocks = blocks_of(text.str());
+    const MillBlocks blocks = blocks_of_text(text.str());
     const auto parts = plan_in_parts(blocks, mill, within, SmoothLevel::good, held);
     REQUIRE(parts);
     check_motion(*parts, blocks);
