@@ -17,7 +17,8 @@ namespace cncplan::bench {
 
 inline const Machine<3> mill{.limits = {.velocity = 30.0, .acceleration = 1000.0, .jerk = 10000.0}};
 /// Corners by the tool's deviation, 0.01 mm.
-inline constexpr detail::JunctionRules<double, junction::Deviation> junction_rules{{0.01}, 0.01, 0.0};
+inline constexpr junction::Deviation rounded{0.01};
+inline const detail::JunctionRules junction_rules{rounded, 0.01, 0.0};
 
 /// The program that CNCPLAN_BALL names; else a sphere finished in 35000 short moves.
 inline const std::string& ball() {

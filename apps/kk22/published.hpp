@@ -17,8 +17,8 @@ using MillTrajectory = cncplan::Trajectory<cncplan::Machine<3>, MillBlock>;
 /// capped by curvature; by lengths in the plane (section 3.1) it is not, as in the paper.
 inline MillTrajectory published_plan(const std::vector<MillBlock>& blocks, Lengths lengths) {
   namespace published = cncplan::published;
-  const cncplan::detail::JunctionRules<double, published::JunctionTable> rules{
-      {}, -1.0, -1.0};  // the table alone
+  const published::JunctionTable table;
+  const cncplan::detail::JunctionRules rules{table, -1.0, -1.0};
   const std::span all(blocks);
   const bool planar = lengths == Lengths::planar;
   auto cells = (planar ? cncplan::detail::make_cells<published::ToolLimits>(all, mill, rules)

@@ -61,7 +61,7 @@ template <class M>
 [[nodiscard]] cncplan::detail::BasicCells<double> cells_of(
     const Options& options, const M& machine, const Program<M>& program, std::span<const BlockOf<M>> blocks,
     const cncplan::detail::BasicSmoothing<double, M::axis_count>& smoothing) {
-  const cncplan::detail::JunctionRules<double, JunctionChoice> rules{
+  const cncplan::detail::JunctionRules rules{
       options.junction, options.corner_tolerance,
       options.rotary_tolerance * cncplan::gcode::radians_per_degree};
   const bool whole = options.planning == Planning::block || options.interpolator == Interpolator::constant;

@@ -81,6 +81,7 @@
 #include "cncplan/junction/exact_stop.hpp"
 #include "cncplan/junction/geometry.hpp"
 #include "cncplan/junction/minimum.hpp"
+#include "cncplan/junction/policy_ref.hpp"
 #include "cncplan/junction/stop_at_corners.hpp"
 #include "cncplan/junction/tangent_step.hpp"
 #include "cncplan/junction_jumps.hpp"

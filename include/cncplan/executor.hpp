@@ -86,6 +86,13 @@ class Executor : private detail::ExecutorRoom<M, B, capacity>, public ExecutorCo
   /// A machine or options that `validate` refuses are told by `error`; nothing runs then.
   explicit Executor(const M& machine, const Options& options = {})
       : ExecutorCore<M, B>(this->memory(), machine, options) {}
+  /// The same with a policy of one's own (`JunctionPolicy`) for junctions that are left exact, in place of
+  /// the options' `junction_deviation`. The policy must outlive the executor.
+  template <JunctionPolicy<Scalar> Policy>
+  Executor(const M& machine, const Policy& junctions, const Options& options = {})
+      : ExecutorCore<M, B>(this->memory(), machine, options, junctions) {}
+  template <JunctionPolicy<Scalar> Policy>
+  Executor(const M& machine, const Policy&& junctions, const Options& options = {}) = delete;
 
   /// At any level; executor_levels.hpp has what is behind it. What the levels `good` and
   /// `best` need lies in a memory resource: the default one of now, or one that is given.

@@ -24,6 +24,8 @@
 #include "cncplan/detail/executor/told_words.hpp"
 #include "cncplan/executor_options.hpp"
 #include "cncplan/executor_state.hpp"
+#include "cncplan/junction/deviation.hpp"
+#include "cncplan/junction/policy_ref.hpp"
 #include "cncplan/run_error.hpp"
 #include "cncplan/set_point.hpp"
 
@@ -57,9 +59,12 @@ class ExecutorCore {
   using JogSpeed = BasicJogSpeed<Scalar, M::axis_count>;
   using Coordinates = typename detail::Jog<M>::Coordinates;
   using Core = ExecutorCore;
+  using Junctions = junction::BasicPolicyRef<Scalar>;
 
-  /// A machine or options that `validate` refuses are told by `error`.
-  ExecutorCore(const detail::ExecutorMemory<M, B>& memory, const M& machine, const Options& options);
+  /// A machine or options that `validate` refuses are told by `error`. Junctions that are left exact are
+  /// passed by the options' `junction_deviation`, or as a policy says.
+  ExecutorCore(const detail::ExecutorMemory<M, B>& memory, const M& machine, const Options& options,
+               std::optional<Junctions> junctions = std::nullopt);
   ExecutorCore(const ExecutorCore&) = delete;
   ExecutorCore& operator=(const ExecutorCore&) = delete;
   ~ExecutorCore() {
@@ -332,6 +337,7 @@ class ExecutorCore {
   Scalar quick_stop_share_;
   bool background_;
   Scalar longest_wait_, most_override_;
+  junction::BasicDeviation<Scalar> rounded_;
   detail::CellFeed<M, B> feed_;
   detail::BasicMotionExecutor<Scalar> motion_executor_;
   detail::BasicElapsed<Scalar> time_;
@@ -357,7 +363,7 @@ class ExecutorCore {
 
 template <MachineModel M, BlockModel B>
 ExecutorCore<M, B>::ExecutorCore(const detail::ExecutorMemory<M, B>& memory, const M& machine,
-                                 const Options& options)
+                                 const Options& options, std::optional<Junctions> junctions)
     : machine_(machine),
       options_(validate(options)),
       tool_(tool_axes(machine)),
@@ -366,7 +372,11 @@ ExecutorCore<M, B>::ExecutorCore(const detail::ExecutorMemory<M, B>& memory, con
       background_(options.background),
       longest_wait_(options.longest_wait),
       most_override_(options.most_override),
-      feed_(machine, {{options.junction_deviation}, options.junction_deviation, options.rotary_tolerance},
+      rounded_{options.junction_deviation},
+      feed_(machine,
+            junctions ? detail::BasicJunctionRules<Scalar>{*junctions, Scalar(-1), Scalar(-1)}
+                      : detail::BasicJunctionRules<Scalar>{rounded_, options.junction_deviation,
+                                                           options.rotary_tolerance},
             {options.tolerance, options.rotary_tolerance, options.exact_between_rapids_and_feeds},
             options.most_override, memory.feed),
       motion_executor_(memory.motion_executor, capacity_),

@@ -110,7 +110,7 @@ template <BlockRange R, MachineModel M, JunctionPolicy<typename M::Scalar> Polic
                                                                             const Law& law = {}) {
   using S = typename M::Scalar;
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
-  const detail::JunctionRules<S, Policy> rules{policy, S(-1), S(-1)};
+  const detail::BasicJunctionRules<S> rules{policy, S(-1), S(-1)};
   auto own = detail::own_blocks(std::forward<R>(blocks), std::pmr::get_default_resource());
   const std::span<const BlockOf<R>> given(own);
   const auto cells = detail::make_cells(given, machine, rules);

@@ -32,7 +32,8 @@ struct Arch {
 constexpr Machine<3> mill{.limits = {.velocity = 500, .acceleration = 1000, .jerk = 1e5}};
 
 using ArchBlock = Block<3, path::Measured<Arch>>;
-using Maker = detail::CellMaker<Machine<3>, ArchBlock, junction::Deviation>;
+using Maker = detail::CellMaker<Machine<3>, ArchBlock>;
+constexpr junction::Deviation rounded{0.01};
 
 ArchBlock arch() { return {.path = path::measured(Arch{}).value(), .feed = 500}; }
 
@@ -44,7 +45,7 @@ TEST_CASE("a step towards a cell asks for the bounds of four parts of a path at 
   (void)block.path.visit([](const auto& path) { return path.bounds(1.0, 2.0); });
   const int once = asked;
   REQUIRE(once > 0);
-  Maker maker(mill, {{0.01}, 0.01, 0.0}, true);
+  Maker maker(mill, {rounded, 0.01, 0.0}, true);
   REQUIRE(maker.begin(block));
   int steps = 0, cells = 0, in_cell = 0, most_in_cell = 0;
   while (!maker.done()) {
@@ -65,7 +66,7 @@ TEST_CASE("a step towards a cell asks for the bounds of four parts of a path at 
 
 TEST_CASE("cells that are made in steps cover the block, each part of it once") {
   const ArchBlock block = arch();
-  Maker maker(mill, {{0.01}, 0.01, 0.0});
+  Maker maker(mill, {rounded, 0.01, 0.0});
   REQUIRE(maker.begin(block));
   double end = 0;
   while (!maker.done()) {

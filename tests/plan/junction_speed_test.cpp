@@ -27,8 +27,7 @@ junction::Side side(const path::Segment<3>& segment, detail::PathEnd junction) {
 // The cells of blocks whose joints a policy alone judges.
 template <class Policy>
 std::vector<detail::SegmentLimits> segments(const std::vector<Block<3>>& blocks, const Policy& policy) {
-  const auto cells =
-      detail::make_cells(std::span(blocks), mill, detail::JunctionRules<double, Policy>{policy, -1, -1});
+  const auto cells = detail::make_cells(std::span(blocks), mill, detail::JunctionRules{policy, -1, -1});
   REQUIRE(cells);
   return {cells->segment_limits.begin(), cells->segment_limits.end()};
 }

@@ -89,7 +89,8 @@ TEST_CASE("rings of short lines have about a cell a block, and few junctions") {
     CAPTURE(side);
     const std::vector<Block<3>> blocks = rings(20, 6, side);
     const auto smoothing = detail::smoothing(std::span(blocks), mill, {0.01, 1e-3, false});
-    const detail::JunctionRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
+    const junction::Deviation policy{0.01};
+    const detail::JunctionRules rules{policy, 0.01, 1e-3};
     const auto cells = detail::make_cells(std::span(blocks), mill, rules, smoothing).value();
     CHECK(10 * cells.segment_limits.size() < 11 * blocks.size());
     std::vector<detail::ConstrainedJunction> junctions(cells.segment_limits.size() + 1);

@@ -23,7 +23,8 @@ TEST_CASE("helices planned by R theta keep Vmax in their plane", "[published]") 
   REQUIRE(whole);
   const std::vector<ProgramBlock<Machine<3>>> blocks(whole->program().begin(), whole->program().end());
   const std::span<const ProgramBlock<Machine<3>>> all(blocks);
-  const detail::JunctionRules<double, published::JunctionTable> rules{{}, -1.0, -1.0};
+  const published::JunctionTable table;
+  const detail::JunctionRules rules{table, -1.0, -1.0};
   auto cells = detail::make_cells<published::ToolLimits>(all, mill, rules).value();
   published::to_plane(all, cells);
   REQUIRE(cells.segment_limits.size() == 8);

@@ -96,8 +96,8 @@ Trajectory<Machine<3>, NoPath>* no_path;
 struct ProfileAtOnce {
   Expected<profile::Profile> operator()(const Limits&) const;
 };
-auto law = detail::trajectory(std::pmr::vector<Block<3>>(), mill,
-                              detail::JunctionRules<double, junction::ExactStop>{}, ProfileAtOnce{});
+auto law =
+    detail::trajectory(std::pmr::vector<Block<3>>(), mill, detail::BasicCells<double>{}, ProfileAtOnce{});
 
 // expect Immovable, QueueItem: movable
 struct Immovable {

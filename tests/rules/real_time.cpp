@@ -174,8 +174,8 @@ BlockBuilder<Machine<3>> builder(mill, dialect_of(mill));
 template <class Take>
 void make_cells(gcode::Reader& program, const Take& take) {
   std::array<gcode::Item, gcode::max_items_per_line> items;
-  detail::CellMaker<Machine<3>, ProgramBlock<Machine<3>>, junction::Deviation> maker(mill,
-                                                                                     {{0.01}, 0.01, 0.0});
+  const junction::Deviation rounded{0.01};
+  detail::CellMaker<Machine<3>, ProgramBlock<Machine<3>>> maker(mill, {rounded, 0.01, 0.0});
   for (const std::string_view line : {"G21 G90 F1200", "G1 X10", "G3 X15 Y5 R5", "G4 P0.01", "G1 Y10", "X0",
                                       "Y0", "X5", "Y5", "X0", "Y0"}) {
     const auto end = program.read_line(line, items.begin());

@@ -65,7 +65,8 @@ inline MotionProgram random_motion_program(Random& random, int count) {
   MotionProgram program;
   const double longest = random.log_uniform(0.05, 10.0);
   const double deviation = random.coin() ? 0.01 : 1.0;
-  const detail::JunctionRules<double, junction::Deviation> rules{{deviation}, -1.0, -1.0};
+  const junction::Deviation policy{deviation};
+  const detail::JunctionRules rules{policy, -1.0, -1.0};
   Vector3 at = Vector3::Zero();
   std::vector<Block<3>> pair;  // the block before, and the new one
   for (int i = 0; i < count; ++i) {

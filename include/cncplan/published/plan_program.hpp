@@ -27,7 +27,7 @@ template <MachineModel M, JunctionPolicy<typename M::Scalar> Policy,
           return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
         std::pmr::vector<B> blocks(program.blocks().begin(), program.blocks().end());
         const std::span<const B> all(blocks);
-        const detail::JunctionRules<S, Policy> rules{policy, S(-1), S(-1)};
+        const detail::BasicJunctionRules<S> rules{policy, S(-1), S(-1)};
         const auto cells = detail::make_cells<WholeBlocks>(all, machine, rules);
         if (!cells) return tl::unexpected(detail::error_in(all, cells.error()));
         std::vector<detail::BasicSpan<S>> spans;

@@ -39,7 +39,8 @@ std::pair<double, double> durations(const std::string& text, double tolerance) {
   detail::BasicSmoothing<double, 3> smoothing;
   if (tolerance > 0)
     smoothing = detail::smoothing(all, mill, detail::SmoothingRules<double>{tolerance, 1e-3});
-  const detail::JunctionRules<double, junction::Deviation> rules{{0.01}, 0.01, 1e-3};
+  const junction::Deviation policy{0.01};
+  const detail::JunctionRules rules{policy, 0.01, 1e-3};
   auto cells = detail::make_cells(all, mill, rules, smoothing);
   REQUIRE(cells);
   const auto of_blocks = simulate::motion_blocks(all, *cells, [](const Block& block) {

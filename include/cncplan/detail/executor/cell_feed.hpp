@@ -22,7 +22,6 @@
 #include "cncplan/detail/executor/shared_count.hpp"
 #include "cncplan/detail/speed/cell_maker.hpp"
 #include "cncplan/gcode/diagnostic.hpp"
-#include "cncplan/junction/deviation.hpp"
 #include "cncplan/tool.hpp"
 
 namespace cncplan::detail {
@@ -58,7 +57,7 @@ class CellFeed {
   using Scalar = typename M::Scalar;
   using Vector = VectorN<Scalar, M::axis_count>;
   using Cell = BasicMotionBlock<Scalar>;
-  using Rules = JunctionRules<Scalar, junction::BasicDeviation<Scalar>>;
+  using Rules = BasicJunctionRules<Scalar>;
   using Driven = Smoothed<typename B::Path>;
 
   /// A block that is kept.
@@ -247,7 +246,7 @@ class CellFeed {
 
   M machine_;
   std::array<int, 3> tool_;
-  CellMaker<M, B, junction::BasicDeviation<Scalar>> maker_;
+  CellMaker<M, B> maker_;
   LineMerger<M, B> merger_;
   SmoothingAhead<M, B> smoothing_;
   std::int64_t room_;

@@ -98,8 +98,8 @@ template <MachineModel M, BlockModel B>
   std::pmr::memory_resource* const memory = blocks.get_allocator().resource();
   if (const auto ok = validate(machine); !ok) return tl::unexpected(ProgramError{{ok.error(), 0, 0, {}}});
   const auto deviation = static_cast<S>(options.junction_deviation);
-  const JunctionRules<S, junction::BasicDeviation<S>> rules{
-      {deviation}, deviation, static_cast<S>(options.rotary_tolerance)};
+  const junction::BasicDeviation<S> rounded{deviation};
+  const BasicJunctionRules<S> rules{rounded, deviation, static_cast<S>(options.rotary_tolerance)};
   const SmoothLevel asked = level_of(options);
   const std::span<const B> given(blocks);
   std::pmr::vector<Fallback> fallbacks(memory);
@@ -115,7 +115,8 @@ template <MachineModel M, BlockModel B>
     // mm and rad: derivatives that differ by rounding cost nothing, and at a corner no axis jumps by more
     // than some 1e-8 of a unit a second.
     constexpr S rounding = S(1e-18);
-    const JunctionRules<S, junction::BasicStopAtCorners<S>> at_rest{{}, rounding, rounding};
+    const junction::BasicStopAtCorners<S> stop;
+    const BasicJunctionRules<S> at_rest{stop, rounding, rounding};
     if (asked != SmoothLevel::exact && !other) {
       cells = make_cells(given, machine, at_rest, smoothing, memory, progress.part(0.0, cut_up));
       if (!cells) return tl::unexpected(error_in(given, cells.error()));

@@ -145,7 +145,7 @@ struct BasicCell {
 /// within one motion has no rules of its own; where an axis with backlash turns round, the speed leaves its
 /// motors time for that. Limits within a motion are made alike (`BasicLimitSmoothing`), and what has the same
 /// limits within a block is one cell.
-template <MachineModel M, BlockModel B, class Policy, class Cut = CutByLimits<M, B>>
+template <MachineModel M, BlockModel B, class Cut = CutByLimits<M, B>>
 class CellMaker {
  public:
   using Scalar = typename M::Scalar;
@@ -155,7 +155,7 @@ class CellMaker {
   static_assert(M::axis_count == B::axis_count, "blocks have as many axes as the machine");
 
   /// `most_override`: how many times its feed a block may be run with, >= 1.
-  CellMaker(const M& machine, const JunctionRules<Scalar, Policy>& rules, Scalar most_override = Scalar(1))
+  CellMaker(const M& machine, const BasicJunctionRules<Scalar>& rules, Scalar most_override = Scalar(1))
       : machine_(machine),
         rules_(rules),
         tool_(tool_axes(machine)),
@@ -369,7 +369,7 @@ class CellMaker {
   }
 
   M machine_;
-  JunctionRules<Scalar, Policy> rules_;
+  BasicJunctionRules<Scalar> rules_;
   std::array<int, 3> tool_;
   BasicBox<Scalar, M::axis_count> travel_;
   Scalar most_override_;

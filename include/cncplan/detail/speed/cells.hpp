@@ -42,9 +42,9 @@ struct BlockFault {
 };
 
 /// Cuts a program into cells, each block by `Cut`; see `CellMaker`, whose errors these are.
-template <template <class, class> class Cut = CutByLimits, MachineModel M, BlockModel B, class Policy>
+template <template <class, class> class Cut = CutByLimits, MachineModel M, BlockModel B>
 [[nodiscard]] Expected<BasicCells<typename M::Scalar>, BlockFault> make_cells(
-    std::span<const B> blocks, const M& machine, const JunctionRules<typename M::Scalar, Policy>& rules,
+    std::span<const B> blocks, const M& machine, const BasicJunctionRules<typename M::Scalar>& rules,
     const BasicSmoothing<typename M::Scalar, M::axis_count>& smoothing = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource(), const Progress& progress = {}) {
   using S = typename M::Scalar;
@@ -56,7 +56,7 @@ template <template <class, class> class Cut = CutByLimits, MachineModel M, Block
     if (!cells.segment_limits.empty()) cells.segment_limits.back().pause += seconds;
     cells.pauses.push_back({cells.segment_limits.size(), block, seconds});
   };
-  CellMaker<M, B, Policy, Cut<M, B>> maker(machine, rules);
+  CellMaker<M, B, Cut<M, B>> maker(machine, rules);
   const auto tool = tool_axes(machine);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     constexpr std::size_t seldom = 256;  // blocks: some tens of microseconds, as a rule

@@ -11,6 +11,7 @@
 
 #include "cncplan/block.hpp"
 #include "cncplan/junction/geometry.hpp"
+#include "cncplan/junction/policy_ref.hpp"
 #include "cncplan/machine.hpp"
 #include "cncplan/tool.hpp"
 
@@ -130,11 +131,13 @@ template <Path P>
 
 /// Rules for joints: a policy for the tool, and for the axes the tolerances within which corners count as
 /// rounded (negative: the policy alone).
-template <std::floating_point S, class Policy>
-struct JunctionRules {
-  Policy policy;
+template <std::floating_point S>
+struct BasicJunctionRules {
+  junction::BasicPolicyRef<S> policy;
   S tolerance{};
   S rotary_tolerance{};
 };
+
+using JunctionRules = BasicJunctionRules<double>;
 
 }  // namespace cncplan::detail
