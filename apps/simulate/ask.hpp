@@ -9,7 +9,10 @@ template <class Driver>
 void ask(Driver& driver, const Event& event) {
   switch (event.request) {
     case Request::hold:
-      return driver.hold();
+      if constexpr (requires { driver.feed_hold(); })
+        return driver.feed_hold();
+      else
+        return driver.hold();
     case Request::resume:
       return driver.resume();
     case Request::feed:

@@ -75,6 +75,10 @@ struct BlockType<Rows> {
 template <class M>
 using BlockOf = typename detail::BlockType<M>::Type;
 
+/// Whether the level fast smooths its corners: maps have curves of their own, and rows are driven exactly.
+template <class M>
+inline constexpr bool smoothed_by_corrections = !cncplan::MappedModel<M> && !std::is_same_v<M, Rows>;
+
 /// The tool's place at a set point.
 template <class M>
 [[nodiscard]] cncplan::Vector3 tool_at(const M& machine, const cncplan::SetPoint<M::axis_count>& point) {

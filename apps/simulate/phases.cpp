@@ -10,7 +10,6 @@
 #include "cncplan/profile/seven_phase.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "cncplan/published/constant_speed.hpp"
-#include "simulate_motion.hpp"
 #include "support/failure.hpp"
 
 namespace simulate {
@@ -53,14 +52,6 @@ std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
     const Options& options, const cncplan::detail::BasicCells<double>& cells) {
   const auto spans = spans_of(options, cells.segment_limits);
   return cncplan::detail::block_phases(std::span<const cncplan::detail::Span>(spans), cells);
-}
-
-std::pmr::vector<cncplan::BasicPiecePhase<double>> simulated(
-    const Options& options, const cncplan::detail::BasicCells<double>& cells,
-    const std::vector<cncplan::detail::MotionBlock>& blocks, const std::vector<Event>& events) {
-  auto phases = simulate_motion(blocks, cells.blocks, events, options.period);
-  if (!phases) refuse_periods(options.period);
-  return *phases;
 }
 
 }  // namespace simulate

@@ -18,12 +18,12 @@
 #include "cncplan/program_error.hpp"
 #include "cncplan/published/block_planning.hpp"
 #include "drive_live.hpp"
+#include "drive_look_ahead.hpp"
 #include "events.hpp"
 #include "phases.hpp"
 #include "plan.hpp"
 #include "planned_on.hpp"
 #include "progress.hpp"
-#include "simulate_motion.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
 
@@ -61,9 +61,8 @@ template <class M>
 [[nodiscard]] cncplan::detail::BasicCells<double> cells_of(
     const Options& options, const M& machine, const Program<M>& program, std::span<const BlockOf<M>> blocks,
     const cncplan::detail::BasicSmoothing<double, M::axis_count>& smoothing) {
-  const cncplan::detail::JunctionRules rules{
-      options.junction, options.corner_tolerance,
-      options.rotary_tolerance * cncplan::gcode::radians_per_degree};
+  const cncplan::detail::JunctionRules rules{options.junction, options.corner_tolerance,
+                                             options.rotary_tolerance * cncplan::gcode::radians_per_degree};
   const bool whole = options.planning == Planning::block || options.interpolator == Interpolator::constant;
   auto cells =
       whole ? cncplan::detail::make_cells<cncplan::published::WholeBlocks>(blocks, machine, rules, smoothing)
@@ -114,37 +113,26 @@ template <class M>
                                    const Program<M>& program) {
   using Block = BlockOf<M>;
   using Trajectory = cncplan::Trajectory<M, Block>;
-  // Of the others, maps have curves of their own, and rows R Z A C are driven exactly.
-  constexpr bool smoothed = !cncplan::MappedModel<M> && !std::is_same_v<M, Rows>;
   Plan result;
   result.motion_of = program.motion_of;
   std::pmr::vector<Block> driven(program.blocks.begin(), program.blocks.end());
   typename Trajectory::Smoothing smoothing;
-  if constexpr (smoothed)
+  if constexpr (smoothed_by_corrections<M>)
     if (options.tolerance > 0.0) {
       const cncplan::detail::SmoothingRules<double> within{
           options.tolerance, options.rotary_tolerance * cncplan::gcode::radians_per_degree};
       cncplan::detail::merge_lines(std::span(driven), machine, within);
       smoothing = cncplan::detail::smoothing(std::span<const Block>(driven), machine, within);
     }
-  std::pmr::vector<cncplan::BasicPiecePhase<double>> phases;
-  if (options.events) {  // limits are made for the highest feed
-    const std::vector<Event> events = read_events(*options.events);
-    std::pmr::vector<Block> fastest = driven;
-    for (Block& block : fastest) block.feed *= highest_feed(events);
-    auto cells = cells_of(options, machine, program, std::span<const Block>(fastest), smoothing);
-    result.junctions_limited = count_limited(cells, machine, program);
-    const auto feed_of = [&](const Block& block) {
-      if (block.rapid) return rapid_speed(machine);
-      return std::isfinite(block.feed) ? block.feed : feed_speed(machine);
-    };
-    const auto blocks = motion_blocks(std::span<const Block>(program.blocks), cells, feed_of);
-    phases = simulated(options, cells, blocks, events);
-  } else {
-    const auto cells = cells_of(options, machine, program, std::span<const Block>(driven), smoothing);
-    result.junctions_limited = count_limited(cells, machine, program);
-    phases = phases_of(options, cells);
-  }
+  const auto cells = cells_of(options, machine, program, std::span<const Block>(driven), smoothing);
+  result.junctions_limited = count_limited(cells, machine, program);
+  const auto drive = [&] {
+    auto phases =
+        drive_look_ahead<M>(options, machine, {program.blocks, driven}, read_events(*options.events));
+    if (!phases) refuse(phases.error(), program.file);
+    return std::move(*phases);
+  };
+  Phases phases = options.events ? drive() : phases_of(options, cells);
   auto beside_ends = cncplan::detail::rests_for_travel(std::span<const Block>(driven), smoothing,
                                                        driven.get_allocator().resource());
   Trajectory trajectory(machine, std::move(driven), std::move(phases), std::move(smoothing));
