@@ -31,7 +31,7 @@ void put(support::Gnuplot& plot, const std::vector<MillBlock>& blocks) {
 
 // The blocks' count, and how many of them are arcs.
 std::string drawn(support::Gnuplot* plot, const char* picture, generate::Kind kind) {
-  const auto blocks = blocks_of(kind, {0.0, 0.0});
+  const auto blocks = blocks_of(kind);
   const auto arcs = std::count_if(blocks.begin(), blocks.end(),
                                   [](const auto& block) { return block.path.arc() != nullptr; });
   if (plot != nullptr) {

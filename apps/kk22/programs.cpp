@@ -6,10 +6,14 @@
 #include <iterator>
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cncplan/cncplan.hpp"
+#include "cncplan/kinematics/ready_made.hpp"
+#include "cncplan_tools/machine_file.hpp"
 #include "experiments.hpp"
+#include "maps/maps.hpp"
 #include "published.hpp"
 #include "support/failure.hpp"
 #include "table_programs.hpp"
@@ -20,9 +24,8 @@ using namespace cncplan;
 
 namespace {
 
-using Table = MappedMachine<kinematics::PolarMap>;
-using TablePath = cncplan::TablePath<kinematics::PolarMap, MillBlock::Path>;
-using TableBlock = cncplan::Block<3, TablePath>;
+using Table = MappedMachine<kinematics::ThreeJoints>;
+using TableTrajectory = Trajectory<Table, ProgramBlock<Table>>;
 
 // What the paper says of a program: minutes, and Table 4's errors of the servo axes, root mean square and
 // mean square.
@@ -67,22 +70,6 @@ constexpr std::array<Printed, 3> printed{{
      {0.0015, 0.0, 4.82e-9}},
 }};
 
-// The blocks round the table, C without a jump.
-std::vector<TableBlock> on_table(const std::vector<MillBlock>& blocks, double smallest_radius) {
-  std::vector<TableBlock> result;
-  double table = 0.0;
-  for (const MillBlock& block : blocks) {
-    const auto followed =
-        follow_table(block.path, kinematics::PolarMap{}, smallest_radius, table, [&](const TablePath& path) {
-          result.push_back({.path = path, .feed = block.feed, .rapid = block.rapid});
-        });
-    if (!followed)
-      throw support::Failure(support::Exit::other, "a program comes too near to the table's axis");
-    if (block.exact_stop && !result.empty()) result.back().exact_stop = true;
-  }
-  return result;
-}
-
 // The axes at an instant, mm and degrees, and how far their steps are from there.
 struct Tracked {
   double time{};
@@ -92,7 +79,7 @@ struct Tracked {
 // Notes the axes and their steps every 1.25 s over the first ten minutes.
 class Tracker {
  public:
-  Tracker(const Trajectory<Table, TableBlock>& planned, const support::Machine& machine)
+  Tracker(const TableTrajectory& planned, const support::Machine& machine)
       : planned_(planned), machine_(machine), until_(std::min(600.0, planned.duration())) {
     std::size_t motor = 0;
     for (std::size_t i = 0; i < axes; ++i) {
@@ -132,7 +119,7 @@ class Tracker {
     }
   }
 
-  const Trajectory<Table, TableBlock>& planned_;
+  const TableTrajectory& planned_;
   const support::Machine& machine_;
   double until_;
   double due_ = 0.0;
@@ -168,12 +155,18 @@ struct Run {
   std::vector<Tracked> tracked;
 };
 
-Run run(const std::vector<MillBlock>& blocks, const support::Machine& machine) {
-  Table table;
-  for (std::size_t i = 0; i < table.axes.size(); ++i) table.axes[i] = machine.axis(i);
-  table.limits.velocity = limits.velocity;
-  const auto planned =
-      plan_blocks(on_table(blocks, machine.smallest_radius.value_or(1.0)), table, {.tolerance = 0});
+// The text of a program, made from a fixed seed.
+std::string text_of(generate::Kind kind) {
+  std::ostringstream stream;
+  generate::write(stream, kind, 2022, 17);
+  return stream.str();
+}
+
+Run run(generate::Kind kind, const support::Machine& machine) {
+  const support::Machine file = support::with_table_map(machine);
+  const Table table = tools::with_axes(Table{.map = std::get<kinematics::ThreeJoints>(file.map.map)}, file,
+                                       {.velocity = limits.velocity});
+  const auto planned = plan_text(text_of(kind), table, {.tolerance = 0});
   if (!planned) throw support::Failure(support::Exit::other, to_text(planned.error()));
   Tracker tracker(*planned, machine);
   const auto axes = follow_steps(*planned, period, [&](const MotorEdge& edge) { tracker.take(edge); });
@@ -183,25 +176,15 @@ Run run(const std::vector<MillBlock>& blocks, const support::Machine& machine) {
 
 }  // namespace
 
-std::vector<MillBlock> blocks_of(generate::Kind kind, const std::array<double, 2>& table_center) {
-  std::ostringstream stream;
-  generate::write(stream, kind, 2022, 17);
-  const std::string text = stream.str();
-  const gcode::Dialect dialect = dialect_of(mill);
-  gcode::Reader reader(dialect);
-  BlockBuilder<Machine<3>> builder(mill, dialect);
+std::vector<MillBlock> blocks_of(generate::Kind kind) {
+  const auto program = read_text(text_of(kind), mill);
+  if (program.failed()) throw support::Failure(support::Exit::other, "a generated program cannot be read");
   std::vector<MillBlock> blocks;
-  const auto take = [&](gcode::Item item) {
-    if (auto* motion = std::get_if<gcode::Motion>(&item))
-      for (std::size_t i = 0; i < 2; ++i) motion->offset[i] -= table_center[i];
-    const auto block = builder.take(item).value();
-    if (block && block->path.length() > 0.0)
-      blocks.push_back(*block);
-    else if (block && !blocks.empty())
+  for (const MillBlock& block : program.blocks())
+    if (block.path.length() > 0.0)
+      blocks.push_back(block);
+    else if (block.exact_stop && !blocks.empty())
       blocks.back().exact_stop = true;
-  };
-  if (!gcode::read_program(gcode::TextLines(text), reader, take))
-    throw support::Failure(support::Exit::other, "a generated program cannot be read");
   return blocks;
 }
 
@@ -216,10 +199,10 @@ void programs(const support::Machine& machine, const std::vector<std::string>& n
       "|---|---|---|---|---|---|---|\n");
   for (const Printed& paper : printed) {
     if (std::find(names.begin(), names.end(), paper.name) == names.end()) continue;
-    const auto blocks = blocks_of(paper.kind, machine.table_center);
+    const auto blocks = blocks_of(paper.kind);
     const auto arcs = std::count_if(blocks.begin(), blocks.end(),
                                     [](const auto& block) { return block.path.arc() != nullptr; });
-    const Run ours = run(blocks, machine);
+    const Run ours = run(paper.kind, machine);
     fmt::print("| {} | {} / {} | {} / {} | {} | {:.1f} | {:.1f} | {:.1e} / {:.1e} |\n", paper.name,
                paper.lines, blocks.size(), paper.arcs, arcs, paper.minutes,
                published_plan(blocks, lengths).duration() / 60.0, ours.minutes, paper.samples,

@@ -13,7 +13,7 @@ using namespace cncplan;
 
 void figure14(Lengths lengths, support::Gnuplot* plot) {
   constexpr double from = 400.0, to = 410.0;  // s
-  const MillTrajectory planned = published_plan(blocks_of(generate::Kind::roughing, {0.0, 0.0}), lengths);
+  const MillTrajectory planned = published_plan(blocks_of(generate::Kind::roughing), lengths);
   Limits peak{0.0, 0.0, 0.0};
   if (plot != nullptr) (*plot)("$section << EOD\n");
   for (double time = from; time <= to; time += period) {

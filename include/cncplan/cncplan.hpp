@@ -183,7 +183,6 @@
 #include "cncplan/step/switch.hpp"
 #include "cncplan/step/vcd.hpp"
 #include "cncplan/step_edges.hpp"
-#include "cncplan/table_path.hpp"
 #include "cncplan/time_optimal.hpp"
 #include "cncplan/tire_mold/radius.hpp"
 #include "cncplan/tire_mold/wall_cutter.hpp"

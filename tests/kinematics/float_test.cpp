@@ -7,7 +7,6 @@
 #include "cncplan/kinematics/polar.hpp"
 #include "cncplan/kinematics/tire_mold/tire_mold.hpp"
 #include "cncplan/plan_blocks.hpp"
-#include "cncplan/table_path.hpp"
 #include "cncplan/tire_mold/wall_program.hpp"
 #include "cncplan/tire_mold/wall_rows.hpp"
 #include "laws.hpp"
@@ -70,18 +69,6 @@ Summary on_the_wall() {
   return summary(program.blocks(), test::wall_machine<S>());
 }
 
-template <class S>
-Summary round_the_table() {
-  using Path = cncplan::TablePath<BasicPolarMap<S>, tire_mold::BasicArtworkPath<S>>;
-  std::vector<BasicBlock<S, 3, Path>> blocks;
-  S table{};
-  for (const auto& segment : test::wall_artwork<S>())
-    REQUIRE(cncplan::follow_table(segment, BasicPolarMap<S>{}, S(1), table, [&](const Path& path) {
-      blocks.push_back({.path = path, .feed = S(60)});
-    }));
-  return summary(blocks, test::table_machine<S>());
-}
-
 // The largest error of joints there and back, over their scale.
 template <class K>
 double round_trip(const K& machine, const typename K::Joints& low, const typename K::Joints& high) {
@@ -136,10 +123,6 @@ TEST_CASE("float: a program over the wall and its kinks as in double", "[float]"
   const Summary exact = on_the_wall<double>();
   CHECK(exact.stops == 4);  // before and behind the kink, there and back
   compare(on_the_wall<float>(), exact);
-}
-
-TEST_CASE("float: a program round the table as in double", "[float]") {
-  compare(round_the_table<float>(), round_the_table<double>());
 }
 
 TEST_CASE("float: rows of a part keep the tolerance", "[float]") {
