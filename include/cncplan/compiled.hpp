@@ -9,13 +9,3 @@
 #include "cncplan/compiled/plan_program.hpp"
 
 // Each list declares instances with `extern` for PREFIX, and defines them with nothing for it.
-
-/// All of these for a machine and the blocks of its programs.
-#define CNCPLAN_MACHINE(PREFIX, MACHINE)                          \
-  CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
-  CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
-  CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
-  CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)      \
-  CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, ProgramBlock<MACHINE>)      \
-  CNCPLAN_READ_BLOCKS(PREFIX, MACHINE)                            \
-  CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)

@@ -8,17 +8,22 @@
 #include "cncplan/compiled/plan_program.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
 
-/// Running the programs of a machine, at every level.
+// Parts of what is made for a machine, each of which has a source of its own.
+
+#define CNCPLAN_MAPPED_BLOCKS(PREFIX, MACHINE) CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)
+#define CNCPLAN_MAPPED_CURVES(PREFIX, MACHINE) CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)
+#define CNCPLAN_MAPPED_PROGRAMS(PREFIX, MACHINE)                  \
+  CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
+  CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)
 #define CNCPLAN_MAPPED_LIVE(PREFIX, MACHINE)                 \
   CNCPLAN_RUN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
   CNCPLAN_RUN_LEVELS(PREFIX, MACHINE, ProgramBlock<MACHINE>)
 
-/// The same, and reading, planning and asking them.
-#define CNCPLAN_MAPPED(PREFIX, MACHINE)                           \
-  CNCPLAN_PLAN_BLOCKS(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
-  CNCPLAN_PLAN_LOOK_AHEAD(PREFIX, MACHINE, ProgramBlock<MACHINE>) \
-  CNCPLAN_PLAN_SMOOTH(PREFIX, MACHINE, ProgramBlock<MACHINE>)     \
-  CNCPLAN_PLAN_PROGRAM(PREFIX, MACHINE)                           \
+/// Reading, planning, asking and running the programs of a machine, at every level.
+#define CNCPLAN_MAPPED(PREFIX, MACHINE)    \
+  CNCPLAN_MAPPED_BLOCKS(PREFIX, MACHINE)   \
+  CNCPLAN_MAPPED_CURVES(PREFIX, MACHINE)   \
+  CNCPLAN_MAPPED_PROGRAMS(PREFIX, MACHINE) \
   CNCPLAN_MAPPED_LIVE(PREFIX, MACHINE)
 
 #ifdef CNCPLAN_COMPILED

@@ -1,7 +1,0 @@
-#include "maps/maps.hpp"
-
-namespace cncplan {
-
-CNCPLAN_MAPPED_LIVE(, MappedMachine<kinematics::ScaraWrist>)
-
-}  // namespace cncplan

@@ -1,8 +1,0 @@
-#include "maps/maps.hpp"
-
-namespace cncplan {
-
-CNCPLAN_PLAN_SMOOTH(, MappedMachine<kinematics::ThreeJoints>,
-                    ProgramBlock<MappedMachine<kinematics::ThreeJoints>>)
-
-}  // namespace cncplan
