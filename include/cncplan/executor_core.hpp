@@ -146,7 +146,7 @@ class ExecutorCore {
   void reverse(bool wanted) {
     drive([&](auto& driver) { driver.backwards(wanted); });
   }
-  /// Rests behind every block until it is resumed.
+  /// Rests behind every block that moves or dwells until it is resumed.
   void single_step(bool wanted) {
     drive([&](auto& driver) { driver.single_step(wanted); });
   }

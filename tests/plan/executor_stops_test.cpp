@@ -154,6 +154,7 @@ TEST_CASE("stops: at a rest of the program words and dwells wait, too", "[execut
   at_rest({"M3 S200", "G4 P0.5", "G1 X5 F1200"}, stop, "end", "end");
   at_rest({"G4 P0.5", "G1 X5 F1200"}, hold, "held", "dwell end");
   at_rest({"G1 X5 F1200", "G61.1", "M8", "X0"}, step, "held", "M8 end");
+  at_rest({"G1 X5 F1200", "T2 M6", "X0"}, step, "held", "T2 M6 end");
   // A hold that comes where the motion comes to a rest anyway.
   for (const int ticks : {300, 320, 330, 335, 338}) {
     CAPTURE(ticks);

@@ -26,8 +26,8 @@ struct BasicMotionBlock {
   bool rapid{};          ///< obeys the rapid override
   bool optional_stop{};  ///< the motion stops behind it where that is switched on (M1)
   int line{};            ///< of the program, for pauses
-  bool goes_on{};        ///< the next one is of the same block of the program: no single step ends here
-  bool program_stop{};   ///< the motion stops behind it where that is switched on (M0)
+  bool goes_on{};       ///< no single step ends here: the next one is of the same block, or it is words alone
+  bool program_stop{};  ///< the motion stops behind it where that is switched on (M0)
   /// Limits up to the highest override of the feed: velocity not below, acceleration and jerk not above those
   /// of `segment_limits`. A velocity of 0: those of `segment_limits`.
   BasicLimits<S> above{S(0), S(0), S(0)};

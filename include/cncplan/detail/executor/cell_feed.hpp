@@ -222,9 +222,10 @@ class CellFeed {
     return result;
   }
 
-  // A block that is a place to stop.
+  // A block that is a place to stop. Without a dwell it is no step of its own.
   [[nodiscard]] Cell stop(const B& block) const {
     Cell result = rest(block, block.pause);
+    result.goes_on = !(block.pause > Scalar(0));
     result.optional_stop = is_code(block.word, 1.0);
     result.program_stop = is_code(block.word, 0.0) || is_code(block.word, 60.0);
     return result;
