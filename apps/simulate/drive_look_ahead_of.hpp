@@ -19,7 +19,7 @@ namespace simulate {
 
 namespace detail {
 
-/// What an executor does, written down as phases, which are cut where blocks begin.
+/// What an executor does, written down as phases, which are cut where blocks begin. Between them it rests.
 class PhaseRecord {
  public:
   /// mm, of each block as it is driven.
@@ -33,6 +33,7 @@ class PhaseRecord {
       return;
     }
     close();
+    if (time - end_ > same_time) phases_.push_back({{end_, time - end_, place_, 0.0, 0.0, 0.0}, block_});
     if (block > block_) place_ = 0.0;
     block_ = std::max(block_, block);  // by rounding it may still be before
     open_ = {time, lasts, place_, now.velocity, now.acceleration, now.jerk};
@@ -44,8 +45,11 @@ class PhaseRecord {
   }
 
  private:
+  static constexpr double same_time = 1e-12;  // s
+
   void close() {
     constexpr double rounding = 1e-10;  // mm
+    if (open_.duration > 0.0) end_ = open_.time + open_.duration;
     for (; open_.duration > 0.0; ++block_) {
       const double length = lengths_[block_], end = open_.at(open_.duration).position;
       if (block_ + 1 == lengths_.size() || end < length + rounding) {
@@ -69,6 +73,7 @@ class PhaseRecord {
   cncplan::Phase open_{};
   std::size_t block_ = 0;
   double place_ = 0.0;  // mm from the start of the block
+  double end_ = 0.0;    // s, of what has been written down
 };
 
 }  // namespace detail
@@ -105,11 +110,14 @@ cncplan::Expected<Phases, cncplan::ProgramError> drive_look_ahead(const Options&
     if (executor->finished() || (std::isinf(lasts) && event == events.end())) break;
     const double next_event = event != events.end() ? event->time : infinity;
     if (std::min(time + lasts, next_event) > most_periods * options.period) refuse_periods(options.period);
-    if (std::isinf(lasts))
-      ticks = static_cast<std::int64_t>(next_event / options.period);  // at rest nothing is ticked
+    if (std::isinf(lasts)) {  // at rest nothing is ticked
+      ticks = static_cast<std::int64_t>(next_event / options.period);
+      time = next_event;
+      continue;
+    }
     while (!(static_cast<double>(ticks) * options.period > time)) ++ticks;
     const double next_tick = static_cast<double>(ticks) * options.period;
-    const double due = std::isinf(lasts) ? next_event : std::min(next_tick, next_event);
+    const double due = std::min(next_tick, next_event);
     const bool edge = lasts < due - time;
     const double step = edge ? lasts : due - time;
     record.add(point.block, point.along, time, step);

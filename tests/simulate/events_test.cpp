@@ -240,7 +240,9 @@ TEST_CASE("events at the level good end runs as they do at the level fast") {
         Case{"G61.1\nG1 X10 F1200\nG1 X20\n", "0,step,1\n"}, Case{"G1 X10 F1200\nG4 P1\n", ""},
         Case{"G4 P1.5\nG4 P0.5\n", ""}, Case{"G4 P1\nG1 X10 F1200\n", "0.5,hold\n"},
         Case{"G4 P1\nG1 X10 F1200\n", "0.5,stop\n"}, Case{"G0 X20\nG1 X10 F1200\n", "0.2,rapid,0\n"},
-        Case{"G1 X10 F1200\nG4 P0.3\nM30\n", "0.1,hold\n0.5,resume\n"}}) {
+        Case{"G1 X10 F1200\nG4 P0.3\nM30\n", "0.1,hold\n0.5,resume\n"},
+        Case{"G1 X50 F1200\n", "0.5,feed,0\n1,resume\n"},
+        Case{"T1 M6\nG1 X9 F1200\nT2 M6\nX20\n", "0,step,1\n2,resume\n4,resume\n"}}) {
     CAPTURE(program, events);
     folder.write("e.csv", events);
     const auto run = [&](const std::string& level) {
