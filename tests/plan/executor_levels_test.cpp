@@ -314,7 +314,7 @@ TEST_CASE("executor levels: a part comes while the rate changes", "[executor-lev
   for (const auto& [before, behind] : {std::pair(0.3, 1.0), std::pair(1.0, 0.2)}) {
     CAPTURE(before, behind);
     double acceleration = 0, jerk = 0, latest = 0;
-    for (double at = 0.02; at < 2 / before; at += 0.01) {
+    for (double at = 0.02; at < 2 / before; at += 0.02) {
       const auto executor = runner({.level = SmoothLevel::good,
                                     .longest_wait = 1e9,
                                     .background = true,
