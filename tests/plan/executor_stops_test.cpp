@@ -237,3 +237,19 @@ TEST_CASE("stops: turning round is no hold", "[executor]") {
     CHECK_FALSE(held);
   });
 }
+
+TEST_CASE("stops: a pause is made before a line that moves, not before a dwell or words alone",
+          "[executor]") {
+  const auto paused = [](const Lines& lines, const std::string& log, const std::string& then) {
+    CAPTURE(lines[1]);
+    at_every_door(lines, [&](auto& executor) {
+      executor.pause_at(2);
+      CHECK(told(executor, 3) == log);
+      executor.resume();
+      CHECK(told(executor, 3) == then);
+    });
+  };
+  paused({"G1 X5 F1200", "G4 P0.5", "X0"}, "dwell end", "end");
+  paused({"G1 X5 F1200", "T2 M6", "X0"}, "T2 M6 end", "end");
+  paused({"G1 X5 F1200", "T2 M6 X0", "X1"}, "held", "T2 M6 end");
+}

@@ -487,8 +487,7 @@ class BasicMotionExecutor {
 
   // Holds at a junction where a pause is asked for. Whether one is.
   bool pauses_here() {
-    const std::int64_t done = at_.block - 1;
-    const bool pauses = path_.pauses_before(at_.block, path_.ring.holds(done) ? path_.ring[done].line : 0);
+    const bool pauses = path_.pauses_before(at_.block);
     if (pauses) {
       path_.asked.held = true;
       path_.passed_pause = at_.block;

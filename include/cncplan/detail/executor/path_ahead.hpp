@@ -92,7 +92,7 @@ class BasicPathAhead {
   /// Whether the motion rests behind a block.
   [[nodiscard]] bool stops_behind(std::int64_t block) const {
     const Block& b = ring[block];
-    return b.segment_limits.pause > S(0) || holds_behind(block) || pauses_before(block + 1, b.line);
+    return b.segment_limits.pause > S(0) || holds_behind(block) || pauses_before(block + 1);
   }
 
   /// Whether it is held behind a block, which is kept, until it is told to go on.
@@ -106,10 +106,14 @@ class BasicPathAhead {
            ((asked.optional_stops && b.optional_stop) || (asked.program_stops && b.program_stop));
   }
 
-  /// Whether a pause at its line is to be made before a block, which lies behind one of the given line.
-  [[nodiscard]] bool pauses_before(std::int64_t block, int line_before) const {
-    return direction > 0 && asked.pause_line > 0 && ring.holds(block) &&
-           ring[block].line == asked.pause_line && line_before != asked.pause_line && block != passed_pause;
+  /// Whether a pause at its line is to be made before a block: the first one of the line, where one of the
+  /// line moves, or may yet come and move.
+  [[nodiscard]] bool pauses_before(std::int64_t block) const {
+    const auto is_of_line = [&](std::int64_t b) { return ring.holds(b) && ring[b].line == asked.pause_line; };
+    if (direction < 0 || asked.pause_line <= 0 || block == passed_pause) return false;
+    if (!is_of_line(block) || is_of_line(block - 1)) return false;
+    while (is_of_line(block) && !(ring[block].segment_limits.length > S(0))) ++block;
+    return is_of_line(block) || !ring.holds(block);
   }
 
   /// Highest speed at the junction between a block and the one behind it.
