@@ -11,7 +11,6 @@
 #include <limits>
 #include <string_view>
 
-#include "pause_places.hpp"
 #include "support/failure.hpp"
 
 namespace simulate {
@@ -58,7 +57,8 @@ class Row {
     if (kind == kinds.end()) refuse(name, fmt::format("'{}' is no event", name.text));
     event.request = kind->request;
     const Field value = done_ ? Field{text_.size() + 1, {}} : next("value");
-    value_column_ = static_cast<int>(value.column);
+    event.row = line_;
+    event.column = static_cast<int>(value.column);
     if (!done_) refuse({value.column + value.text.size(), {}}, "more than three fields");
     if (kind->value == Value::none) {
       if (!value.text.empty()) refuse(value, fmt::format("{} takes no value", kind->name));
@@ -69,8 +69,6 @@ class Row {
     }
     return event;
   }
-  /// Of the event that was read.
-  [[nodiscard]] int value_column() const { return value_column_; }
 
  private:
   struct Field {
@@ -120,43 +118,24 @@ class Row {
   std::string_view text_;
   std::size_t at_ = 0;
   bool done_ = false;
-  int value_column_ = 0;
 };
 
-// Hands every event to take(event, row, column of its value), in order.
-template <class Take>
-void for_each_event(const std::string& file, const Take& take) {
+}  // namespace
+
+std::vector<Event> read_events(const std::string& file) {
   const Failure unreadable(Exit::bad_input, fmt::format("{}: cannot be read", file));
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file)) throw unreadable;
-  double last = 0.0;
+  std::vector<Event> events;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // byte order mark
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty() || (number == 1 && line == header)) continue;
-    Row row(file, number, line);
-    const Event event = row.event(last);
-    last = event.time;
-    take(event, number, row.value_column());
+    events.push_back(Row(file, number, line).event(events.empty() ? 0.0 : events.back().time));
   }
   if (stream.bad()) throw unreadable;
-}
-
-}  // namespace
-
-std::vector<Event> read_events(const std::string& file) {
-  std::vector<Event> events;
-  for_each_event(file, [&](const Event& event, int, int) { events.push_back(event); });
   return events;
-}
-
-std::vector<PausePlace> pause_places(const std::string& file) {
-  std::vector<PausePlace> places;
-  for_each_event(file, [&](const Event& event, int row, int column) {
-    if (event.request == Request::pause) places.push_back({static_cast<int>(event.value), row, column});
-  });
-  return places;
 }
 
 std::string event_text(const Event& event) {

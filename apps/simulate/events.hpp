@@ -11,7 +11,8 @@ enum class Request { hold, resume, feed, rapid, stop, step, pause };
 struct Event {
   double time{};  ///< s from the start of the program
   Request request{};
-  double value{};  ///< a share of feed or rapid rate, on or off (1 or 0), a line; 0 where there is none
+  double value{};       ///< a share of feed or rapid rate, on or off (1 or 0), a line; 0 where there is none
+  int row{}, column{};  ///< of the file, where the value stands
 };
 
 /// Reads a CSV file of `t,event,value`, in order of time. Throws `Failure` for one that cannot be read or has

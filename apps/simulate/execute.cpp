@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "deviation.hpp"
+#include "events.hpp"
 #include "html_report.hpp"
 #include "machine.hpp"
 #include "outputs.hpp"
-#include "pause_places.hpp"
 #include "plan.hpp"
 #include "problems.hpp"
 #include "read_program.hpp"
@@ -30,12 +30,14 @@ using support::Failure;
 // A pause before a line without motion never comes.
 void tell_pauses(const Options& options, ProgramText& program) {
   if (!options.events) return;
-  for (const auto& [line, row, column] : pause_places(*options.events)) {
-    const auto is_there = [number = line](const Origin& motion) { return motion.line == number; };
+  for (const Event& event : read_events(*options.events)) {
+    const auto line = static_cast<int>(event.value);
+    const auto is_there = [&](const Origin& motion) { return motion.line == line; };
     const auto first = program.motions.begin() + (options.from_line ? 0 : 1);  // else where it starts
-    if (line == 0 || std::any_of(first, program.motions.end(), is_there)) continue;
+    if (event.request != Request::pause || line == 0 || std::any_of(first, program.motions.end(), is_there))
+      continue;
     program.warnings.push_back(fmt::format("{}:{}:{}: warning: pause: {} has no motion on line {}",
-                                           *options.events, row, column, program.file, line));
+                                           *options.events, event.row, event.column, program.file, line));
     fmt::print(stderr, "{}\n", program.warnings.back());
   }
 }
