@@ -28,7 +28,8 @@ class PhaseRecord {
   /// From a state on a block on, for so long, with the jerk it has.
   void add(std::size_t block, const cncplan::State& now, double time, double lasts) {
     const bool goes_on = now.velocity > 0.0 || now.jerk == 0.0;  // each motion from rest is one of its own
-    if (open_.duration > 0.0 && now.jerk == open_.jerk && goes_on) {
+    const bool at_once = time - (open_.time + open_.duration) <= same_time;
+    if (open_.duration > 0.0 && at_once && now.jerk == open_.jerk && goes_on) {
       open_.duration += lasts;
       return;
     }
@@ -45,7 +46,7 @@ class PhaseRecord {
   }
 
  private:
-  static constexpr double same_time = 1e-12;  // s
+  static constexpr double same_time = 1e-9;  // s: sums of ticks differ by their rounding
 
   void close() {
     constexpr double rounding = 1e-10;  // mm
@@ -82,7 +83,7 @@ template <class M>
 cncplan::Expected<Phases, cncplan::ProgramError> drive_look_ahead(const Options& options, const M& machine,
                                                                   const DrivenBlocks<M>& blocks,
                                                                   const std::vector<Event>& events) {
-  using Executor = cncplan::Executor<M, 1024, BlockOf<M>>;
+  using Executor = cncplan::Executor<M, 4096, BlockOf<M>>;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const typename Executor::Options how{
       .tolerance = smoothed_by_corrections<M> ? options.tolerance : 0.0,
@@ -98,7 +99,7 @@ cncplan::Expected<Phases, cncplan::ProgramError> drive_look_ahead(const Options&
   detail::PhaseRecord record(std::move(lengths));
   double time = 0.0;
   std::int64_t ticks = 1;  // the next one ends at so many periods
-  std::size_t fed = 0;
+  std::size_t fed = 0, again = 0;
   for (auto event = events.begin();;) {
     for (; event != events.end() && event->time <= time; ++event) ask(*executor, *event);
     while (fed < blocks.programmed.size() && executor->push(blocks.programmed[fed])) ++fed;
@@ -106,6 +107,10 @@ cncplan::Expected<Phases, cncplan::ProgramError> drive_look_ahead(const Options&
     executor->plan();
     const auto point = executor->tick(0.0);  // what is asked for takes effect
     const double lasts = executor->until_change();
+    // Many words in a row take several ticks.
+    const bool goes_on = std::isinf(lasts) && executor->state() != cncplan::ExecutorState::held;
+    if (goes_on && !executor->finished() && ++again <= blocks.programmed.size()) continue;
+    again = 0;
     if (const auto error = executor->error()) return tl::unexpected<cncplan::ProgramError>(*error);
     if (executor->finished() || (std::isinf(lasts) && event == events.end())) break;
     const double next_event = event != events.end() ? event->time : infinity;

@@ -87,7 +87,8 @@ class Executor : private detail::ExecutorRoom<M, B, capacity>, public ExecutorCo
   explicit Executor(const M& machine, const Options& options = {})
       : ExecutorCore<M, B>(this->memory(), machine, options) {}
   /// The same with a policy of one's own (`JunctionPolicy`) for junctions that are left exact, in place of
-  /// the options' `junction_deviation`. The policy must outlive the executor.
+  /// the options' `junction_deviation`. It sees the programmed feeds: overrides above 1 pass junctions no
+  /// faster than it says for these. It must outlive the executor.
   template <JunctionPolicy<Scalar> Policy>
   Executor(const M& machine, const Policy& junctions, const Options& options = {})
       : ExecutorCore<M, B>(this->memory(), machine, options, junctions) {}

@@ -159,7 +159,7 @@ class ExecutorCore {
   void program_stop(bool wanted) {
     drive([&](auto& driver) { driver.program_stop(wanted); });
   }
-  /// Rests before the first motion of a line until it is resumed. 0: none.
+  /// Rests before a line that moves until it is resumed. 0: none.
   void pause_at(int line) {
     drive([&](auto& driver) { driver.pause_at(line); });
   }

@@ -169,7 +169,7 @@ class Executor:
         self._core.reverse(flag(wanted, "wanted"))
 
     def single_step(self, wanted: bool = True) -> None:
-        """Rests behind every block until it is resumed."""
+        """Rests behind every block that moves or dwells until it is resumed."""
         self._core.single_step(flag(wanted, "wanted"))
 
     def optional_stop(self, wanted: bool = True) -> None:
@@ -181,7 +181,7 @@ class Executor:
         self._core.program_stop(flag(wanted, "wanted"))
 
     def pause_at(self, line: int) -> None:
-        """Rests before the first block of a line until it is resumed. 0: none."""
+        """Rests before a line that moves until it is resumed. 0: none."""
         self._core.pause_at(integer(line, "line", 0))
 
     def jog(self, velocities: Sequence[float]) -> None:

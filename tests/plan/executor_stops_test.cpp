@@ -251,5 +251,22 @@ TEST_CASE("stops: a pause is made before a line that moves, not before a dwell o
   };
   paused({"G1 X5 F1200", "G4 P0.5", "X0"}, "dwell end", "end");
   paused({"G1 X5 F1200", "T2 M6", "X0"}, "T2 M6 end", "end");
+  paused({"G1 X5 F1200", "G4 P0.5"}, "dwell end", "end");
+  paused({"G1 X5 F1200", "M30"}, "M30 end", "end");
   paused({"G1 X5 F1200", "T2 M6 X0", "X1"}, "held", "T2 M6 end");
+}
+
+TEST_CASE("stops: a pause is made before a motion that comes when the words of its line are over",
+          "[executor]") {
+  Executor<Machine<3>, 64> executor(mill);
+  executor.pause_at(2);
+  const auto blocks = test::blocks_of({"G1 X5 F1200", "T2 M6 X0"}, mill);
+  REQUIRE(blocks.size() == 4);
+  for (std::size_t i = 0; i < 3; ++i) REQUIRE(executor.push(blocks[i]));
+  CHECK(told(executor, 3) == "T2 M6 waiting");
+  REQUIRE(executor.push(blocks[3]));
+  executor.end_of_program();
+  CHECK(told(executor, 3) == "held");
+  executor.resume();
+  CHECK(told(executor, 3) == "end");
 }

@@ -82,6 +82,22 @@ TEST_CASE("real programs end with events, and take the planned time without any"
       [&](const std::string& name, const std::string& path) { check(name, test::quoted(path + ".ngc"), 2); });
 }
 
+TEST_CASE("a run at the level fast waits between dwells and goes on behind many words") {
+  const test::Folder folder;
+  const auto seconds = [&](const std::string& program, const char* events) {
+    folder.write("e.csv", events);
+    return folder.run_text(program, "--json --smooth fast --tolerance 0.01 --events e.csv")
+        .json()["time_s"]
+        .get<double>();
+  };
+  CHECK(seconds("G4 P1\nG4 P1\n", "0.5,hold\n5,resume\n") == Approx(6));
+  CHECK(seconds("G1 X10 F600\nG4 P1\nG4 P1\n", "0,step,1\n3,resume\n5,resume\n") == Approx(6));
+  std::string program = "G1 X10 F600\n";
+  for (int i = 0; i < 10000; ++i) program += i % 2 == 0 ? "T1 M6\n" : "T2 M6\n";
+  const double once = seconds("G1 X10 F600\n", "");
+  CHECK(seconds(program + "G1 X20\n", "") == Approx(2 * once));
+}
+
 TEST_CASE("events go with every policy for junctions") {
   const test::Folder folder;
   folder.write("e.csv", "t,event,value\n0,feed,1\n");

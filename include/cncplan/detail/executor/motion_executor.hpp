@@ -97,12 +97,12 @@ class BasicMotionExecutor {
   /// between.
   void backwards(bool wanted) { ask(path_.asked.direction, wanted ? -1 : 1); }
 
-  /// Stops behind every block (single step): `resume` runs the next one.
+  /// Stops behind every block that moves or dwells (single step): `resume` runs the next one.
   void single_step(bool wanted) { ask(path_.asked.single_step, wanted); }
   /// Whether blocks with an optional stop stop, and those with a program stop; `resume` goes on.
   void optional_stop(bool wanted) { ask(path_.asked.optional_stops, wanted); }
   void program_stop(bool wanted) { ask(path_.asked.program_stops, wanted); }
-  /// Stops before the first block of this line of the program; `resume` goes on. 0: none.
+  /// Stops before this line of the program, if it moves; `resume` goes on. 0: none.
   void pause_at(int line) { ask(path_.asked.pause_line, line); }
 
   /// At rest: forgets all blocks; the next one that is pushed has this number, and the motion begins at its

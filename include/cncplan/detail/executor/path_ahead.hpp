@@ -106,14 +106,18 @@ class BasicPathAhead {
            ((asked.optional_stops && b.optional_stop) || (asked.program_stops && b.program_stop));
   }
 
-  /// Whether a pause at its line is to be made before a block: the first one of the line, where one of the
-  /// line moves, or may yet come and move.
+  /// Whether a pause at its line is to be made before a block: before the first one of the line, as soon as
+  /// one is known that moves, and not again behind it.
   [[nodiscard]] bool pauses_before(std::int64_t block) const {
     const auto is_of_line = [&](std::int64_t b) { return ring.holds(b) && ring[b].line == asked.pause_line; };
-    if (direction < 0 || asked.pause_line <= 0 || block == passed_pause) return false;
-    if (!is_of_line(block) || is_of_line(block - 1)) return false;
-    while (is_of_line(block) && !(ring[block].segment_limits.length > S(0))) ++block;
-    return is_of_line(block) || !ring.holds(block);
+    const auto moves = [&](std::int64_t b) { return ring[b].segment_limits.length > S(0); };
+    if (direction < 0 || asked.pause_line <= 0 || !is_of_line(block)) return false;
+    std::int64_t first = block, next = block;
+    while (is_of_line(first - 1) && !moves(first - 1)) --first;
+    const bool paused = first <= passed_pause && passed_pause <= block;
+    if (paused || is_of_line(first - 1)) return false;
+    while (is_of_line(next) && !moves(next)) ++next;
+    return is_of_line(next);
   }
 
   /// Highest speed at the junction between a block and the one behind it.
