@@ -1,20 +1,17 @@
 // A program driven live on the exact path or at the level fast, with requests on the way.
 #pragma once
 
-#include <memory_resource>
 #include <span>
 #include <vector>
 
 #include "cncplan/core/error.hpp"
-#include "cncplan/core/phase.hpp"
 #include "cncplan/program_error.hpp"
 #include "events.hpp"
 #include "machine.hpp"
 #include "options.hpp"
+#include "phases.hpp"
 
 namespace simulate {
-
-using Phases = std::pmr::vector<cncplan::BasicPiecePhase<double>>;
 
 /// A program's blocks, as they are programmed and as they are driven within the tolerance.
 template <class M>

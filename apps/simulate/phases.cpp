@@ -48,8 +48,7 @@ std::vector<cncplan::detail::Span> spans_of(const Options& options,
 
 }  // namespace
 
-std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
-    const Options& options, const cncplan::detail::BasicCells<double>& cells) {
+Phases phases_of(const Options& options, const cncplan::detail::BasicCells<double>& cells) {
   const auto spans = spans_of(options, cells.segment_limits);
   return cncplan::detail::block_phases(std::span<const cncplan::detail::Span>(spans), cells);
 }

@@ -9,8 +9,9 @@
 
 namespace simulate {
 
+using Phases = std::pmr::vector<cncplan::BasicPiecePhase<double>>;
+
 /// What drives cells from end to end. Throws `Failure` for what cannot be planned.
-[[nodiscard]] std::pmr::vector<cncplan::BasicPiecePhase<double>> phases_of(
-    const Options& options, const cncplan::detail::BasicCells<double>& cells);
+[[nodiscard]] Phases phases_of(const Options& options, const cncplan::detail::BasicCells<double>& cells);
 
 }  // namespace simulate

@@ -1,7 +1,9 @@
 // Executors with a policy of one's own for junctions that are left exact.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "cncplan/executor.hpp"
 #include "cncplan/junction/exact_stop.hpp"
@@ -20,6 +22,12 @@ struct SameSpeed {
   [[nodiscard]] double speed_sq(const junction::Geometry&) const { return speed * speed; }
 };
 
+struct HalfOfFeed {
+  [[nodiscard]] double speed_sq(const junction::Geometry& junction) const {
+    return junction.limits.velocity * junction.limits.velocity / 4;
+  }
+};
+
 struct Run {
   double seconds{};                        ///< until it rests at the end
   std::array<double, 4> slowest, fastest;  ///< mm/s, of each block within 1e-3 mm of its start
@@ -27,12 +35,12 @@ struct Run {
 
 // Around a square of 1 mm, in ticks of 10 us.
 template <class Policy>
-Run around(const Policy& policy, double override_share) {
+Run around(const Policy& policy, double override_share, const std::string& feed = "F1800") {
   constexpr double tick = 1e-5, near = 1e-3;
   using Runner = Executor<Machine<3>, 8>;
   const auto executor = std::make_unique<Runner>(square, policy, Runner::Options{.tolerance = 0});
   executor->feed_override(override_share);
-  for (const auto& block : test::blocks_of({"F1800", "G1 X1", "Y1", "X0", "Y0"}, square, {.tolerance = 0}))
+  for (const auto& block : test::blocks_of({feed, "G1 X1", "Y1", "X0", "Y0"}, square, {.tolerance = 0}))
     REQUIRE(executor->push(block));
   executor->end_of_program();
   Run run;
@@ -69,5 +77,15 @@ TEST_CASE("an executor passes corners at the speed that its policy says, at an o
       CHECK(run.slowest[corner] == Approx(5).epsilon(1e-3));
       CHECK(run.fastest[corner] < 5.1);
     }
+  }
+}
+
+TEST_CASE("a policy of an executor sees the programmed feeds at an override above 1 too", "[executor]") {
+  const HalfOfFeed policy;
+  for (const double share : {1.0, 2.0}) {
+    CAPTURE(share);
+    const Run run = around(policy, share, "F300");
+    for (std::size_t corner = 1; corner <= 3; ++corner)
+      CHECK(run.slowest[corner] == Approx(2.5).epsilon(1e-3));
   }
 }
