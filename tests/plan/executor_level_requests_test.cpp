@@ -10,6 +10,7 @@
 
 #include "cncplan/executor_levels.hpp"
 #include "plan/level_runner.hpp"
+#include "plan/live_run.hpp"
 #include "plan/rows_program.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
@@ -75,6 +76,43 @@ TEST_CASE("executor levels: a quick stop is no later than a hold, also where one
     const double held = hold(at, -1);
     for (const int quick : {0, 2, 8}) CHECK(hold(at, quick) <= held + 1.5 * tick_time);
   }
+}
+
+TEST_CASE("executor levels: motion goes on behind more words than there is room for parts",
+          "[executor-levels]") {
+  const auto level = GENERATE(SmoothLevel::good, SmoothLevel::best);
+  const bool away = GENERATE(false, true);
+  CAPTURE(static_cast<int>(level), away);
+  constexpr int count = 1000;
+  std::string words;
+  for (int i = 0; i < count; ++i) words += i % 2 == 0 ? "M7\n" : "M9\n";
+  const LiveBlocks blocks =
+      live_blocks("G1 X10 F600\n" + words + "Y10\n" + words + "X0\n", with_axes(), within);
+  const auto executor = runner({.level = level});
+  std::size_t fed = 0;
+  int told = 0;
+  bool left = false, ordered = true;
+  SetPoint<3> point, before;
+  for (int tick = 0; tick < 20000 && !executor->finished(); ++tick) {
+    if (away && told > 900 && !left) {  // the motion before has been let go
+      left = true;
+      executor->feed_hold();
+      REQUIRE(executor->jog_to({12, 3, 1}));
+    }
+    if (left && point.position == Vector3(12, 3, 1)) executor->resume();
+    feed(*executor, blocks, fed);
+    point = executor->tick(tick_time);
+    for (const auto& word : point.words) CHECK(word.number == (told++ % 2 == 0 ? 7 : 9));
+    CHECK((point.velocity - before.velocity).norm() < 1000 * std::sqrt(3) * tick_time);
+    CHECK((point.position - before.position).norm() < 90 * tick_time);
+    ordered = ordered && (left || point.along.position >= before.along.position);
+    before = point;
+  }
+  CHECK(executor->finished());
+  CHECK(told == 2 * count);
+  CHECK(ordered);
+  CHECK(point.along.position == Approx(30));
+  CHECK((point.position - Vector3(0, 10, 0)).norm() < 1e-12);
 }
 
 TEST_CASE("executor levels: single steps and a pause rest just before the next block", "[executor-levels]") {

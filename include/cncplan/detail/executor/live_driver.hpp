@@ -140,8 +140,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] gcode::Diagnostic fault() const override { return planner_.fault(); }
   [[nodiscard]] std::optional<Vector> place() const override {
     if (!clock_.chain().empty()) return clock_.chain().at(clock_.state()).position;
-    if (planner_.pushed() == 0) return std::nullopt;
-    return planner_.start();
+    if (driven_.end() > 0)  // all that moved has been let go
+      return planner_.part(driven_.oldest()).motion->trajectory.program()[0].path.position_at(S(0));
+    return planner_.pushed() > 0 ? std::optional(planner_.start()) : std::nullopt;
   }
   [[nodiscard]] const B* block() const override {
     return clock_.chain().empty() ? nullptr : &clock_.chain().block_at(clock_.state().position);
@@ -226,7 +227,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] bool comes_down() const { return slower_at_ && beyond(*slower_at_, clock_.state().position); }
   // Whether it is to run back, and stands where the way that is kept begins.
   [[nodiscard]] bool nothing_behind() const {
-    if (!backwards_ || clock_.chain().empty()) return false;
+    if (!backwards_) return false;
+    if (clock_.chain().empty()) return true;
     return no_way_back_ ? clock_.rests()
                         : clock_.standing() && !clock_.chain().rest_before(clock_.next_rest());
   }
@@ -254,9 +256,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   void take_part() {
     const auto& part = planner_.part(driven_.end());
-    Driven& now = driven_.take(end_of_chain());
+    Driven& now = driven_.take(clock_.chain().end_time());
     add(now, *part.motion);
-    now.tail_start = end_of_chain();
+    now.tail_start = clock_.chain().end_time();
     if (part.tail) add(now, *part.tail);
     tail_ahead_ = part.tail.has_value();
     cut_ = now.tail_start;
@@ -269,8 +271,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     driven_.begin_words_at(begins_at_ - same_time);
   }
   // s, where what is planned ends, a tail that is not driven left out.
-  [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : end_of_chain(); }
-  [[nodiscard]] S end_of_chain() const { return clock_.chain().empty() ? S(0) : clock_.chain().end_time(); }
+  [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : clock_.chain().end_time(); }
   void add(Driven& now, const Clocked& motion) {
     if (motion.trajectory.phases().empty()) return;
     clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes, motion.peaks);
@@ -564,6 +565,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 
 template <MachineModel M, BlockModel B, class Planner>
 void LiveDriver<M, B, Planner>::look(S period) {
+  release();
   take_parts();
   planner_.left(driven_.end(),
                 (way_end() - clock_.state().position) / std::max(std::abs(clock_.state().velocity), S(1)));
@@ -589,7 +591,6 @@ void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
     point.feed /= planner_.shares().share_of(static_cast<std::int64_t>(point.block), oldest_block());
   }
   point.words = words_;
-  release();
 }
 
 }  // namespace cncplan::detail

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 #include <optional>
 #include <span>
@@ -65,19 +66,13 @@ class TrajectoryChain {
   /// `speed_peaks`, if these are asked for. There has to be room.
   void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes,
                  std::span<const S> peaks = {}) {
-    Part next{&trajectory, rests, brakes, peaks, end_time(), 0, S(0)};
-    if (count_ > 0) {
-      const Part& last = parts_[count_ - 1];
-      const std::size_t blocks = last.trajectory->program().size();
-      const std::size_t before = trajectory.first_block() - last.trajectory->first_block();
-      next.first_phase = last.first_phase + last.trajectory->phases().size();
-      next.start_length = last.start_length + last.trajectory->start_length(std::min(before, blocks));
-    }
+    const Part next{next_begin(trajectory.first_block()), &trajectory, rests, brakes, peaks};
     parts_[count_++] = next;
   }
-  /// Lets the last one go, or the first one. The running time goes on.
+  /// Lets the last one go, or the first one. The running time goes on, even where none is left.
   void pop_back() { --count_; }
   void pop_front() {
+    begin_ = count_ > 1 ? parts_[1] : next_begin(std::numeric_limits<std::size_t>::max());
     std::move(parts_.begin() + 1, parts_.begin() + static_cast<std::ptrdiff_t>(count_), parts_.begin());
     --count_;
   }
@@ -88,7 +83,7 @@ class TrajectoryChain {
   [[nodiscard]] S end_time(std::size_t part) const {
     return parts_[part].start + parts_[part].trajectory->duration();
   }
-  [[nodiscard]] S end_time() const { return count_ == 0 ? S(0) : end_time(count_ - 1); }
+  [[nodiscard]] S end_time() const { return count_ == 0 ? begin_.start : end_time(count_ - 1); }
 
   // Phases count from the chain's first one. There has to be one.
 
@@ -191,15 +186,28 @@ class TrajectoryChain {
   }
 
  private:
-  struct Part {
+  // Where a trajectory begins, in all of them.
+  struct Begin {
+    S start{};  // s
+    std::size_t first_phase{};
+    S start_length{};  // mm of the program
+  };
+  struct Part : Begin {
     const T* trajectory{};
     std::span<const Rest> rests{};
     std::span<const Brake> brakes{};
     std::span<const S> peaks{};
-    S start{};
-    std::size_t first_phase{};
-    S start_length{};  // mm of the program
   };
+
+  // That of one behind the last one, whose first block has a number.
+  [[nodiscard]] Begin next_begin(std::size_t block) const {
+    if (count_ == 0) return begin_;
+    const Part& last = parts_[count_ - 1];
+    const std::size_t before =
+        std::min(block - last.trajectory->first_block(), last.trajectory->program().size());
+    return {end_time(), last.first_phase + last.trajectory->phases().size(),
+            last.start_length + last.trajectory->start_length(before)};
+  }
 
   // The part that a time lies in, of two that meet there the later one.
   [[nodiscard]] std::size_t part_number(S time) const {
@@ -221,6 +229,7 @@ class TrajectoryChain {
 
   std::array<Part, most_parts> parts_{};
   std::size_t count_ = 0;
+  Begin begin_{};  // of the first one that is left
 };
 
 }  // namespace cncplan::detail
