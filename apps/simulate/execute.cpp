@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "deviation.hpp"
 #include "events.hpp"

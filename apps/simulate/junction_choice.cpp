@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <string>
 
 #include "support/failure.hpp"
 

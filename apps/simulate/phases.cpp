@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <utility>
 
 #include "cncplan/detail/speed/span_planner.hpp"
 #include "cncplan/profile/five_phase.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <memory_resource>
 #include <span>
@@ -26,6 +25,7 @@
 #include "progress.hpp"
 #include "stopwatch.hpp"
 #include "support/failure.hpp"
+#include "support/fallback_lines.hpp"
 
 namespace simulate {
 
@@ -102,7 +102,7 @@ template <class M>
   Plan result;
   result.motion_of = program.motion_of;
   result.junctions_limited = 0;
-  result.other_levels = other_levels(*planned);
+  result.fallbacks = support::fallback_lines(*planned);
   result.motion = std::make_unique<PlannedOn<M, Block>>(file, std::move(*planned));
   return result;
 }
@@ -137,7 +137,7 @@ template <class M>
                                                        driven.get_allocator().resource());
   Trajectory trajectory(machine, std::move(driven), std::move(phases), std::move(smoothing));
   trajectory.set_fallbacks(std::move(beside_ends));
-  result.other_levels = other_levels(trajectory);
+  result.fallbacks = support::fallback_lines(trajectory);
   result.motion = std::make_unique<PlannedOn<M, Block>>(file, std::move(trajectory),
                                                         options.interpolator == Interpolator::taylor);
   return result;

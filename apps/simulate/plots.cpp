@@ -10,8 +10,8 @@ void draw(const std::string& folder, bool quiet, const support::Machine& machine
   if (!plot) return;
   (*plot)("$samples << EOD\n");
   for (const Sample& s : samples) {
-    (*plot)("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", s.time, s.position.x(), s.position.y(),
-            s.position.z(), s.along.velocity, s.along.acceleration, s.along.jerk);
+    (*plot)("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", s.time, s.tool.x(), s.tool.y(), s.tool.z(),
+            s.along.velocity, s.along.acceleration, s.along.jerk);
     support::put_axis_shares(*plot, machine, s.velocity, s.acceleration);
   }
   (*plot)("EOD\n");

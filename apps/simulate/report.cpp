@@ -80,7 +80,7 @@ double velocity_limit(const ProgramText& program, const Options& options, const 
   double rapid = 0.0;
   for (const Origin& motion : program.motions)
     if (motion.kind == cncplan::junction::Kind::rapid) rapid = std::max(rapid, motion.feed);
-  if (!(m.tool_peak.velocity > limit * (1.0 + 1e-9)) || !(rapid > limit)) return limit;
+  if (!(m.peaks.tool.velocity > limit * (1.0 + 1e-9)) || !(rapid > limit)) return limit;
   return rapid;
 }
 
@@ -104,26 +104,28 @@ std::string json_summary(const ProgramText& program, const Options& options, con
   json["feeds"] = overview.feeds;
   json["capped"] = {{"motions", overview.capped}, {"highest_feed", overview.highest_capped}};
   json["tools"] = program.tools;
-  json["peak"] = {
-      {"velocity", m.peak.velocity}, {"acceleration", m.peak.acceleration}, {"jerk", m.peak.jerk}};
+  json["peak"] = {{"velocity", m.peaks.along.velocity},
+                  {"acceleration", m.peaks.along.acceleration},
+                  {"jerk", m.peaks.along.jerk}};
   json["axis_peak"]["velocity"] =
-      per_axis(machine, [&](std::size_t i) { return m.axis_velocity[static_cast<int>(i)]; });
+      per_axis(machine, [&](std::size_t i) { return m.peaks.velocity[static_cast<int>(i)]; });
   json["axis_peak"]["acceleration"] =
-      per_axis(machine, [&](std::size_t i) { return m.axis_acceleration[static_cast<int>(i)]; });
+      per_axis(machine, [&](std::size_t i) { return m.peaks.acceleration[static_cast<int>(i)]; });
   json["axis_peak"]["jerk"] =
-      per_axis(machine, [&](std::size_t i) { return m.axis_jerk[static_cast<int>(i)]; });
-  json["tool_peak"] = {{"velocity", m.tool_peak.velocity},
-                       {"acceleration", m.tool_peak.acceleration},
-                       {"jerk", m.tool_peak.jerk}};
+      per_axis(machine, [&](std::size_t i) { return m.peaks.jerk[static_cast<int>(i)]; });
+  json["tool_peak"] = {{"velocity", m.peaks.tool.velocity},
+                       {"acceleration", m.peaks.tool.acceleration},
+                       {"jerk", m.peaks.tool.jerk}};
   json["tolerance_mm"] = options.tolerance;
   json["level"] = to_text(options.level());
   json["fallbacks"] = Json::array();
-  for (const OtherLevel& part : m.other_levels)
-    json["fallbacks"].push_back(
-        {{"lines", {part.first_line, part.last_line}}, {"level", part.level}, {"reason", part.reason}});
+  for (const cncplan::Fallback& part : m.fallbacks)
+    json["fallbacks"].push_back({{"lines", {part.first, part.last}},
+                                 {"level", to_text(part.level)},
+                                 {"reason", to_text(part.reason)}});
   json["deviation_mm"] = m.deviation;
-  json["acceleration_jumps"] = m.acceleration_jumps;
-  json["corner_velocity_step"] = m.corner_velocity_step;
+  json["acceleration_jumps"] = m.peaks.acceleration_jumps;
+  json["corner_velocity_step"] = m.peaks.corner_velocity_step.maxCoeff();
   if (options.makes_samples()) {
     json["end_error_mm"] = m.end_error;
     json["contour_error_mm"] = m.contour_error;
@@ -177,19 +179,19 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const ProgramText&
                                         per_minute(overview.highest_capped)));
   if (!program.tools.empty()) row("tools", fmt::format("{}", fmt::join(program.tools, ", ")));
   row("tool's peaks", fmt::format("{} mm/s, {} mm/s^2, {} mm/s^3",
-                                  of_limit(m.tool_peak.velocity, velocity_limit(program, options, m)),
-                                  of_limit(m.tool_peak.acceleration, options.limits.acceleration),
-                                  of_limit(m.tool_peak.jerk, options.limits.jerk)));
+                                  of_limit(m.peaks.tool.velocity, velocity_limit(program, options, m)),
+                                  of_limit(m.peaks.tool.acceleration, options.limits.acceleration),
+                                  of_limit(m.peaks.tool.jerk, options.limits.jerk)));
   if (options.tolerance > 0.0) {
     const auto [least, most] = program.tolerances(options.tolerance);
     row("off the path", fmt::format("{:.4g} mm, tolerance {}", m.deviation,
                                     least < most ? fmt::format("{:.4g} to {:.4g}", least, most)
                                                  : fmt::format("{:.4g}", most)));
   }
-  for (const OtherLevel& part : m.other_levels)
-    row("another level",
-        fmt::format("lines {} to {}: {}, as {}", part.first_line, part.last_line, part.level, part.reason));
-  row("largest corner step", fmt::format("{:.4g} mm/s", m.corner_velocity_step));
+  for (const cncplan::Fallback& part : m.fallbacks)
+    row("another level", fmt::format("lines {} to {}: {}, as {}", part.first, part.last, to_text(part.level),
+                                     to_text(part.reason)));
+  row("largest corner step", fmt::format("{:.4g} mm/s", m.peaks.corner_velocity_step.maxCoeff()));
   if (m.junctions_limited) row("junctions below their feed", fmt::format("{}", *m.junctions_limited));
   if (options.makes_samples())
     row("end, contour error", fmt::format("{:.3g} mm, {:.3g} mm", m.end_error, m.contour_error));
@@ -218,8 +220,8 @@ std::string table_summary(const ProgramText& program, const Options& options, co
     const auto axis = static_cast<int>(i);
     const cncplan::Limits& limits = machine.axes[i].limits;
     text += fmt::format(
-        "{:<6}{:>18}{:>20}{:>22}", machine.axes[i].letter, of_limit(m.axis_velocity[axis], limits.velocity),
-        of_limit(m.axis_acceleration[axis], limits.acceleration), of_limit(m.axis_jerk[axis], limits.jerk));
+        "{:<6}{:>18}{:>20}{:>22}", machine.axes[i].letter, of_limit(m.peaks.velocity[axis], limits.velocity),
+        of_limit(m.peaks.acceleration[axis], limits.acceleration), of_limit(m.peaks.jerk[axis], limits.jerk));
     if (stepped) {
       const auto& steps = m.steps[i];
       text += fmt::format("{:>12}{:>12}{:>14.4f}{:>14.3g}", steps.total_steps, steps.net_steps,

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -52,10 +51,7 @@ void Run::sample(const std::function<void(const Sample&)>& take) {
     plan_.motion->sample(options_.period, [&](const SetPoint& point) {
       const Stopwatch not_counted(elsewhere);
       const Origin& motion = program_.motions[plan_.motion_of[point.block]];
-      row = {point.time,     &motion,
-             point.tool,     point.position,
-             point.velocity, point.acceleration,
-             point.along,    places_.within(point.block, point.along.position)};
+      row = {point, &motion, places_.within(point.block, point.along.position)};
       if (motion.driven_path() != nullptr) {
         const bool exact = plan_.motion->as_programmed(point.piece);
         double& largest = exact ? measures_.contour_error : measures_.deviation;
@@ -68,7 +64,7 @@ void Run::sample(const std::function<void(const Sample&)>& take) {
     });
   }
   measures_.interpolate_seconds -= elsewhere;
-  measures_.end_error = (row.position - program_.motions.back().path.end()).norm();
+  measures_.end_error = (row.tool - program_.motions.back().path.end()).norm();
 }
 
 void Run::step(const std::function<void(const cncplan::step::Edge&)>& take) {
@@ -96,19 +92,14 @@ void Run::step(const std::function<void(const cncplan::step::Edge&)>& take) {
 
 void Run::measure() {
   const Planned& motion = *plan_.motion;
-  const PlanPeaks peaks = motion.peaks();
   measures_.duration = motion.duration();
   measures_.length = motion.length();
   measures_.completed = motion.completed();
-  measures_.peak = peaks.along;
-  measures_.tool_peak = peaks.tool;
-  measures_.axis_velocity = shown(file_, peaks.velocity);
-  measures_.axis_acceleration = shown(file_, peaks.acceleration);
-  measures_.axis_jerk = shown(file_, peaks.jerk);
-  measures_.corner_velocity_step = shown(file_, peaks.corner_velocity_step).maxCoeff();
-  measures_.acceleration_jumps = peaks.acceleration_jumps;
+  PlanPeaks& peaks = measures_.peaks = motion.peaks();
+  for (PerAxis* values : {&peaks.velocity, &peaks.acceleration, &peaks.jerk, &peaks.corner_velocity_step})
+    *values = shown(file_, *values);
   measures_.junctions_limited = plan_.junctions_limited;
-  measures_.other_levels = plan_.other_levels;
+  measures_.fallbacks = plan_.fallbacks;
   if (options_.tolerance > 0.0) measures_.deviation = largest_deviation(program_, plan_, places_);
   measures_.travel = PerAxis::Zero(static_cast<Eigen::Index>(file_.axes.size()));
   for (std::size_t i = 0; i < motion.block_count(); ++i) measures_.travel += shown(file_, motion.way(i));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "cncplan/step/edge.hpp"
 #include "deviation.hpp"

@@ -75,11 +75,11 @@ void write_samples_header(std::ostream& out, const support::Machine& machine) {
 }
 
 void write_sample(std::ostream& out, const support::Machine& machine, const Sample& sample) {
-  const Vector3 point = sample.position - sample.motion->offset;
+  const Vector3 point = sample.tool - sample.motion->offset;
   fmt::format_to(std::ostreambuf_iterator<char>(out), "{:.17g}", sample.time);
   put(out, point.x(), point.y(), point.z());
   for (std::size_t i = first_shown(machine); i < machine.axes.size(); ++i)
-    put(out, machine.shown(i, sample.axes[static_cast<Eigen::Index>(i)]));
+    put(out, machine.shown(i, sample.position[static_cast<Eigen::Index>(i)]));
   put(out, sample.along.position, sample.along.velocity, sample.along.acceleration, sample.along.jerk);
   out << '\n';
 }

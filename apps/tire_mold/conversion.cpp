@@ -50,8 +50,7 @@ class Converter {
         machine_(machine),
         options_(options),
         table_(table),
-        cutter_(sidewall, smallest_radius(machine)),
-        limits_(machine.joint_limits<4>()) {}
+        cutter_(sidewall, smallest_radius(machine)) {}
 
   Conversion run() {
     for (index_ = 0; index_ < artwork_.lines.size(); ++index_) write(artwork_.lines[index_]);
@@ -178,23 +177,17 @@ class Converter {
   }
 
   void add(const Move& move, const Joints& joints, std::vector<Joints>& rows) {
-    static constexpr std::string_view names[4] = {"radial", "vertical", "tilting", "table"};
-    if (const auto ok = within_travel(joints, limits_, names); !ok) refuse_travel(move, joints);
-    rows.push_back(joints);
-    here_ = joints;
-  }
-
-  [[noreturn]] void refuse_travel(const Move& move, const Joints& joints) const {
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      if (joints[k] >= limits_.low[k] && joints[k] <= limits_.high[k]) continue;
       const support::MachineAxis& axis = machine_.axes[i];
+      const double joint = joints[static_cast<Eigen::Index>(i)];
+      if (joint >= axis.low * axis.unit() && joint <= axis.high * axis.unit()) continue;
       throw support::Failure(
           support::Exit::bad_input,
           fmt::format("{}:{}:{}: error: {}{}", artwork_.file, index_ + 1, move.column,
-                      support::beyond_travel(axis, joints[k]), i == 3 ? why_no_turn(axis) : ""));
+                      support::beyond_travel(axis, joint), i == 3 ? why_no_turn(axis) : ""));
     }
-    throw support::Failure(support::Exit::bad_input, "a joint is not a number");
+    rows.push_back(joints);
+    here_ = joints;
   }
 
   // The table goes on without a jump, so all its angles take the same whole turns.
@@ -289,7 +282,6 @@ class Converter {
   const Options& options_;
   TableTurns table_;
   WallCutter cutter_;
-  BasicJointLimits<double, 4> limits_;
   std::size_t index_ = 0;
   std::optional<Joints> here_;
   bool inches_ = false;

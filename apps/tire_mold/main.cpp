@@ -12,6 +12,7 @@
 #include "report.hpp"
 #include "smooth_motion.hpp"
 #include "support/failure.hpp"
+#include "support/fallback_lines.hpp"
 #include "support/gnuplot.hpp"
 #include "support/main_program.hpp"
 #include "support/output_file.hpp"
@@ -51,12 +52,7 @@ int run_smooth(const Options& options, const WallProgram& program, const Artwork
   const SmoothMotion motion = plan_smooth(program, artwork, machine, options);
   measures.peaks = cncplan::peaks(motion);
   measures.smooth = options.smooth;
-  const auto blocks = motion.program();
-  for (cncplan::Fallback part : motion.fallbacks()) {
-    part.first = static_cast<std::size_t>(blocks[part.first].line);
-    part.last = static_cast<std::size_t>(blocks[part.last].line);
-    measures.fallbacks.push_back(part);
-  }
+  measures.fallbacks = support::fallback_lines(motion);
   support::OutputFiles files;
   std::ostream* const out = files.open(options.out);
   std::ostream* const samples = files.open(options.samples);

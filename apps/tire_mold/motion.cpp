@@ -51,8 +51,8 @@ WallProgram wall_program(const Artwork& artwork, const kinematics::Sidewall& sid
   const auto range = program.table_range();
   if (!range) return {program.blocks(), {}};
   const auto [low, high] = *range;
-  const auto limits = machine.joint_limits<4>();
-  const double added = kinematics::turns_into(low, high, limits.low[3], limits.high[3]);
+  const Axis table = machine.axis(3);
+  const double added = kinematics::turns_into(low, high, table.low, table.high);
   if (added == 0.0) return {program.blocks(), {low, high, added}};
   return {program_of(artwork, sidewall, machine, options, added).blocks(), {low, high, added}};
 }

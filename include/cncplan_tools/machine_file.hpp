@@ -16,7 +16,6 @@
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/core/error_text.hpp"
-#include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/limits.hpp"
 #include "cncplan/gcode/dialect.hpp"
 #include "cncplan/kinematics/ready_made.hpp"
@@ -92,21 +91,6 @@ struct MachineFile {
 
   /// An axis of the library, with its motors; mm, rad, s.
   [[nodiscard]] Axis axis(std::size_t i) const;
-  /// Of the first N axes; mm, rad, s.
-  template <int N>
-  [[nodiscard]] BasicJointLimits<double, N> joint_limits() const {
-    BasicJointLimits<double, N> result;
-    for (std::size_t i = 0; i < std::min<std::size_t>(N, axes.size()); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      const double scale = axes[i].unit();
-      result.velocity[k] = axes[i].limits.velocity * scale;
-      result.acceleration[k] = axes[i].limits.acceleration * scale;
-      result.jerk[k] = axes[i].limits.jerk * scale;
-      result.low[k] = axes[i].low * scale;
-      result.high[k] = axes[i].high * scale;
-    }
-    return result;
-  }
 };
 
 /// A machine whose programs name X, Y, Z over a rotary table (`polar`) as one behind a map (`mapped`), at X0

@@ -5,10 +5,8 @@
 
 #include "cncplan/core/box.hpp"
 #include "cncplan/core/error.hpp"
-#include "cncplan/core/joint_limits.hpp"
 #include "cncplan/core/path_bounds.hpp"
 #include "cncplan/core/path_point.hpp"
-#include "cncplan/core/pose.hpp"
 #include "cncplan/core/state.hpp"
 #include "cncplan/core/vector.hpp"
 

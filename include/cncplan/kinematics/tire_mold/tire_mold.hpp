@@ -9,6 +9,8 @@
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/jet.hpp"
+#include "cncplan/core/joint_limits.hpp"
+#include "cncplan/core/pose.hpp"
 #include "cncplan/kinematics/detail/azimuth.hpp"
 
 namespace cncplan::kinematics {
@@ -64,16 +66,13 @@ struct BasicTireMold {
     const S radial_sq = (distance - side_offset) * (distance + side_offset);
     const S radial = radial_sq > S(0) ? std::sqrt(radial_sq) : S(0);
     if (!(radial >= smallest_radius))
-      return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(radial),
-                                  static_cast<double>(smallest_radius)});
+      return refusal(ErrorCode::below_limit, "radius", radial, smallest_radius);
     // (x, y) is (radial, -side_offset) turned by C
     const S c = std::atan2(p.y() * radial + p.x() * side_offset, p.x() * radial - p.y() * side_offset);
     const S sc = std::sin(c), cc = std::cos(c);
     const S across = n.y() * cc - n.x() * sc;
     const S rounding = std::sqrt(std::numeric_limits<S>::epsilon());
-    if (!(std::abs(across) <= rounding))
-      return tl::unexpected(
-          Error{ErrorCode::unreachable, "tool direction", static_cast<double>(across), 0.0});
+    if (!(std::abs(across) <= rounding)) return refusal(ErrorCode::unreachable, "tool direction", across);
     const S a = std::atan2(-(n.x() * cc + n.y() * sc), n.z());
     const Joints joints(radial - tool_length * std::sin(a), p.z() + tool_length * std::cos(a), a,
                         c + turns_into(c, c, limits.low[3], limits.high[3]));
