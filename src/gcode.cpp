@@ -24,6 +24,5 @@
 #include "cncplan/gcode/line_reader-inl.hpp"
 #include "cncplan/gcode/reader-inl.hpp"
 #include "cncplan/gcode/tool_table-inl.hpp"
-#include "cncplan/gcode/warnings-inl.hpp"
 #include "cncplan/gcode/work_coordinates-inl.hpp"
 #include "cncplan/gcode/writer-inl.hpp"

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <string>
 #include <utility>
 
 #include "cncplan/cncplan.hpp"

@@ -1,7 +1,6 @@
 // What runs a program in real time, whatever its machine is.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>

@@ -361,8 +361,7 @@ class BlockBuilder {
     if (motion.feed && motion.kind != gcode::MotionKind::rapid) result.feed = feed(motion, *programmed);
     if (motion.synchronised)
       if (const Scalar fastest = fastest_along(*path); result.feed > fastest)
-        return tl::unexpected(Error{ErrorCode::above_limit, "speed of a thread",
-                                    static_cast<double>(result.feed), static_cast<double>(fastest)});
+        return refusal(ErrorCode::above_limit, "speed of a thread", result.feed, fastest);
     return result;
   }
 

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "cncplan/executor_core.hpp"
 

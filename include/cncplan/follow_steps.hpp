@@ -2,11 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "cncplan/core/error.hpp"
 #include "cncplan/step/backend.hpp"

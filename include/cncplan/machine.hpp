@@ -215,9 +215,6 @@ template <MachineModel M>
 template <MachineModel M>
 [[nodiscard]] constexpr Expected<void> validate(const M& machine) {
   using S = typename M::Scalar;
-  const auto refuse = [](ErrorCode code, std::string_view field, S value, S bound) {
-    return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-  };
   struct Rate {
     std::string_view name;
     S value;
@@ -225,10 +222,9 @@ template <MachineModel M>
   };
   const auto check = [&](std::initializer_list<Rate> rates) -> Expected<void> {
     for (const Rate& rate : rates) {
-      if (rate.value != rate.value) return refuse(ErrorCode::not_finite, rate.name, rate.value, S(0));
+      if (rate.value != rate.value) return refusal(ErrorCode::not_finite, rate.name, rate.value);
       if (rate.value < S(0) || (rate.required && !(rate.value > S(0))))
-        return refuse(rate.required ? ErrorCode::not_positive : ErrorCode::negative, rate.name, rate.value,
-                      S(0));
+        return refusal(rate.required ? ErrorCode::not_positive : ErrorCode::negative, rate.name, rate.value);
     }
     return {};
   };
@@ -248,10 +244,10 @@ template <MachineModel M>
         !ok)
       return ok;
     if (!(axis.low <= axis.high))
-      return refuse(ErrorCode::above_limit, "lower end of travel", axis.low, axis.high);
+      return refusal(ErrorCode::above_limit, "lower end of travel", axis.low, axis.high);
     if (axis.motors.size() > BasicMotors<S>::capacity)
-      return refuse(ErrorCode::above_limit, "motors of an axis", static_cast<S>(axis.motors.size()),
-                    static_cast<S>(BasicMotors<S>::capacity));
+      return refusal(ErrorCode::above_limit, "motors of an axis", static_cast<S>(axis.motors.size()),
+                     static_cast<S>(BasicMotors<S>::capacity));
     for (const step::BasicDrive<S>& drive : axis.motors)
       if (auto ok = step::validate(drive); !ok) return tl::unexpected(ok.error());
   }

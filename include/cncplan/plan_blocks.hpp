@@ -5,7 +5,6 @@
 #include <iterator>
 #include <limits>
 #include <memory_resource>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>

@@ -5,8 +5,6 @@
 #include <charconv>
 #include <cstddef>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cncplan/peaks.hpp"
 #include "cncplan/smooth_level.hpp"

@@ -35,8 +35,7 @@ template <std::floating_point S, int N>
     if (joints[i] >= limits.low[i] && joints[i] <= limits.high[i]) continue;
     const bool below = joints[i] < limits.low[i];
     const ErrorCode code = below ? ErrorCode::below_limit : ErrorCode::above_limit;
-    return tl::unexpected(Error{code, names[i], static_cast<double>(joints[i]),
-                                static_cast<double>(below ? limits.low[i] : limits.high[i])});
+    return refusal(code, names[i], joints[i], below ? limits.low[i] : limits.high[i]);
   }
   return joints;
 }

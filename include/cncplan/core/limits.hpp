@@ -29,17 +29,15 @@ template <std::floating_point S>
   const auto check = [](S value, std::string_view field) -> Expected<S> {
     if (value > S(0)) return value;
     const ErrorCode code = std::isnan(value) ? ErrorCode::not_finite : ErrorCode::not_positive;
-    return tl::unexpected(Error{code, field, static_cast<double>(value), 0.0});
+    return refusal(code, field, value);
   };
   if (auto ok = check(limits.velocity, "velocity limit"); !ok) return tl::unexpected(ok.error());
   if (auto ok = check(limits.acceleration, "acceleration limit"); !ok) return tl::unexpected(ok.error());
   if (auto ok = check(limits.jerk, "jerk limit"); !ok) return tl::unexpected(ok.error());
   if (!std::isfinite(limits.velocity))
-    return tl::unexpected(
-        Error{ErrorCode::not_finite, "velocity limit", static_cast<double>(limits.velocity), 0.0});
+    return refusal(ErrorCode::not_finite, "velocity limit", limits.velocity);
   if (!std::isfinite(limits.acceleration) && !std::isfinite(limits.jerk))
-    return tl::unexpected(Error{ErrorCode::not_finite, "acceleration and jerk limit",
-                                static_cast<double>(limits.acceleration), 0.0});
+    return refusal(ErrorCode::not_finite, "acceleration and jerk limit", limits.acceleration);
   return limits;
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
-#include <cstddef>
 #include <span>
 #include <type_traits>
 

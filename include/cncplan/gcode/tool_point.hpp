@@ -1,7 +1,6 @@
 // Tool-point control: what a machine brings so that its programs can switch it on and off.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "cncplan/core/vector.hpp"

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
-#include "cncplan/core/compiled.hpp"
 #include "cncplan/gcode/detail/block.hpp"
 #include "cncplan/gcode/detail/modal.hpp"
 #include "cncplan/gcode/detail/rules.hpp"
@@ -72,8 +72,11 @@ class Warnings {
   [[nodiscard]] bool first_sender_command() { return first(sender_); }
 
  private:
-  static bool first(bool& told);
-  bool first_of_group(Group group);
+  static bool first(bool& told) { return !std::exchange(told, true); }
+  bool first_of_group(Group group) {
+    const std::uint32_t before = std::exchange(groups_, groups_ | 1U << static_cast<unsigned>(group));
+    return groups_ != before;
+  }
 
   std::uint32_t groups_{};
   std::bitset<max_m_code + 1> own_codes_;
@@ -82,7 +85,3 @@ class Warnings {
 };
 
 }  // namespace cncplan::gcode
-
-#ifndef CNCPLAN_COMPILED
-#include "cncplan/gcode/warnings-inl.hpp"
-#endif

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/jet.hpp"

@@ -25,9 +25,6 @@ template <std::floating_point S = double>
     const BasicVector3<S>& start, const std::type_identity_t<BasicVector3<S>>& end,
     const std::type_identity_t<BasicVector3<S>>& center, Turn turn, Plane plane,
     const std::type_identity_t<ArcTolerance<S>>& tolerance = {}, int extra_turns = 0) {
-  const auto fail = [](ErrorCode code, std::string_view field, S value, S bound) {
-    return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-  };
   const PlaneAxes a = axes(plane);
   if (auto ok = check_point("start", start); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_point("end", end); !ok) return tl::unexpected(ok.error());
@@ -43,12 +40,12 @@ template <std::floating_point S = double>
   const S r1 = std::hypot(x1, y1);
   const auto [smaller, larger] = std::minmax({r0, r1});
   if (smaller < tolerance.smallest_radius)
-    return fail(ErrorCode::below_limit, "radius", smaller, tolerance.smallest_radius);
+    return refusal(ErrorCode::below_limit, "radius", smaller, tolerance.smallest_radius);
   const S allowed =
       std::max(tolerance.radius_mismatch,
                std::min(tolerance.radius_mismatch_largest, tolerance.radius_mismatch_relative * larger));
   if (larger - smaller > allowed)
-    return fail(ErrorCode::radius_mismatch, "center", larger - smaller, allowed);
+    return refusal(ErrorCode::radius_mismatch, "center", larger - smaller, allowed);
   const S digits = 4 * (resolution(start, plane) + resolution(end, plane) + resolution(center, plane));
 
   // Angle from start to end about the centre, in the arc's sense and in (-pi, pi]; the cross product is taken

@@ -32,9 +32,6 @@ template <std::floating_point S>
     const std::type_identity_t<BasicVector3<S>>& start, const std::type_identity_t<BasicVector3<S>>& end,
     S radius, Turn turn, Plane plane, const std::type_identity_t<ArcTolerance<S>>& tolerance = {},
     int extra_turns = 0) {
-  const auto fail = [](ErrorCode code, std::string_view field, S value, S bound) {
-    return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-  };
   if (auto ok = check_point("start", start); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_point("end", end); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_number("radius", radius); !ok) return tl::unexpected(ok.error());
@@ -45,13 +42,13 @@ template <std::floating_point S>
   const S dy = end(a.second) - start(a.second);
   const S chord = std::hypot(dx, dy);
   const S coincident = coincidence_bound(start, end, plane, tolerance);
-  if (chord <= coincident) return fail(ErrorCode::coincident_points, "end", chord, coincident);
+  if (chord <= coincident) return refusal(ErrorCode::coincident_points, "end", chord, coincident);
 
   const S programmed = std::abs(radius);
   const S half = chord / 2;
   const S missing = half - programmed;
   if (missing > std::min(tolerance.short_radius, tolerance.short_radius_relative * programmed))
-    return fail(ErrorCode::chord_exceeds_diameter, "radius", radius, half);
+    return refusal(ErrorCode::chord_exceeds_diameter, "radius", radius, half);
   const S digits = std::max(resolution(start, plane), resolution(end, plane));
   const bool semicircle = missing >= -std::max(tolerance.semicircle * programmed, digits);
 

@@ -1,7 +1,6 @@
 // What takes a program's coordinates to the axes of a machine.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>

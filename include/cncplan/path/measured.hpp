@@ -186,8 +186,7 @@ template <int Intervals = 64, Curve C>
   using S = typename C::Scalar;
   const S end = curve.parameter_end();
   const auto refuse = [](ErrorCode code, S value, S bound) {
-    return tl::unexpected(
-        Error{code, "parameter of a curve", static_cast<double>(value), static_cast<double>(bound)});
+    return refusal(code, "parameter of a curve", value, bound);
   };
   if (!(end > S(0)) || !std::isfinite(end)) return refuse(ErrorCode::not_positive, end, S(0));
   const Travel<C> travel{curve};

@@ -1,8 +1,6 @@
 // Part of a path, between two of its lengths.
 #pragma once
 
-#include <concepts>
-
 #include "cncplan/core/concepts.hpp"
 #include "cncplan/core/enclosed_bounds.hpp"
 

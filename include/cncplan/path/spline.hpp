@@ -170,9 +170,7 @@ template <std::floating_point S, int N>
   const auto& [start, second, third, end] = curve.controls();
   const S least = S(16) * std::numeric_limits<S>::epsilon() * (start.norm() + end.norm());
   for (const S leg : {(second - start).norm(), (end - third).norm()})
-    if (!(leg > least))
-      return tl::unexpected(Error{ErrorCode::not_positive, "first or last leg of a spline",
-                                  static_cast<double>(leg), static_cast<double>(least)});
+    if (!(leg > least)) return refusal(ErrorCode::not_positive, "first or last leg of a spline", leg, least);
   return measured<8>(curve);
 }
 

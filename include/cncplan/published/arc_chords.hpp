@@ -44,21 +44,18 @@ class BasicArcChords {
   /// not_positive (angle, feed); above_limit (steps; chords beyond 2^31).
   [[nodiscard]] static Expected<BasicArcChords> make(const path::BasicArc<S>& arc, S angle, S feed,
                                                      const std::array<S, N>& steps_per_unit) {
-    const auto fail = [](ErrorCode code, std::string_view field, S value, S bound) {
-      return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-    };
-    if (!(angle > S(0))) return fail(ErrorCode::not_positive, "angle", angle, S(0));
-    if (!(feed > S(0))) return fail(ErrorCode::not_positive, "feed", feed, S(0));
+    if (!(angle > S(0))) return refusal(ErrorCode::not_positive, "angle", angle);
+    if (!(feed > S(0))) return refusal(ErrorCode::not_positive, "feed", feed);
     constexpr S most_chords = S(std::int64_t{1} << 31);
     constexpr S rounding = 64 * std::numeric_limits<S>::epsilon();  // a whole number of chords is one
     const S chords = std::max(S(1), std::ceil(std::abs(arc.sweep()) / angle * (S(1) - rounding)));
-    if (!(chords <= most_chords)) return fail(ErrorCode::above_limit, "chords", chords, most_chords);
+    if (!(chords <= most_chords)) return refusal(ErrorCode::above_limit, "chords", chords, most_chords);
     BasicArcChords result(arc, static_cast<std::int64_t>(chords), arc.length() / feed / chords,
                           steps_per_unit);
     const S reach = arc.position(S(0)).cwiseAbs().maxCoeff() + arc.length();
     for (const S steps : steps_per_unit)
       if (constexpr S most = static_cast<S>(step::most_steps); !(reach * std::abs(steps) <= most))
-        return fail(ErrorCode::above_limit, "steps", reach * std::abs(steps), most);
+        return refusal(ErrorCode::above_limit, "steps", reach * std::abs(steps), most);
     return result;
   }
 

@@ -55,11 +55,10 @@ class AxisTimer {
     const S exact = distance * steps_per_unit;
     constexpr S most = static_cast<S>(step::most_steps);
     if (!(std::abs(exact) <= most))
-      return tl::unexpected(Error{std::isfinite(exact) ? ErrorCode::above_limit : ErrorCode::not_finite,
-                                  "steps", static_cast<double>(exact), static_cast<double>(most)});
+      return refusal(std::isfinite(exact) ? ErrorCode::above_limit : ErrorCode::not_finite, "steps", exact,
+                     most);
     const std::int64_t steps = step::count_at(exact);
-    if (steps != 0 && !(duration > S(0)))
-      return tl::unexpected(Error{ErrorCode::not_positive, "duration", static_cast<double>(duration), 0.0});
+    if (steps != 0 && !(duration > S(0))) return refusal(ErrorCode::not_positive, "duration", duration);
     return AxisTimer(axis, steps, duration, start);
   }
 

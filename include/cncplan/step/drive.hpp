@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -51,9 +50,7 @@ template <std::floating_point S>
                                      {"maximum step rate", drive.max_rate, true, false},
                                      {"backlash", drive.backlash, false, true}}};
   for (const Field& f : fields) {
-    const auto refuse = [&](ErrorCode code) {
-      return tl::unexpected(Error{code, f.name, static_cast<double>(f.value), 0.0});
-    };
+    const auto refuse = [&](ErrorCode code) { return refusal(code, f.name, f.value); };
     if (f.value != f.value || (f.finite && f.value > std::numeric_limits<S>::max()))
       return refuse(ErrorCode::not_finite);
     if (f.positive && !(f.value > S(0))) return refuse(ErrorCode::not_positive);

@@ -30,16 +30,13 @@ using Edge = BasicEdge<double>;
 template <std::floating_point S>
 [[nodiscard]] Expected<void> check(const BasicEdge<S>& edge, int axes, S not_before,
                                    S latest = std::numeric_limits<S>::max()) {
-  const auto refuse = [](ErrorCode code, std::string_view field, S value, S bound) {
-    return tl::unexpected(Error{code, field, static_cast<double>(value), static_cast<double>(bound)});
-  };
-  if (std::isnan(edge.time)) return refuse(ErrorCode::not_finite, "edge time", edge.time, S(0));
-  if (edge.time < not_before) return refuse(ErrorCode::below_limit, "edge time", edge.time, not_before);
-  if (edge.time > latest) return refuse(ErrorCode::above_limit, "edge time", edge.time, latest);
-  if (edge.axis < 0) return refuse(ErrorCode::negative, "edge axis", S(edge.axis), S(0));
-  if (edge.axis >= axes) return refuse(ErrorCode::above_limit, "edge axis", S(edge.axis), S(axes - 1));
+  if (std::isnan(edge.time)) return refusal(ErrorCode::not_finite, "edge time", edge.time);
+  if (edge.time < not_before) return refusal(ErrorCode::below_limit, "edge time", edge.time, not_before);
+  if (edge.time > latest) return refusal(ErrorCode::above_limit, "edge time", edge.time, latest);
+  if (edge.axis < 0) return refusal(ErrorCode::negative, "edge axis", S(edge.axis));
+  if (edge.axis >= axes) return refusal(ErrorCode::above_limit, "edge axis", S(edge.axis), S(axes - 1));
   if (edge.direction != 1 && edge.direction != -1)
-    return refuse(ErrorCode::not_supported, "edge direction", S(edge.direction), S(1));
+    return refusal(ErrorCode::not_supported, "edge direction", S(edge.direction), S(1));
   return {};
 }
 

@@ -67,8 +67,7 @@ class BasicWallCutter {
       const bool rounding = std::abs(radius - inside) <= margin;
       if (auto ok = sidewall_.on_profile(rounding ? inside : radius); !ok) return tl::unexpected(ok.error());
       if (!(radius >= smallest_radius_))
-        return tl::unexpected(Error{ErrorCode::below_limit, "radius", static_cast<double>(radius),
-                                    static_cast<double>(smallest_radius_)});
+        return refusal(ErrorCode::below_limit, "radius", radius, smallest_radius_);
       return {};
     };
     if (auto ok = one(radius_at(segment, S(0))); !ok) return ok;

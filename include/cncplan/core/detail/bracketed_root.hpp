@@ -1,7 +1,6 @@
 // The root of a function between two places, by Halley's method in a bracket.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>

@@ -497,6 +497,4 @@ class BasicExtremals {
   bool rising_{};
 };
 
-using Extremals = BasicExtremals<double>;
-
 }  // namespace cncplan

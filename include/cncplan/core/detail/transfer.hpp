@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -162,7 +161,5 @@ class BasicTransfer {
   BasicExtremals<S> down_;
   S slack_{};
 };
-
-using Transfer = BasicTransfer<double>;
 
 }  // namespace cncplan

@@ -1,8 +1,6 @@
 // The path that is driven in place of a block's programmed one, or of a part of it.
 #pragma once
 
-#include <array>
-#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <span>

@@ -10,9 +10,7 @@
 #include <limits>
 #include <memory_resource>
 #include <optional>
-#include <span>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "cncplan/core/path_jets.hpp"

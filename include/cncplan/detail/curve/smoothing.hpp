@@ -1,7 +1,6 @@
 // Which junctions of a program are smoothed, and the corrections that do it (set-up).
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>

@@ -1,9 +1,7 @@
 // The path of a block in the program's coordinates, whichever map takes it to the axes.
 #pragma once
 
-#include <array>
 #include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
 #include <optional>
 
 #include "cncplan/block.hpp"

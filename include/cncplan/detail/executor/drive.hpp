@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstdint>
 #include <utility>
 
 #include "cncplan/detail/executor/motion_set_point.hpp"

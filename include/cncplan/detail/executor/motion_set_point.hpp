@@ -24,8 +24,6 @@ struct BasicMotionExecutorMemory {
   std::span<BasicConstrainedJunction<S>> spare_junctions;
 };
 
-using MotionExecutorMemory = BasicMotionExecutorMemory<double>;
-
 /// Where the machine is after a tick.
 template <std::floating_point S>
 struct BasicMotionSetPoint {

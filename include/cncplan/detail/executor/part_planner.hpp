@@ -8,7 +8,6 @@
 #include <memory_resource>
 #include <new>
 #include <optional>
-#include <vector>
 
 #include "cncplan/detail/executor/clocked_trajectory.hpp"
 #include "cncplan/detail/executor/feed_shares.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <memory_resource>
 #include <optional>
 #include <utility>

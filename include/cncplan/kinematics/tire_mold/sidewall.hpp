@@ -121,9 +121,7 @@ class BasicSidewall {
 
   /// A flat radius if it lies on the profile. Errors: below_limit, above_limit.
   [[nodiscard]] Expected<S> on_profile(S radius) const {
-    const auto fail = [radius](ErrorCode code, S bound) {
-      return tl::unexpected(Error{code, "radius", static_cast<double>(radius), static_cast<double>(bound)});
-    };
+    const auto fail = [radius](ErrorCode code, S bound) { return refusal(code, "radius", radius, bound); };
     if (!(radius >= start_radius_)) return fail(ErrorCode::below_limit, start_radius_);
     if (!(radius <= end_radius())) return fail(ErrorCode::above_limit, end_radius());
     return radius;

@@ -1,7 +1,6 @@
 // A map that a program has switched on or off.
 #pragma once
 
-#include <array>
 #include <string_view>
 #include <type_traits>
 
