@@ -47,9 +47,9 @@ void at_every_door(const Lines& lines, Run&& run) {
   run(executor);
 }
 
-// What it tells and how long it dwells, with a bar where it stopped and is resumed, and where it ended.
+// What it tells and that it dwells, with a bar where it rests in a state and is resumed, and where it ended.
 template <class E>
-std::string told(E& executor, double seconds = 20) {
+std::string told(E& executor, double seconds = 20, ExecutorState resumed = ExecutorState::stopped) {
   std::string log;
   double stopped = 0, dwells = 0;
   for (int tick = 0; tick < seconds / period; ++tick) {
@@ -60,7 +60,7 @@ std::string told(E& executor, double seconds = 20) {
     for (const auto& word : point.words)
       log += word.letter + std::to_string(static_cast<int>(word.number)) + " ";
     if (state == ExecutorState::finished) return log + "end";
-    stopped = state == ExecutorState::stopped ? stopped + period : 0;
+    stopped = state == resumed ? stopped + period : 0;
     if (stopped > 0.3) log += "| ", executor.resume(), stopped = 0;
   }
   return log + to_text(executor.state()).data();
@@ -221,6 +221,40 @@ TEST_CASE("stops: the way back leads through them, and forwards they stop again"
     CHECK(executor.tick(period).position.isApprox(Vector3(20, 9, 0)));
     CHECK(executor.state() == ExecutorState::finished);
   });
+}
+
+TEST_CASE("stops: a hold in a dwell waits before the next one", "[executor]") {
+  const Lines more = GENERATE(Lines{"G4 P0.7", "X0"}, Lines{"G4 P0.7"}, Lines{"M8", "G4 P0.7", "X0"});
+  Lines lines{"G1 X5 F1200", "G4 P0.5"};
+  lines.insert(lines.end(), more.begin(), more.end());
+  CAPTURE(lines.size());
+  at_every_door(lines, [](auto& executor) {
+    while (executor.state() != ExecutorState::dwelling) executor.tick(period);
+    executor.feed_hold();
+    CHECK(told(executor, 3) == "dwell held");
+    executor.resume();
+    double dwelled = 0;
+    while (!executor.finished()) {
+      executor.tick(period);
+      dwelled += executor.state() == ExecutorState::dwelling ? period : 0;
+    }
+    CHECK(dwelled == Approx(0.7).margin(2.5 * period));
+  });
+}
+
+TEST_CASE("stops: single steps rest before each motion and each dwell", "[executor]") {
+  const auto check = [](const Lines& lines, const std::string& expected) {
+    CAPTURE(lines.size(), expected);
+    at_every_door(lines, [&](auto& executor) {
+      executor.single_step(true);
+      CHECK(told(executor, 20, ExecutorState::held) == expected);
+    });
+  };
+  check({"G1 X5 F1200", "G4 P0.5", "X0"}, "| dwell | end");
+  check({"G1 X5 F1200", "G4 P0.5", "G4 P0.7", "X0"}, "| dwell | dwell | end");
+  check({"G4 P0.5", "G4 P0.7", "G1 X5 F1200"}, "dwell | dwell | end");
+  check({"G1 X5 F1200", "G4 P0.5", "G4 P0.7"}, "| dwell | dwell end");
+  check({"G1 X5 F1200", "G4 P0.5", "M8", "G4 P0.7", "T2 M6", "X0"}, "| dwell | M8 dwell | T2 M6 end");
 }
 
 TEST_CASE("stops: turning round is no hold", "[executor]") {

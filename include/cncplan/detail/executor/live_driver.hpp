@@ -107,7 +107,7 @@ class LiveDriver final : public LevelDriver<M, B> {
            (held_ || stopped_ || no_speed() || nothing_behind() || nothing_ahead());
   }
   [[nodiscard]] bool finished() const override {
-    return clock_.rests() && !dwells() && !at_program_stop() && nothing_ahead();
+    return clock_.rests() && !at_program_stop() && nothing_ahead();
   }
   [[nodiscard]] bool asked_to_rest() const override {
     return held_ || stopped_ || no_speed() || no_way_back_ || backwards_ != clock_.heads_back();
@@ -235,7 +235,8 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Whether the way that there is ends where it stands, and all words of it are told.
   [[nodiscard]] bool nothing_ahead() const {
     if (driven_.end() == 0) return !planner_.begun();
-    if (backwards_ || !driven_.all_told() || !(clock_.chain().empty() || clock_.at_end())) return false;
+    const bool at_end = clock_.chain().empty() || (clock_.at_end() && !(clock_.dwell() > S(0)));
+    if (backwards_ || !driven_.all_told() || !at_end) return false;
     const PartLink link = planner_.part(driven_.end() - 1).link.load(std::memory_order_acquire);
     return link == PartLink::rest || link == PartLink::tail;
   }
@@ -346,12 +347,13 @@ class LiveDriver final : public LevelDriver<M, B> {
     pause_here();
     tell_words(period - left);
     const S used = before - left;
-    if (!stood && used > S(0) &&
-        !(clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration())) {
+    const bool rested =
+        clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration();
+    if (!(used > S(0)) || rested) return goes_on;
+    busy_until_ = period - left;
+    if (!stood)
       parts_.push_back({period - before, used, clock_.ramp(),
                         clock_.standing() ? clock_.elapsed() : clock_.elapsed() - used});
-      moved_until_ = period - left;
-    }
     return goes_on;
   }
 
@@ -381,8 +383,11 @@ class LiveDriver final : public LevelDriver<M, B> {
   // At a rest before a block at which it is to pause; of single blocks a dwell is one.
   void pause_here() {
     if (held_ || stopped_ || !pauses() || !clock_.standing()) return;
-    const S until = clock_.state().position + (single_step_ ? clock_.dwell() : S(0)) + same_time;
-    if (const auto pause = next_pause(); pause && *pause <= until) hold_at(*pause);
+    const S now = clock_.state().position;
+    if (const auto pause = next_pause(); pause && *pause <= now + same_time) return hold_at(*pause);
+    if (!single_step_ || now <= std::max(passed_, begins_at_) + same_time) return;
+    const auto dwell = clock_.chain().rest_after(now);
+    if (dwell && std::abs(dwell->from - now) <= same_time) hold_at(now);
   }
   // Back it goes no farther than what is kept: where that has no rest, it brakes before its start.
   void brake_at_start(S period) {
@@ -558,7 +563,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   S cut_{};                     // where it begins
   BasicReachedWords<S> words_;
   FixedList<TickPart, Base::most_parts> parts_;
-  S moved_until_{};       // s of the tick that has parts
+  S busy_until_{};        // s of the tick in which it moves or dwells
   S rested_{}, quiet_{};  // s
   std::int64_t pushed_before_ = 0;
 };
@@ -579,10 +584,11 @@ template <MachineModel M, BlockModel B, class Planner>
 void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
   parts_.clear();
   words_.clear();
+  busy_until_ = S(0);
   S left = period;
   while (left > S(0) && step(left, period)) {
   }
-  rested_ = !rests() ? S(0) : parts_.empty() ? rested_ + period : period - moved_until_;
+  rested_ = !rests() ? S(0) : busy_until_ > S(0) ? period - busy_until_ : rested_ + period;
   tell_words(period - left);
   if (!clock_.chain().empty()) {
     const S time = point.time;

@@ -22,10 +22,12 @@ struct BasicRest {
   S from{}, to{};  ///< s
 };
 
-/// Adds a rest behind those that are there; one that touches the last becomes part of it.
+/// Adds a rest behind those that are there. Where two touch they are one, if not both take time: each dwell
+/// is one.
 template <std::floating_point S>
 void add_rest(std::pmr::vector<BasicRest<S>>& rests, BasicRest<S> rest) {
-  if (rests.empty() || rest.from > rests.back().to)
+  const auto takes_time = [](const BasicRest<S>& one) { return one.to > one.from; };
+  if (rests.empty() || rest.from > rests.back().to || (takes_time(rest) && takes_time(rests.back())))
     rests.push_back(rest);
   else
     rests.back().to = std::max(rests.back().to, rest.to);
