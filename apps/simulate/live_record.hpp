@@ -31,7 +31,7 @@ class LiveRecord {
   void add(const Driver& driver, double time) {
     for (const auto& part : driver.driven()) {
       double begin = 0.0, edge = -part.elapsed;
-      for (const auto& phase : part.ramp.motion().phases()) {  // its jerk changes at edges
+      for (const auto& phase : part.ramp->motion().phases()) {  // its jerk changes at edges
         edge += phase.duration;
         if (!(edge > begin && edge < part.duration)) continue;
         add_part(driver, part, begin, edge, time + part.start);
@@ -66,7 +66,7 @@ class LiveRecord {
       const auto phase = chain.phase(index);
       double until = end;
       if (index < chain.last_phase() && phase.time + phase.duration < shown)
-        if (const auto at = part.ramp.time_to(chain, phase.time + phase.duration))
+        if (const auto at = part.ramp->time_to(chain, phase.time + phase.duration))
           until = std::clamp(*at - part.elapsed, begin, end);
       if (until - begin > same_time) add_in_phase(chain, part, index, begin, until, time);
       begin = until;

@@ -533,7 +533,6 @@ detail::BasicMotionSetPoint<typename M::Scalar> ExecutorCore<M, B>::tick_of_prog
 template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::tick_of_level(Scalar period, const Tell* tell) -> SetPoint {
   level_->advance(period, last_);
-  if (const auto place = level_->place()) path_place_ = *place;
   if constexpr (detail::ToolJogModel<M>)
     if (const B* block = level_->block()) jog_.tool().stand_on(block->path);
   has_run_ = has_run_ || !level_->stands();

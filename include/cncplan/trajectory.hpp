@@ -142,9 +142,12 @@ class Trajectory {
   /// The set point where the trajectory's time runs by a clock: velocity, acceleration and jerk are by real
   /// time, `time` is the trajectory's.
   [[nodiscard]] SetPoint at(const BasicState<Scalar>& clock) const {
+    return at(clock, phase_at(clock.position));
+  }
+  /// The same where the phase is known that the time lies in.
+  [[nodiscard]] SetPoint at(const BasicState<Scalar>& clock, std::size_t phase) const {
     if (phases_.empty()) return at_rest(clock.position);
-    const std::size_t index = phase_at(clock.position);
-    return evaluate(phases_[index].piece, by_clock(along(index, clock.position), clock), clock.position);
+    return evaluate(phases_[phase].piece, by_clock(along(phase, clock.position), clock), clock.position);
   }
 
   /// The phase that a time lies in, of two that meet there the later one; the first and the last before the
@@ -155,6 +158,14 @@ class Trajectory {
     return static_cast<std::size_t>(std::upper_bound(phases_.begin() + 1, phases_.end(), time, later) -
                                     phases_.begin()) -
            1;
+  }
+  /// The same, looked for at a phase and the next one first.
+  [[nodiscard]] std::size_t phase_at(Scalar time, std::size_t near) const {
+    for (std::size_t i = near; i < std::min(near + 2, phases_.size()); ++i) {
+      if (time < phases_[i].phase.time) break;
+      if (i + 1 == phases_.size() || time < phases_[i + 1].phase.time) return i;
+    }
+    return phase_at(time);
   }
 
   /// The set points at k period (s, > 0) while that is before the end, and one at the end. A range, empty for

@@ -119,12 +119,13 @@ class ClockRamp {
     return result;
   }
 
-  /// It is not asked for times before some seconds any more.
-  void go_on(const Chain& chain, S elapsed) {
-    if (!along_path_) return;
+  /// It is not asked for times before some seconds any more; whether that changes it.
+  bool go_on(const Chain& chain, S elapsed) {
+    if (!along_path_) return false;
     PhasesByLength<M, B> phases(chain, phase_, start_);
     phase_ = phases.go_to(motion_.at(elapsed).position);
     start_ = phases.start();
+    return true;
   }
 
   /// The clock that shows a time at which the planned motion is at the place of the axes.

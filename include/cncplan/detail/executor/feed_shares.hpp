@@ -82,6 +82,7 @@ class BasicFeedShares {
       changes_.push_back(next);
     }
     void forget(std::int64_t oldest) {
+      if (changes_.empty() || changes_[0].block > oldest) return;
       before_ = of(oldest);
       keep([&](const Change& one) { return one.block > oldest; });
     }

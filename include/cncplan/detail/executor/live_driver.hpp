@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,11 +41,11 @@ class LiveDriver final : public LevelDriver<M, B> {
   /// A part of a tick, s from its start.
   struct TickPart {
     S start{}, duration{};
-    typename Clock::Ramp ramp;
+    const typename Clock::Ramp* ramp{};
     S elapsed{};  ///< of the ramp, where the part begins
 
     [[nodiscard]] BasicState<S> clock_at(const typename Clock::Chain& chain, S within) const {
-      return ramp.at(chain, elapsed + within);
+      return ramp->at(chain, elapsed + within);
     }
   };
 
@@ -178,6 +179,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     tail_ahead_ = stopped_ = program_holds_ = backwards_ = rests_before_ = no_way_back_ = false;
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
+    kept_number_ = -1;
     slower_at_.reset();
     rates_.begin();
     passed_ = turned_ = stop_passed_ = -infinity;
@@ -351,10 +353,20 @@ class LiveDriver final : public LevelDriver<M, B> {
         clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration();
     if (!(used > S(0)) || rested) return goes_on;
     busy_until_ = period - left;
-    if (!stood)
-      parts_.push_back({period - before, used, clock_.ramp(),
+    if (!stood && !parts_.full())
+      parts_.push_back({period - before, used, &keep_ramp(),
                         clock_.standing() ? clock_.elapsed() : clock_.elapsed() - used});
     return goes_on;
+  }
+
+  // The clock's, as it is now. A ramp is large, and is the same for most ticks.
+  const typename Clock::Ramp& keep_ramp() {
+    if (kept_number_ != clock_.ramp_number()) {
+      kept_number_ = clock_.ramp_number();
+      kept_ = (kept_ + 1) % ramps_.size();
+      ramps_[kept_] = clock_.ramp();
+    }
+    return ramps_[kept_];
   }
 
   // A change of the rate that leads beyond a cut is one along the tail.
@@ -563,6 +575,10 @@ class LiveDriver final : public LevelDriver<M, B> {
   S cut_{};                     // where it begins
   BasicReachedWords<S> words_;
   FixedList<TickPart, Base::most_parts> parts_;
+  // Of these parts, the last one of them, and its number.
+  std::array<typename Clock::Ramp, Base::most_parts> ramps_{};
+  std::size_t kept_ = 0;
+  std::int64_t kept_number_ = -1;
   S busy_until_{};        // s of the tick in which it moves or dwells
   S rested_{}, quiet_{};  // s
   std::int64_t pushed_before_ = 0;

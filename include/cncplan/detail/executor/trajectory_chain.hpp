@@ -67,7 +67,7 @@ class TrajectoryChain {
   /// `speed_peaks`, if these are asked for. There has to be room.
   void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes,
                  std::span<const S> peaks = {}) {
-    const Part next{next_begin(trajectory.first_block()), &trajectory, rests, brakes, peaks};
+    const Part next{next_begin(trajectory.first_block()), &trajectory, rests, brakes, peaks, 0};
     parts_[count_++] = next;
   }
   /// Lets the last one go, or the first one. The running time goes on, even where none is left.
@@ -96,7 +96,7 @@ class TrajectoryChain {
   /// The phase that a time lies in, of two that meet there the later one.
   [[nodiscard]] std::size_t phase_at(S time) const {
     const Part& part = part_at(time);
-    return part.first_phase + part.trajectory->phase_at(time - part.start);
+    return part.first_phase + phase_in(part, time);
   }
   /// By the running time.
   [[nodiscard]] BasicPhase<S> phase(std::size_t index) const {
@@ -119,7 +119,7 @@ class TrajectoryChain {
     const Part& part = part_at(clock.position);
     const S shown = clock.position;
     clock.position -= part.start;
-    SetPoint point = part.trajectory->at(clock);
+    SetPoint point = part.trajectory->at(clock, phase_in(part, shown));
     point.time = shown;
     point.block += part.trajectory->first_block();
     point.along.position += part.start_length;
@@ -198,6 +198,7 @@ class TrajectoryChain {
     std::span<const Rest> rests{};
     std::span<const Brake> brakes{};
     std::span<const S> peaks{};
+    mutable std::size_t near{};  // the phase that was last asked for
   };
 
   // That of one behind the last one, whose first block has a number.
@@ -217,10 +218,13 @@ class TrajectoryChain {
     return i;
   }
   [[nodiscard]] const Part& part_at(S time) const { return parts_[part_number(time)]; }
+  // The phase of a part's trajectory that a time lies in. Clocks ask for times that are near each other.
+  [[nodiscard]] static std::size_t phase_in(const Part& part, S time) {
+    return part.near = part.trajectory->phase_at(time - part.start, part.near);
+  }
   // The block of a part's program that is driven at a time.
   [[nodiscard]] static std::size_t block_in(const Part& part, S time) {
-    const std::size_t phase = part.trajectory->phase_at(time - part.start);
-    return part.trajectory->block_of(part.trajectory->phases()[phase].piece);
+    return part.trajectory->block_of(part.trajectory->phases()[phase_in(part, time)].piece);
   }
   [[nodiscard]] const Part& part_of(std::size_t phase) const {
     std::size_t i = count_ - 1;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -68,14 +69,15 @@ class TrajectoryClock {
   /// Whether it runs back.
   [[nodiscard]] bool heads_back() const { return !standing_ && ramp_.runs_back(); }
   /// What it shows, s, and how it runs: its rate, 1/s and 1/s^2.
-  [[nodiscard]] BasicState<S> state() const { return state_after(S(0)); }
+  [[nodiscard]] const BasicState<S>& state() const { return state_; }
   /// The same in some seconds, if nothing is asked for and no rest is come to.
   [[nodiscard]] BasicState<S> state_after(S seconds) const {
     if (standing_) return {shown_, S(0), S(0), S(0)};
     return ramp_.at(chain_, elapsed_ + seconds);
   }
-  /// The change that goes on, and for how long it has.
+  /// The change that goes on, which of all that it was asked for so far, and for how long it has.
   [[nodiscard]] const Ramp& ramp() const { return ramp_; }
+  [[nodiscard]] std::int64_t ramp_number() const { return ramp_number_; }
   [[nodiscard]] S elapsed() const { return elapsed_; }
 
   /// The axes stand at a time of the chain's where it rests.
@@ -210,6 +212,7 @@ class TrajectoryClock {
     rest_ = rest;
     shown_ = back ? rest.to : rest.from;
     dwell_ = back ? S(0) : rest.to - rest.from;
+    state_ = state_after(S(0));
   }
 
   // Dwells; goes on if that is wanted, and there is a rest to drive to. At a rest the clock may take any rate
@@ -222,6 +225,7 @@ class TrajectoryClock {
       dwell_ -= now;
       left -= now;
       shown_ = rest_.to - dwell_;
+      state_ = state_after(S(0));
       if (dwell_ > S(0) || !may_leave()) return false;
     }
     const S rate = std::min(wanted(), S(1));
@@ -238,14 +242,14 @@ class TrajectoryClock {
   // Drives on to the next rest, or to the end of the time.
   template <class MayChange>
   bool move(S& left, S wanted, MayChange&& may_change) {
-    ramp_.go_on(chain_, elapsed_);
+    if (ramp_.go_on(chain_, elapsed_)) ++ramp_number_;
     change_rate(wanted, may_change);
     const bool back = heads_back();
     if (const auto brake = waits_for(wanted)) {
       const S wait = (brake->time - state().position) / goal_;
       if (wait > same_time) {
         const bool soon = wait < left;
-        elapsed_ += soon ? wait : left;
+        pass(soon ? wait : left);
         left -= soon ? wait : left;
         return soon;
       }
@@ -254,7 +258,7 @@ class TrajectoryClock {
     const S end = back ? low_.to : high_.from;
     const S arrival = time_to(end) - elapsed_;
     if (arrival > left) {
-      elapsed_ += left;
+      pass(left);
       left = S(0);
       if (rests()) brakes_ = false;
       return false;
@@ -303,9 +307,15 @@ class TrajectoryClock {
       ramp = Ramp(*motion, along.phase);
     return ramp && goal_ < S(1) ? ramp->at_share(goal_) : ramp;
   }
+  void pass(S seconds) {
+    elapsed_ += seconds;
+    state_ = state_after(S(0));
+  }
   void begin(const Ramp& ramp, S goal) {
     ramp_ = ramp;
+    ++ramp_number_;
     elapsed_ = S(0);
+    state_ = state_after(S(0));
     goal_ = goal;
     faster_ = {};
   }
@@ -313,10 +323,7 @@ class TrajectoryClock {
   void run_at(const AxisState& state) {
     standing_ = false;
     brake_way_.reset();
-    ramp_ = Ramp(RateMotion(state, state));
-    elapsed_ = S(0);
-    goal_ = state.velocity;
-    faster_ = {};
+    begin(Ramp(RateMotion(state, state)), state.velocity);
     search_from(S(1));
   }
 
@@ -542,7 +549,9 @@ class TrajectoryClock {
   S shown_{};
   S dwell_{};
   Ramp ramp_;
+  std::int64_t ramp_number_{};
   S elapsed_{};
+  BasicState<S> state_{};
   S goal_{};          // the ramp's
   S asked_{};         // the one that is looked for
   S portion_ = S(1);  // of the way to it, and how slow the change: where the search goes on
