@@ -257,6 +257,88 @@ TEST_CASE("stops: single steps rest before each motion and each dwell", "[execut
   check({"G1 X5 F1200", "G4 P0.5", "M8", "G4 P0.7", "T2 M6", "X0"}, "| dwell | M8 dwell | T2 M6 end");
 }
 
+TEST_CASE("stops: what is asked for in a dwell holds behind it", "[executor]") {
+  const Lines lines{"G4 P0.5", "G1 X5 F1200"};
+  at_every_door(lines, [](auto& executor) {
+    SECTION("single blocks") {
+      run(executor, 0.1);
+      executor.single_step(true);
+      CHECK(told(executor, 2) == "dwell held");
+    }
+    SECTION("a pause, and a resume before it") {
+      executor.pause_at(2);
+      run(executor, 0.1);
+      executor.resume();
+      CHECK(told(executor, 2) == "dwell held");
+    }
+    SECTION("nothing any more") {
+      executor.single_step(true);
+      executor.pause_at(2);
+      run(executor, 0.1);
+      executor.single_step(false);
+      executor.pause_at(0);
+      CHECK(told(executor, 2) == "dwell end");
+    }
+    SECTION("a resume goes on to the end of the step, where it is held before that") {
+      executor.feed_hold();
+      run(executor, 0.5);
+      executor.single_step(true);
+      CHECK(told(executor, 4, ExecutorState::held) == "| dwell | end");
+    }
+  });
+  at_every_door({"G1 X5 F1200"}, [](auto& executor) {
+    executor.single_step(true);
+    executor.pause_at(1);
+    CHECK(told(executor, 1) == "held");
+    executor.resume();
+    CHECK(told(executor, 2) == "end");
+  });
+}
+
+TEST_CASE("stops: no dwell begins without speed or on the way back", "[executor]") {
+  const auto dwells = [](auto& executor, double seconds) {
+    double time = 0;
+    for (int tick = 0; tick < seconds / period; ++tick) {
+      executor.tick(period);
+      time += executor.state() == ExecutorState::dwelling ? period : 0;
+    }
+    return time;
+  };
+  at_every_door({"G4 P0.5", "G61.1 G1 X2 F1200", "G4 P0.7"}, [&](auto& executor) {
+    executor.feed_override(0);
+    CHECK(dwells(executor, 1) == 0);
+    CHECK(executor.state() == ExecutorState::held);
+    executor.feed_override(1);
+    CHECK(dwells(executor, 0.52) == Approx(0.5).margin(2.5 * period));
+    executor.feed_override(0);
+    CHECK(dwells(executor, 2) == 0);
+    executor.feed_override(1);
+    CHECK(dwells(executor, 3) == Approx(0.7).margin(2.5 * period));
+    CHECK(executor.finished());
+  });
+  at_every_door({"G1 X5 F1200", "G61.1 X7", "G4 P0.7"}, [&](auto& executor) {
+    run(executor, 0.3);
+    executor.reverse(true);
+    CHECK(dwells(executor, 2) == 0);
+    executor.reverse(false);
+    CHECK(dwells(executor, 3) == Approx(0.7).margin(2.5 * period));
+    CHECK(executor.finished());
+  });
+}
+
+TEST_CASE("stops: words behind a stop of the program wait there behind a way back, too", "[executor]") {
+  at_every_door({"G1 X5 F1200", "M0", "M7", "X8"}, [](auto& executor) {
+    CHECK(told(executor, 1, ExecutorState::away) == "M0 stopped");
+    executor.reverse(true);
+    executor.resume();
+    CHECK(told(executor, 2) == "held");
+    executor.reverse(false);
+    CHECK(told(executor, 1, ExecutorState::away) == "stopped");
+    executor.resume();
+    CHECK(told(executor, 2) == "M7 end");
+  });
+}
+
 TEST_CASE("stops: turning round is no hold", "[executor]") {
   at_every_door({"G1 X20 F1200", "Y9"}, [](auto& executor) {
     run(executor, 0.5);

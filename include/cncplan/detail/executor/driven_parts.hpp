@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace cncplan::detail {
@@ -75,12 +76,29 @@ class DrivenParts {
                          told_ == words_of(told_part_).size());
   }
 
-  /// Calls visit(time, one) for `words` or `begins` of all that is driven, from a time on, until it says that
+  /// Calls visit(word) for those that have been told, from a time on, by the time of the chain.
+  template <class Visit>
+  void each_told_from(S from, Visit&& visit) const {
+    const auto in = [&](const auto& words, S start, std::size_t told) {
+      for (std::size_t i = 0; i < std::min(told, words.size()); ++i)
+        if (Word word = words[i]; !((word.time += start) < from)) visit(word);
+    };
+    constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+    for (std::int64_t i = oldest_; i < end_ && i <= told_part_; ++i) {
+      const auto& part = planner_->part(i);
+      const bool last = i == told_part_;
+      in(part.motion->words, (*this)[i].start, last && !tells_tail_ ? told_ : all);
+      if ((*this)[i].has_tail && (!last || tells_tail_))
+        in(part.tail->words, (*this)[i].tail_start, last ? told_ : all);
+    }
+  }
+
+  /// Calls visit(time, start of a block) for those of all that is driven, from a time on, until it says that
   /// it is enough. `tail_ahead`: the last one's tail counts, too.
-  template <class List, class Visit>
-  void each_from(S from, List list, bool tail_ahead, Visit&& visit) const {
+  template <class Visit>
+  void each_begin_from(S from, bool tail_ahead, Visit&& visit) const {
     const auto in = [&](const Clocked& motion, S start) {
-      const auto& all = motion.*list;
+      const auto& all = motion.begins;
       auto one = std::ranges::partition_point(all, [&](const auto& own) { return own.time < from - start; });
       for (; one != all.end(); ++one)
         if (visit(start + one->time, *one)) return true;

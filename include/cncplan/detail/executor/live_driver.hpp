@@ -76,7 +76,10 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] std::int64_t pushed() const override { return planner_.pushed(); }
 
   void hold() override { held_ = true; }
-  void resume() override { held_ = program_holds_ = false; }
+  void resume() override {
+    if (held_ && clock_.rests()) resumed_ = clock_.state().position;
+    held_ = program_holds_ = false;
+  }
   void stop() override { stopped_ = true; }
   void quick_stop(S share) override {
     held_ = true;
@@ -102,7 +105,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S worst_hold() const override { return planner_.longest_hold(); }
   [[nodiscard]] bool stopped() const override { return stopped_ && clock_.rests(); }
   [[nodiscard]] bool stands() const override { return clock_.rests(); }
-  [[nodiscard]] bool dwells() const override { return clock_.dwell() > S(0) && !dwell_waits(); }
+  [[nodiscard]] bool dwells() const override {
+    return clock_.dwell() > S(0) && !dwell_waits() && !(backwards_ && clock_.dwell_begins());
+  }
   [[nodiscard]] bool rests() const override {
     return clock_.rests() && !dwells() &&
            (held_ || stopped_ || no_speed() || nothing_behind() || nothing_ahead());
@@ -165,6 +170,8 @@ class LiveDriver final : public LevelDriver<M, B> {
     return {point.position, point.velocity, point.acceleration, point.jerk};
   }
 
+  /// s of the last tick until which it dwelled, if that came last; else 0.
+  [[nodiscard]] S dwelled_until() const { return dwells_last_ ? busy_until_ : S(0); }
   /// What the last tick was made of, rests left out, and what its clock ran along.
   [[nodiscard]] const FixedList<TickPart, Base::most_parts>& driven() const { return parts_; }
   [[nodiscard]] const typename Clock::Chain& chain() const { return clock_.chain(); }
@@ -180,6 +187,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
     kept_number_ = -1;
+    resumed_ = -infinity;
     slower_at_.reset();
     rates_.begin();
     passed_ = turned_ = stop_passed_ = -infinity;
@@ -347,12 +355,14 @@ class LiveDriver final : public LevelDriver<M, B> {
         left, [this] { return wanted(); }, [&] { return may_leave(period - left); },
         [this](S end, bool faster) { return faster ? may_go_faster(end) : may_change(end); });
     pause_here();
+    stop_again();
     tell_words(period - left);
     const S used = before - left;
     const bool rested =
         clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration();
     if (!(used > S(0)) || rested) return goes_on;
     busy_until_ = period - left;
+    dwells_last_ = stood;
     if (!stood && !parts_.full())
       parts_.push_back({period - before, used, &keep_ramp(),
                         clock_.standing() ? clock_.elapsed() : clock_.elapsed() - used});
@@ -377,14 +387,12 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   bool may_leave(S in_tick) {
     pause_here();
-    if (!tell_words(in_tick)) return false;
     stop_again();
-    return !dwell_waits();
+    return tell_words(in_tick) && !dwell_waits();
   }
   // A dwell waits for a resume where it has not begun, or the program stops in it.
   [[nodiscard]] bool dwell_waits() const {
-    const bool begins = clock_.standing() && clock_.state().position == clock_.next_rest();
-    return stopped_ || at_program_stop() || (held_ && begins);
+    return stopped_ || at_program_stop() || (clock_.dwell_begins() && (held_ || no_speed()));
   }
 
   [[nodiscard]] bool pauses() const { return (single_step_ || pause_line_ != 0) && !backwards_; }
@@ -397,7 +405,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (held_ || stopped_ || !pauses() || !clock_.standing()) return;
     const S now = clock_.state().position;
     if (const auto pause = next_pause(); pause && *pause <= now + same_time) return hold_at(*pause);
-    if (!single_step_ || now <= std::max(passed_, begins_at_) + same_time) return;
+    if (!single_step_ || now <= std::max(passed_, step_from()) + same_time) return;
     const auto dwell = clock_.chain().rest_after(now);
     if (dwell && std::abs(dwell->from - now) <= same_time) hold_at(now);
   }
@@ -483,12 +491,15 @@ class LiveDriver final : public LevelDriver<M, B> {
     });
     return found;
   }
+  // Where the step that is made began, at the earliest.
+  [[nodiscard]] S step_from() const { return std::max(begins_at_, resumed_); }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
     std::optional<S> found;
     for_begins(std::max(clock_.state().position - same_time, passed_ + same_time),
                [&](S time, const auto& begin) {
-                 const bool here = single_step_ ? time > begins_at_ + same_time : begin.line == pause_line_;
+                 const bool here = (single_step_ && time > step_from() + same_time) ||
+                                   (pause_line_ != 0 && begin.line == pause_line_);
                  if (here) found = time;
                  return here;
                });
@@ -497,7 +508,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Calls visit(time, start of a block) for those from a time on, until it says that it is enough.
   template <class Visit>
   void for_begins(S from, Visit&& visit) const {
-    driven_.each_from(from, &Clocked::begins, tail_ahead_, visit);
+    driven_.each_begin_from(from, tail_ahead_, visit);
   }
 
   // Words that the clock has come to, so many seconds into the tick, each once; false where the set point has
@@ -529,11 +540,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   // Behind a way back, a stop of the program that has been told stops again, once.
   void stop_again() {
     const S shown = clock_.state().position, from = clock_.next_rest();
-    if (backwards_ || shown > turned_ + same_time || stop_passed_ == from) return;
-    driven_.each_from(from - same_time, &Clocked::words, false, [&](S time, const auto& word) {
-      const bool here = time <= shown + same_time;
-      if (here && stops(word.word)) stop_here();
-      return !here || held_;
+    if (!clock_.standing() || backwards_ || shown > turned_ + same_time || stop_passed_ == from) return;
+    driven_.each_told_from(from - same_time, [&](const auto& word) {
+      if (!held_ && !(word.time > shown + same_time) && stops(word.word)) stop_here();
     });
   }
 
@@ -565,6 +574,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   BasicAskedRates<S> rates_;
   bool planned_anew_ = false;   // another feed than the program's has been asked for
   S passed_ = -infinity;        // when the block begins before which it last paused
+  S resumed_ = -infinity;       // where it was last resumed
   std::optional<S> slower_at_;  // a time in the block for which the rate comes down
   bool rests_before_ = false;   // that one: nothing else comes down in time
   bool no_way_back_ = false;    // what is kept begins here, without a rest
@@ -580,6 +590,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   std::size_t kept_ = 0;
   std::int64_t kept_number_ = -1;
   S busy_until_{};        // s of the tick in which it moves or dwells
+  bool dwells_last_{};    // it dwells behind the motion
   S rested_{}, quiet_{};  // s
   std::int64_t pushed_before_ = 0;
 };
@@ -601,6 +612,7 @@ void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
   parts_.clear();
   words_.clear();
   busy_until_ = S(0);
+  dwells_last_ = false;
   S left = period;
   while (left > S(0) && step(left, period)) {
   }

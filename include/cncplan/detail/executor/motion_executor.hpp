@@ -150,6 +150,7 @@ class BasicMotionExecutor {
         const S waited = std::min(wait, left);
         dwell_.add(waited);
         left -= waited;
+        if (!(waits() > S(0))) hold_where_asked();
       } else if (idle_) {
         if (!pending_ || !start()) break;
       } else if (const S turn = running_.to_cruise_end(); turn > S(0) && turn <= left && could_better()) {
@@ -477,12 +478,20 @@ class BasicMotionExecutor {
   void rest_as_planned() {
     const std::int64_t done = at_.block - path_.direction;
     const Block* const block = path_.ring.holds(done) ? &path_.ring[done] : nullptr;
-    BasicRequests<S>& asked = path_.asked;
     if (block != nullptr && path_.direction > 0) wait_for(block->segment_limits.pause);
-    if (block != nullptr ? path_.holds_behind(done) : asked.single_step) asked.held = true;
-    program_holds_ = block != nullptr && path_.program_holds_behind(done);
-    pauses_here();
+    if (!(waits() > S(0))) hold_where_asked();
     rest();
+  }
+
+  // At a junction where it rests, behind its dwell. What turns round there is held by nothing.
+  void hold_where_asked() {
+    const std::int64_t done = at_.block - path_.direction;
+    const bool known = path_.ring.holds(done);
+    BasicRequests<S>& asked = path_.asked;
+    if (asked.direction != path_.direction) return;
+    if (known ? path_.holds_behind(done) : asked.single_step) asked.held = true;
+    program_holds_ = known && path_.program_holds_behind(done);
+    pauses_here();
   }
 
   // Holds at a junction where a pause is asked for. Whether one is.

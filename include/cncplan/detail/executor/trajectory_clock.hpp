@@ -60,6 +60,8 @@ class TrajectoryClock {
   }
   /// Whether they stand at a rest of the trajectories.
   [[nodiscard]] bool standing() const { return standing_; }
+  /// Whether it stands where a dwell begins, none of which has passed.
+  [[nodiscard]] bool dwell_begins() const { return standing_ && !(shown_ - rest_.from > same_time); }
   /// Seconds of a dwell that are left.
   [[nodiscard]] S dwell() const { return standing_ ? dwell_ : S(0); }
   /// Whether it stands where the chain ends, or begins.
@@ -220,7 +222,7 @@ class TrajectoryClock {
   template <class Wanted, class MayLeave>
   bool leave(S& left, Wanted&& wanted, MayLeave&& may_leave) {
     if (!may_leave()) return false;
-    if (dwell_ > S(0)) {
+    if (dwell_ > S(0) && !(dwell_begins() && wanted() < S(0))) {
       const S now = std::min(dwell_, left);
       dwell_ -= now;
       left -= now;
