@@ -23,9 +23,7 @@ namespace detail {
 template <class M, class B>
 [[nodiscard]] double least_time_left(const cncplan::detail::LiveDriver<M, B>& driver) {
   if (driver.dwells()) return driver.until_change();
-  if (driver.stands() || driver.driven().empty()) return 0.0;
-  const auto& last = driver.driven()[driver.driven().size() - 1];
-  const cncplan::State clock = last.clock_at(driver.chain(), last.duration);
+  const cncplan::State clock = driver.clock();
   const bool constant = clock.velocity > 0.0 && clock.acceleration == 0.0 && clock.jerk == 0.0;
   return constant ? (driver.chain().end_time() - clock.position) / clock.velocity : 0.0;
 }
@@ -56,7 +54,7 @@ template <class M, class B>
   double time = 0.0, end = 0.0;
   std::int64_t ticks = 1;  // the next one ends at so many periods
   int idle_ticks = 0;
-  std::size_t fed = 0;
+  std::size_t fed = 0, again = 0;
   for (auto event = events.begin();;) {
     for (; event != events.end() && event->time <= time; ++event) ask(*driver, *event);
     while (fed < blocks.size() && driver->push(blocks[fed]))
@@ -69,11 +67,13 @@ template <class M, class B>
       refuse_periods(period);
     while (!(static_cast<double>(ticks) * period > time)) ++ticks;
     const double next = std::min(static_cast<double>(ticks) * period, next_event);
-    const bool dwelled = driver->dwells();
+    driver->advance(0.0, point);  // many blocks in a row that neither move nor dwell take no time
+    if (driver->rests() && !driver->asked_to_rest() && ++again <= blocks.size()) continue;
+    again = 0;
     driver->advance(next - time, point);
     record.add(*driver, time);
-    if (dwelled && driver->driven().empty()) end = next - std::min(driver->rested(), next - time);
-    const bool idle = driver->driven().empty() && !driver->dwells() && point.words.empty();
+    if (driver->dwelled_until() > 0.0) end = time + driver->dwelled_until();
+    const bool idle = driver->driven().empty() && !driver->dwells();
     idle_ticks = idle ? idle_ticks + 1 : 0;
     if (idle && (driver->asked_to_rest() || idle_ticks > most_search)) {  // nothing is ticked then
       if (event == events.end()) break;
