@@ -28,8 +28,6 @@ class LevelDriver {
   using Vector = VectorN<S, M::axis_count>;
   using Point = BasicSetPoint<S, M::axis_count>;
 
-  static constexpr std::size_t most_parts = 8;  ///< of a tick; what it does beyond them is not told
-
   LevelDriver() = default;
   LevelDriver(const LevelDriver&) = delete;
   LevelDriver& operator=(const LevelDriver&) = delete;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,11 +10,11 @@
 #include <new>
 #include <optional>
 
-#include "cncplan/core/detail/fixed_list.hpp"
 #include "cncplan/detail/executor/asked_rates.hpp"
 #include "cncplan/detail/executor/driven_parts.hpp"
 #include "cncplan/detail/executor/level_driver.hpp"
 #include "cncplan/detail/executor/part_planner.hpp"
+#include "cncplan/detail/executor/tick_parts.hpp"
 #include "cncplan/detail/executor/trajectory_clock.hpp"
 
 namespace cncplan::detail {
@@ -37,17 +36,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   using typename Base::Vector;
   using Options = BasicLiveOptions<S>;
   using Clock = TrajectoryClock<M, B>;
-
-  /// A part of a tick, s from its start.
-  struct TickPart {
-    S start{}, duration{};
-    const typename Clock::Ramp* ramp{};
-    S elapsed{};  ///< of the ramp, where the part begins
-
-    [[nodiscard]] BasicState<S> clock_at(const typename Clock::Chain& chain, S within) const {
-      return ramp->at(chain, elapsed + within);
-    }
-  };
+  using TickPart = typename TickParts<Clock>::Part;
 
   /// In memory that it gives back when it is destroyed. `planner`: what its planner is made with.
   template <class... Args>
@@ -157,23 +146,21 @@ class LiveDriver final : public LevelDriver<M, B> {
   void look(S period) override;
 
   void advance(S period, Point& point) override;
-  [[nodiscard]] std::size_t part_count() const override { return parts_.size(); }
+  [[nodiscard]] std::size_t part_count() const override { return driven().size(); }
   [[nodiscard]] BasicTickPart<S> part(std::size_t number) const override {
-    return {parts_[number].start, parts_[number].duration};
+    return {driven()[number].start, driven()[number].duration};
   }
   [[nodiscard]] AxisMotion<Vector> axes_at(S seconds) const override {
-    std::size_t i = 0;
-    while (i + 1 < parts_.size() && seconds > parts_[i].start + parts_[i].duration) ++i;
-    const TickPart& part = parts_[i];
+    const TickPart& part = parts_.at(seconds);
     const S within = std::clamp(seconds - part.start, S(0), part.duration);
     const Point point = clock_.chain().at(part.clock_at(clock_.chain(), within));
     return {point.position, point.velocity, point.acceleration, point.jerk};
   }
 
   /// s of the last tick until which it dwelled, if that came last; else 0.
-  [[nodiscard]] S dwelled_until() const { return dwells_last_ ? busy_until_ : S(0); }
+  [[nodiscard]] S dwelled_until() const { return dwelled_until_; }
   /// What the last tick was made of, rests left out, and what its clock ran along.
-  [[nodiscard]] const FixedList<TickPart, Base::most_parts>& driven() const { return parts_; }
+  [[nodiscard]] const typename TickParts<Clock>::List& driven() const { return parts_.list(); }
   [[nodiscard]] const typename Clock::Chain& chain() const { return clock_.chain(); }
   [[nodiscard]] BasicState<S> clock() const { return clock_.state(); }
 
@@ -186,7 +173,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     tail_ahead_ = stopped_ = program_holds_ = backwards_ = rests_before_ = no_way_back_ = false;
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
-    kept_number_ = -1;
+    parts_.reset();
     resumed_ = -infinity;
     slower_at_.reset();
     rates_.begin();
@@ -362,21 +349,9 @@ class LiveDriver final : public LevelDriver<M, B> {
         clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration();
     if (!(used > S(0)) || rested) return goes_on;
     busy_until_ = period - left;
-    dwells_last_ = stood;
-    if (!stood && !parts_.full())
-      parts_.push_back({period - before, used, &keep_ramp(),
-                        clock_.standing() ? clock_.elapsed() : clock_.elapsed() - used});
+    dwelled_until_ = stood ? busy_until_ : S(0);
+    if (!stood) parts_.add(period - before, used, clock_);
     return goes_on;
-  }
-
-  // The clock's, as it is now. A ramp is large, and is the same for most ticks.
-  const typename Clock::Ramp& keep_ramp() {
-    if (kept_number_ != clock_.ramp_number()) {
-      kept_number_ = clock_.ramp_number();
-      kept_ = (kept_ + 1) % ramps_.size();
-      ramps_[kept_] = clock_.ramp();
-    }
-    return ramps_[kept_];
   }
 
   // A change of the rate that leads beyond a cut is one along the tail.
@@ -584,14 +559,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool tail_ahead_{};           // the chain ends with a tail that is not driven yet
   S cut_{};                     // where it begins
   BasicReachedWords<S> words_;
-  FixedList<TickPart, Base::most_parts> parts_;
-  // Of these parts, the last one of them, and its number.
-  std::array<typename Clock::Ramp, Base::most_parts> ramps_{};
-  std::size_t kept_ = 0;
-  std::int64_t kept_number_ = -1;
-  S busy_until_{};        // s of the tick in which it moves or dwells
-  bool dwells_last_{};    // it dwells behind the motion
-  S rested_{}, quiet_{};  // s
+  TickParts<Clock> parts_;
+  S busy_until_{}, dwelled_until_{};  // s of the tick; the latter 0 where it moves behind a dwell
+  S rested_{}, quiet_{};              // s
   std::int64_t pushed_before_ = 0;
 };
 
@@ -611,8 +581,7 @@ template <MachineModel M, BlockModel B, class Planner>
 void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
   parts_.clear();
   words_.clear();
-  busy_until_ = S(0);
-  dwells_last_ = false;
+  busy_until_ = dwelled_until_ = S(0);
   S left = period;
   while (left > S(0) && step(left, period)) {
   }
