@@ -339,6 +339,41 @@ TEST_CASE("stops: words behind a stop of the program wait there behind a way bac
   });
 }
 
+TEST_CASE("stops: a pause at a line of several motions is one", "[executor]") {
+  at_every_door({"G1 X5 F1200", "G81 X6 Z-1 R1", "G80", "G1 X20"}, [](auto& executor) {
+    executor.pause_at(2);
+    CHECK(told(executor, 20, ExecutorState::held) == "| end");
+  });
+}
+
+TEST_CASE("stops: single steps and pauses are made behind a way back, too", "[executor]") {
+  const auto held_at = [](auto& executor) {
+    double place = -1;
+    for (int tick = 0; tick < 3 / period; ++tick) place = executor.tick(period).position.x();
+    CHECK(executor.state() == ExecutorState::held);
+    executor.resume();
+    return place;
+  };
+  at_every_door({"G1 X5 F1200", "X10", "X15", "X20"}, [&](auto& executor) {
+    executor.pause_at(4);
+    CHECK(held_at(executor) == Approx(15).margin(0.03));
+    executor.reverse(true);
+    CHECK(held_at(executor) == Approx(0).margin(1e-9));
+    executor.reverse(false);
+    SECTION("another line") {
+      executor.pause_at(2);
+      CHECK(held_at(executor) == Approx(5).margin(0.03));
+      CHECK(told(executor, 5) == "end");
+    }
+    SECTION("the line of the pause is passed") { CHECK(told(executor, 5) == "end"); }
+    SECTION("single steps") {
+      executor.single_step(true);
+      for (const double place : {5, 10, 15}) CHECK(held_at(executor) == Approx(place).margin(0.03));
+      CHECK(told(executor, 5) == "end");
+    }
+  });
+}
+
 TEST_CASE("stops: turning round is no hold", "[executor]") {
   at_every_door({"G1 X20 F1200", "Y9"}, [](auto& executor) {
     run(executor, 0.5);

@@ -24,14 +24,20 @@ struct ClockedTrajectory {
     S time{};  ///< s
     int line{};
     bool rapid{};
+    bool first{};  ///< of its line
+  };
+  /// Where a trajectory ends: the program's number of its last block, and the line, if that has moved.
+  struct End {
+    std::size_t block{};
+    std::optional<int> moved{};
   };
   struct Word {
     S time{};  ///< s
     gcode::Word word{};
   };
 
-  /// `begun`: the last block that has begun in the one before.
-  ClockedTrajectory(T&& motion, std::optional<std::size_t> begun, std::pmr::memory_resource* memory)
+  /// `before`: the end of the one before, whose last block has begun.
+  ClockedTrajectory(T&& motion, const std::optional<End>& before, std::pmr::memory_resource* memory)
       : trajectory(std::forward<T>(motion)),
         rests(rests_of(trajectory, memory)),
         brakes(trajectory.brakes()),
@@ -41,18 +47,19 @@ struct ClockedTrajectory {
     for (const TimedWord& word : trajectory.words()) words.push_back({static_cast<S>(word.time), word.word});
     const auto blocks = trajectory.program();
     begins.reserve(blocks.size());
+    if (before) end.moved = before->moved;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const S time = trajectory.start_time(i);
+      const int line = blocks[i].line;
       if (blocks[i].word.letter != '\0') words.push_back({time, blocks[i].word});
-      if (blocks[i].path.length() > S(0) && trajectory.first_block() + i != begun)
-        begins.push_back({time, blocks[i].line, blocks[i].rapid});
+      if (end.moved != line) end.moved.reset();
+      if (!(blocks[i].path.length() > S(0))) continue;
+      if (!before || trajectory.first_block() + i != before->block)
+        begins.push_back({time, line, blocks[i].rapid, !end.moved});
+      end.moved = line;
     }
+    end.block = trajectory.first_block() + blocks.size() - 1;
     std::ranges::stable_sort(words, {}, &Word::time);
-  }
-
-  /// The program's number of its last block.
-  [[nodiscard]] std::size_t last_block() const {
-    return trajectory.first_block() + trajectory.program().size() - 1;
   }
 
   T trajectory;
@@ -61,6 +68,7 @@ struct ClockedTrajectory {
   std::pmr::vector<S> peaks;  ///< `speed_peaks`, where the clock asks for them
   std::pmr::vector<Word> words;
   std::pmr::vector<Begin> begins;
+  End end;
 };
 
 }  // namespace cncplan::detail

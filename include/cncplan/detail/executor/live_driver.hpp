@@ -66,7 +66,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   void hold() override { held_ = true; }
   void resume() override {
-    if (held_ && clock_.rests()) resumed_ = clock_.state().position;
+    if (held_ && clock_.rests()) step_passed_ = std::max(step_passed_, clock_.state().position);
     held_ = program_holds_ = false;
   }
   void stop() override { stopped_ = true; }
@@ -174,10 +174,9 @@ class LiveDriver final : public LevelDriver<M, B> {
     rested_ = quiet_ = S(0);
     pushed_before_ = 0;
     parts_.reset();
-    resumed_ = -infinity;
     slower_at_.reset();
     rates_.begin();
-    passed_ = turned_ = stop_passed_ = -infinity;
+    pause_passed_ = step_passed_ = turned_ = stop_passed_ = -infinity;
     return true;
   }
 
@@ -329,7 +328,7 @@ class LiveDriver final : public LevelDriver<M, B> {
         clock_.state().position + std::max(clock_.state().velocity, S(1)) * left >= cut_)
       take_tail();
     if (backwards_) turned_ = std::max(turned_, clock_.state().position);
-    if (clock_.heads_back()) stop_passed_ = -infinity;
+    if (clock_.heads_back()) stop_passed_ = step_passed_ = -infinity;
     if (clock_.rests()) rests_before_ = false;
     if (!clock_.standing()) {
       brake_at_start(period);
@@ -372,7 +371,7 @@ class LiveDriver final : public LevelDriver<M, B> {
 
   [[nodiscard]] bool pauses() const { return (single_step_ || pause_line_ != 0) && !backwards_; }
   void hold_at(S time) {
-    passed_ = time;
+    pause_passed_ = step_passed_ = time;
     held_ = true;
   }
   // At a rest before a block at which it is to pause; of single blocks a dwell is one.
@@ -380,7 +379,7 @@ class LiveDriver final : public LevelDriver<M, B> {
     if (held_ || stopped_ || !pauses() || !clock_.standing()) return;
     const S now = clock_.state().position;
     if (const auto pause = next_pause(); pause && *pause <= now + same_time) return hold_at(*pause);
-    if (!single_step_ || now <= std::max(passed_, step_from()) + same_time) return;
+    if (!single_step_ || now <= step_from() + same_time) return;
     const auto dwell = clock_.chain().rest_after(now);
     if (dwell && std::abs(dwell->from - now) <= same_time) hold_at(now);
   }
@@ -467,17 +466,16 @@ class LiveDriver final : public LevelDriver<M, B> {
     return found;
   }
   // Where the step that is made began, at the earliest.
-  [[nodiscard]] S step_from() const { return std::max(begins_at_, resumed_); }
+  [[nodiscard]] S step_from() const { return std::max(begins_at_, step_passed_); }
   // When a block begins before which it is to rest: the next one that it has not rested at.
   [[nodiscard]] std::optional<S> next_pause() const {
     std::optional<S> found;
-    for_begins(std::max(clock_.state().position - same_time, passed_ + same_time),
-               [&](S time, const auto& begin) {
-                 const bool here = (single_step_ && time > step_from() + same_time) ||
-                                   (pause_line_ != 0 && begin.line == pause_line_);
-                 if (here) found = time;
-                 return here;
-               });
+    for_begins(clock_.state().position - same_time, [&](S time, const auto& begin) {
+      const bool of_line = pause_line_ != 0 && begin.line == pause_line_ && begin.first;
+      const bool pauses = of_line && std::abs(time - pause_passed_) > same_time;
+      if (pauses || (single_step_ && time > step_from() + same_time)) found = time;
+      return found.has_value();
+    });
     return found;
   }
   // Calls visit(time, start of a block) for those from a time on, until it says that it is enough.
@@ -547,9 +545,9 @@ class LiveDriver final : public LevelDriver<M, B> {
   bool program_stop_ = true;
   int pause_line_ = 0;
   BasicAskedRates<S> rates_;
-  bool planned_anew_ = false;   // another feed than the program's has been asked for
-  S passed_ = -infinity;        // when the block begins before which it last paused
-  S resumed_ = -infinity;       // where it was last resumed
+  bool planned_anew_ = false;  // another feed than the program's has been asked for
+  // When the block begins before which it last paused; where the step began, if it was not turned back since.
+  S pause_passed_ = -infinity, step_passed_ = -infinity;
   std::optional<S> slower_at_;  // a time in the block for which the rate comes down
   bool rests_before_ = false;   // that one: nothing else comes down in time
   bool no_way_back_ = false;    // what is kept begins here, without a rest

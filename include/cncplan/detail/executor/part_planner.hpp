@@ -150,7 +150,7 @@ class PartPlanner {
     released_ = taken_ = 0;
     left_ = longest_hold_ = S(0);
     pushed_ = 0;
-    last_block_.reset();
+    end_.reset();
     open_ = false;
     begun_ = ended_ = failed_ = let_go_ = false;
     all_planned_ = true;
@@ -248,9 +248,9 @@ class PartPlanner {
     if (!stream_->ready()) return true;
     Part& next = part(made_);
     clear(next);
-    const std::size_t last = next.motion.emplace(stream_->take(), last_block_, memory_).last_block();
+    const typename Clocked::End end = next.motion.emplace(stream_->take(), end_, memory_).end;
     const bool opens = stream_->open();
-    if (opens) next.tail.emplace(stream_->tail(), last, memory_);
+    if (opens) next.tail.emplace(stream_->tail(), end, memory_);
     for (auto* motion : {&next.motion, &next.tail})
       if (*motion && is_raised((*motion)->trajectory))
         (*motion)->peaks = speed_peaks((*motion)->trajectory, memory_);
@@ -265,7 +265,7 @@ class PartPlanner {
     }
     ++made_;
     open_ = opens;
-    last_block_ = last;
+    end_ = end;
     begun_.store(true, std::memory_order_release);
     return true;
   } catch (const std::bad_alloc&) {
@@ -300,9 +300,9 @@ class PartPlanner {
   std::optional<SmoothStream<M, B>> stream_;
   std::array<Part, static_cast<std::size_t>(most_parts)> parts_{};
   std::int64_t made_ = 0;
-  std::int64_t looked_at_ = -1;            // blocks pushed when no part could be made of them
-  bool open_ = false;                      // the last part, and its tail is not driven
-  std::optional<std::size_t> last_block_;  // in which it ends
+  std::int64_t looked_at_ = -1;               // blocks pushed when no part could be made of them
+  bool open_ = false;                         // the last part, and its tail is not driven
+  std::optional<typename Clocked::End> end_;  // the last part's
   int skips_to_ = 0;
   BasicFeedShares<S> shares_;
   Vector start_ = Vector::Zero();
