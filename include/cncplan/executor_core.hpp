@@ -513,7 +513,8 @@ auto ExecutorCore<M, B>::advance(Scalar given, const Tell* tell) -> SetPoint {
   const std::int64_t begun = motion_executor_.begun();
   std::int64_t reached = begun < 0 ? -1 : motion_executor_[begun].block;
   if (motion_executor_.finished() && !waits_to_be_resumed()) reached = std::max(reached, ready - 1);
-  words_.end_tick(feed_, reached, motion_executor_.stands(), period, last_.words);
+  const bool rested = motion_executor_.stands() || motion_executor_.going_back();
+  words_.end_tick(feed_, reached, rested, period, last_.words);
   release();
   return last_;
 }
@@ -524,7 +525,7 @@ detail::BasicMotionSetPoint<typename M::Scalar> ExecutorCore<M, B>::tick_of_prog
   if (!words_.begin_tick(feed_) && tell == nullptr) return motion_executor_.tick(period);
   return motion_executor_.tick(period, [&](const detail::BasicMotionPart<Scalar>& part) {
     const Cell& cell = motion_executor_[part.block];
-    words_.pass(feed_, cell.block, part.phase, period, last_.words);
+    if (part.direction > 0) words_.pass(feed_, cell.block, part.phase, period, last_.words);
     if (tell == nullptr) return;
     (*tell)(Part(feed_.path(cell.block), part.phase, cell.from + part.along, part.direction));
   });

@@ -374,6 +374,17 @@ TEST_CASE("stops: single steps and pauses are made behind a way back, too", "[ex
   });
 }
 
+TEST_CASE("stops: nothing is told where the motion turns round at a rest", "[executor]") {
+  at_every_door({"G61.1 G1 X5 F1200", "M0", "M8", "X8"}, [](auto& executor) {
+    run(executor, 0.3);  // the way down to the rest has begun
+    executor.reverse(true);
+    const std::string log = told(executor, 2);
+    CHECK(log.find('M') == std::string::npos);
+    executor.reverse(false);
+    CHECK(told(executor, 5) == "M0 | M8 end");
+  });
+}
+
 TEST_CASE("stops: turning round is no hold", "[executor]") {
   at_every_door({"G1 X20 F1200", "Y9"}, [](auto& executor) {
     run(executor, 0.5);

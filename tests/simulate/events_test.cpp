@@ -137,6 +137,7 @@ TEST_CASE("runs rest as long at every level") {
             Case{"G4 P0.5\nG4 P0.3\n", "0,step,1\n0.1,resume\n2,resume\n4,resume\n", 2.3},
             Case{"G4 P0.5\n", "0,feed,0\n1,feed,1\n", 1.5},
             Case{"G4 P0.25\nG4 P0.25\n", "0.25,hold\n3,resume\n", 3.25},
+            Case{"G4 P1.2\n", "0.1,feed,1\n", 1.2, "0.4"},
             Case{"G4 P0.5\nG4 P0.3\n", "0.5,hold\n0.55,resume\n", 0.85}}) {
         CAPTURE(level, moves, c.program, c.events);
         const double moved = moves ? seconds(motion, "", "0.001") : 0;

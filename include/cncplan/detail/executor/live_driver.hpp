@@ -348,7 +348,7 @@ class LiveDriver final : public LevelDriver<M, B> {
         clock_.rests() && !clock_.standing() && clock_.elapsed() - used > clock_.ramp().duration();
     if (!(used > S(0)) || rested) return goes_on;
     busy_until_ = period - left;
-    dwelled_until_ = stood ? busy_until_ : S(0);
+    if (stood || used > same_time) dwelled_until_ = stood ? busy_until_ : S(0);
     if (!stood) parts_.add(period - before, used, clock_);
     return goes_on;
   }

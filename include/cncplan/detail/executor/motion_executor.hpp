@@ -187,15 +187,22 @@ class BasicMotionExecutor {
 
   /// Whether all blocks that were pushed have been run through.
   [[nodiscard]] bool finished() const {
-    return idle_ && !(waits() > S(0)) && !at_program_stop() && path_.direction > 0 &&
+    return idle_ && !(waits() > S(0)) && !at_program_stop() && path_.direction > 0 && !turns() &&
            at_.block >= path_.ring.pushed();
   }
-  /// The last block that is kept and has begun. Where it rests as asked, the next one has not.
+  /// The last block that is kept and has begun. Where it rests as asked, or turns round, the next one has
+  /// not.
   [[nodiscard]] std::int64_t begun() {
-    const bool waits_here = idle_ && (path_.asked.held || path_.asked.stopped) && at_.along == S(0);
-    const std::int64_t block = waits_here && path_.direction > 0 ? at_.block - 1 : set_point().block;
+    const BasicMotionSetPoint<S> now = set_point();
+    const bool waits_here =
+        idle_ && (path_.asked.held || path_.asked.stopped || turns()) && at_.along == S(0) && !going_back();
+    const std::int64_t block = waits_here                            ? at_.block - 1
+                               : going_back() && !(now.along > S(0)) ? now.block - 1
+                                                                     : now.block;
     return path_.ring.holds(block) ? block : -1;
   }
+  /// Whether it runs back, or stands there.
+  [[nodiscard]] bool going_back() const { return path_.direction < 0; }
   /// Whether it rests and will not go on by itself.
   [[nodiscard]] bool rests() const {
     const bool nothing_ahead = path_.direction > 0 && at_.block >= path_.ring.pushed();
@@ -221,8 +228,7 @@ class BasicMotionExecutor {
   /// Whether it is asked to be at rest, or to turn round.
   [[nodiscard]] bool asked_to_rest() const {
     const BasicRequests<S>& asked = path_.asked;
-    return asked.held || asked.stopped || no_speed() || asked.direction != path_.direction ||
-           nothing_behind();
+    return asked.held || asked.stopped || no_speed() || turns() || nothing_behind();
   }
   /// Whether it rests because of `stop`.
   [[nodiscard]] bool stopped() const { return path_.asked.stopped && idle_; }
@@ -252,6 +258,8 @@ class BasicMotionExecutor {
     pending_ = pending_ || idle_;
   }
 
+  // Whether it is asked to turn round, and has not yet.
+  [[nodiscard]] bool turns() const { return path_.asked.direction != path_.direction; }
   // Seconds of a dwell that are left.
   [[nodiscard]] S waits() const { return dwell_.until(S(0)); }
   void wait_for(S seconds) {
@@ -275,9 +283,6 @@ class BasicMotionExecutor {
   }
 
   [[nodiscard]] bool profile_over() const { return !idle_ && !(running_.left() > S(0)); }
-
-  // The plan goes to the oldest block then.
-  [[nodiscard]] bool going_back() const { return path_.direction < 0; }
 
   // Where it is now. At rest a block of no length is not passed by.
   BasicPlace<S> locate() {
@@ -488,7 +493,7 @@ class BasicMotionExecutor {
     const std::int64_t done = at_.block - path_.direction;
     const bool known = path_.ring.holds(done);
     BasicRequests<S>& asked = path_.asked;
-    if (asked.direction != path_.direction) return;
+    if (turns()) return;
     if (known ? path_.holds_behind(done) : asked.single_step) asked.held = true;
     program_holds_ = known && path_.program_holds_behind(done);
     pauses_here();

@@ -47,8 +47,8 @@ class ToldWords {
     if (part.time - last_.end < S(1e-6) * period) tell(feed, last_.block, last_.start, words);
     last_ = {block, part.time, part.time + part.duration};
   }
-  /// The tick ends in a block, at rest or in motion. What a part behind a rest has told, by rounding, is told
-  /// anew once the motion comes there.
+  /// The tick ends in a block; `stands`: at rest, or on the way back. What a part behind a rest has told, by
+  /// rounding, is told anew once the motion comes there.
   template <class Feed>
   void end_tick(const Feed& feed, std::int64_t block, bool stands, S period, Words& words) {
     while (stands && blocks_ > std::max(block + 1, before_))
