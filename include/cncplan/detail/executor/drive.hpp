@@ -36,10 +36,11 @@ template <std::floating_point S>
           at_rest};
 }
 
-/// Goes on in a profile for so many seconds, `passed` seconds into the tick, and tells the parts.
+/// Tells the parts of the next seconds of a profile, which begin `passed` seconds into the tick. What drives
+/// the profile does not go on by parts: the motion is the same whether anybody asks for them.
 template <std::floating_point S, class Visit>
-void drive(const BasicPathAhead<S>& path, BasicPlace<S>& start, BasicRunningProfile<S>& running, S seconds,
-           S passed, Visit& visit) {
+void tell_parts(const BasicPathAhead<S>& path, BasicPlace<S> start, BasicRunningProfile<S> running, S seconds,
+                S passed, Visit& visit) {
   const BlockRing<S>& ring = path.ring;
   // Rounding hides so short a rest of a block: no place along a long path lies in it, and the time to its end
   // is noise. With parts of their own for such blocks, a tick could have billions.

@@ -131,10 +131,8 @@ class BasicMotionExecutor {
   template <std::invocable<const BasicMotionPart<S>&> Visit>
   BasicMotionSetPoint<S> tick(S period, Visit&& visit) {
     const auto advance = [&](S seconds, S left) {
-      if constexpr (wants_parts<Visit>)
-        drive(path_, at_, running_, seconds, period - left, visit);
-      else
-        running_.advance(seconds);
+      if constexpr (wants_parts<Visit>) tell_parts(path_, at_, running_, seconds, period - left, visit);
+      running_.advance(seconds);
     };
     look();
     const std::size_t begun_ms = milliseconds_begun(period);
