@@ -1,11 +1,14 @@
 // How high an override of the feed may be, and how soon it acts, at every level of smoothing.
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cncplan/trajectory_executor.hpp"
@@ -274,5 +277,44 @@ TEST_CASE("executor overrides: a lower feed is planned, and leaves corners and r
     const double from = whole / 3, until = from + slower / 3;
     CHECK(takes(at_30, level, 0.4, from) <= whole / 3 + 2 * slower / 3 + 2);
     CHECK(takes(at_30, level, 0.4, from, until) <= 2 * whole / 3 + slower / 3 + 2);
+  }
+}
+
+TEST_CASE(
+    "executor overrides: two threads: set points tell the program's feed, while plans are made anew too",
+    "[executor-overrides]") {
+  Random random;
+  const Machine<3> machine = fast_machine();
+  std::string text = "F1200\n";
+  for (int i = 1; i <= 150; ++i)
+    text += "G1 X" + std::to_string(0.1 * i) + " Y" + std::to_string(0.1 * (i % 2)) + "\n";
+  const MillBlocks blocks = blocks_of_text(text, machine);
+  for (const SmoothLevel level : {SmoothLevel::good, SmoothLevel::best}) {
+    CAPTURE(level);
+    const auto executor = std::make_unique<Runner>(
+        machine, LevelExecutorOptions{.level = level, .background = true, .horizon = 0.2});
+    std::atomic<bool> over{false};
+    std::thread planner([&] {
+      std::size_t fed = 0;
+      while (!over.load()) {
+        feed(*executor, blocks, fed);
+        executor->plan();
+      }
+    });
+    long wrong = 0, moved = 0;
+    // As fast as it can: parts come too late, and those before are driven to rest.
+    const auto started = std::chrono::steady_clock::now();
+    while (!executor->finished() && std::chrono::steady_clock::now() - started < std::chrono::minutes(2)) {
+      if (random.integer(0, 50) == 0) executor->feed_override(random.uniform(0.2, 1.8));
+      const auto point = executor->tick(tick_time);
+      if (point.velocity.isZero()) continue;
+      ++moved;
+      wrong += std::abs(point.feed - 20) < 1e-9 ? 0 : 1;
+    }
+    over.store(true);
+    planner.join();
+    CHECK(executor->finished());
+    CHECK(moved > 1000);
+    CHECK(wrong == 0);
   }
 }

@@ -18,19 +18,18 @@ class BasicAskedRates {
   [[nodiscard]] S share(bool rapid) const { return rapid ? rapid_share_ : feed_share_; }
   [[nodiscard]] bool equal() const { return rapid_share_ == feed_share_; }
 
-  /// The rate from a time on, of the block that is driven there, which is planned for a share of its feed.
-  /// `back`: on the way back.
+  /// The rate from a time on, of the block that is driven there. `back`: on the way back.
   template <class Chain>
-  [[nodiscard]] S at(const Chain& chain, S time, S planned, bool back) const {
+  [[nodiscard]] S at(const Chain& chain, S time, bool back) const {
     if (chain.block_at(time).rapid) return rapid_share_;
-    return of_feed(chain, time, planned, back).most;
+    return of_feed(chain, time, back).most;
   }
   /// The same where the clock is, without small changes.
   template <class Chain>
-  [[nodiscard]] S here(const Chain& chain, S time, S planned, bool back) {
+  [[nodiscard]] S here(const Chain& chain, S time, bool back) {
     constexpr S worth_it = S(1.02);  // times the rate: a change of it takes work
     if (chain.block_at(time).rapid) return rapid_share_;
-    const auto [least, most] = of_feed(chain, time, planned, back);
+    const auto [least, most] = of_feed(chain, time, back);
     last_ = most > worth_it * last_ ? most : std::min(most, std::max(last_, least));
     return last_;
   }
@@ -43,9 +42,9 @@ class BasicAskedRates {
   // On a feed move. One that is planned for a higher feed than the program's is slowed as far as it would be
   // faster than what is asked for: limits may have kept it slower.
   template <class Chain>
-  [[nodiscard]] FeedRate of_feed(const Chain& chain, S time, S planned, bool back) const {
+  [[nodiscard]] FeedRate of_feed(const Chain& chain, S time, bool back) const {
     constexpr S window = S(1);  // s, in which the rate changes by so much at the latest
-    const S low = feed_share_ / planned;
+    const S planned = chain.share_at(time), low = feed_share_ / planned;
     if (!(planned > S(1) && low < S(1))) return {low, low};
     const S peak = back ? chain.peak_between(std::max(time - window, chain.start_time(0)), time)
                         : chain.peak_between(time, time + window);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cncplan/detail/executor/feed_shares.hpp"
 #include "cncplan/detail/executor/trajectory_chain.hpp"
 
 namespace cncplan::detail {
@@ -42,6 +43,7 @@ struct ClockedTrajectory {
         rests(rests_of(trajectory, memory)),
         brakes(trajectory.brakes()),
         peaks(memory),
+        shares(memory),
         words(memory),
         begins(memory) {
     for (const TimedWord& word : trajectory.words()) words.push_back({static_cast<S>(word.time), word.word});
@@ -65,7 +67,8 @@ struct ClockedTrajectory {
   T trajectory;
   std::pmr::vector<BasicRest<S>> rests;
   std::span<const BasicPlannedBrake<S>> brakes;
-  std::pmr::vector<S> peaks;  ///< `speed_peaks`, where the clock asks for them
+  std::pmr::vector<S> peaks;                   ///< `speed_peaks`, where the clock asks for them
+  std::pmr::vector<BasicFeedShare<S>> shares;  ///< by which its feeds are planned; none: as programmed
   std::pmr::vector<Word> words;
   std::pmr::vector<Begin> begins;
   End end;

@@ -60,7 +60,7 @@ class GivenPlan {
   [[nodiscard]] bool ended() const { return true; }
   [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_acquire); }
   [[nodiscard]] gcode::Diagnostic fault() const { return {fault_, 0, 0, {}}; }
-  [[nodiscard]] BasicFeedShares<S>& shares() { return shares_; }
+  void ask_feed(S) {}
   [[nodiscard]] S longest_hold() const { return longest_hold_; }
   [[nodiscard]] Vector start() const { return trajectory_.at(S(0)).position; }
   [[nodiscard]] bool begun() const { return begun_; }
@@ -127,7 +127,6 @@ class GivenPlan {
   const Trajectory<M, B>& trajectory_;
   Part part_;
   std::pmr::vector<BasicPlannedBrake<S>> brakes_;
-  BasicFeedShares<S> shares_;
   Error fault_{};
   std::atomic<bool> failed_{false};
   S longest_hold_{};  // s

@@ -76,7 +76,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   }
   void feed_override(S share) override {
     rates_.ask_feed(cut(share, infinity));
-    planner_.shares().ask(rates_.feed_share());
+    planner_.ask_feed(rates_.feed_share());
     planned_anew_ = planned_anew_ || rates_.feed_share() != S(1);
   }
   void rapid_override(S share) override { rates_.ask_rapid(cut(share, S(1))); }
@@ -271,7 +271,7 @@ class LiveDriver final : public LevelDriver<M, B> {
   [[nodiscard]] S way_end() const { return tail_ahead_ ? cut_ : clock_.chain().end_time(); }
   void add(Driven& now, const Clocked& motion) {
     if (motion.trajectory.phases().empty()) return;
-    clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes, motion.peaks);
+    clock_.chain().push_back(motion.trajectory, motion.rests, motion.brakes, motion.peaks, motion.shares);
     ++now.motions;
   }
 
@@ -306,17 +306,9 @@ class LiveDriver final : public LevelDriver<M, B> {
     }
     return backwards_ ? -std::min(share, S(1)) : pauses() ? std::min(share, S(1)) : share;
   }
-  [[nodiscard]] S rate_at(S time) { return rates_.at(clock_.chain(), time, planned_share(time), backwards_); }
-  [[nodiscard]] S rate_here() {
-    return rates_.here(clock_.chain(), here(), planned_share(here()), backwards_);
-  }
-  // Of its feed, by which the block is planned that is driven at a time.
-  [[nodiscard]] S planned_share(S time) {
-    return planner_.shares().share_of(clock_.chain().number_at(time), oldest_block());
-  }
-  [[nodiscard]] std::int64_t oldest_block() const {
-    return static_cast<std::int64_t>(planner_.part(driven_.oldest()).motion->trajectory.first_block());
-  }
+  [[nodiscard]] S rate_at(S time) const { return rates_.at(clock_.chain(), time, backwards_); }
+  [[nodiscard]] S rate_here() { return rates_.here(clock_.chain(), here(), backwards_); }
+  [[nodiscard]] S planned_share(S time) const { return clock_.chain().share_at(time); }
 
   // Rests, or one part of the tick; whether more may happen in it.
   bool step(S& left, S period) {
@@ -589,7 +581,6 @@ void LiveDriver<M, B, Planner>::advance(S period, Point& point) {
     const S time = point.time;
     point = clock_.chain().at(clock_.state());
     point.time = time;
-    point.feed /= planner_.shares().share_of(static_cast<std::int64_t>(point.block), oldest_block());
   }
   point.words = words_;
 }

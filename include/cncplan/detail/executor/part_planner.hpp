@@ -58,7 +58,7 @@ class PartPlanner {
     if (pushed_.load(std::memory_order_relaxed) == 0) start_ = block.path.position_at(S(0));
     all_planned_.store(false, std::memory_order_relaxed);
     B scaled = block;
-    if (!block.rapid) scaled.feed *= shares_.planned();
+    if (!block.rapid) scaled.feed *= shares_.of_next();
     if (const auto ok = stream_->push(scaled); !ok)
       fail(ok.error().about);
     else
@@ -90,8 +90,8 @@ class PartPlanner {
   [[nodiscard]] bool ended() const { return ended_.load(std::memory_order_acquire); }
   [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_acquire); }
   [[nodiscard]] gcode::Diagnostic fault() const { return fault_; }
-  /// By which share of its feed each block is planned.
-  [[nodiscard]] BasicFeedShares<S>& shares() { return shares_; }
+  /// Feeds are planned times a share from now on.
+  void ask_feed(S share) { shares_.ask(share); }
   /// s, the longest that a hold takes along the parts that were planned, from the planned speed.
   [[nodiscard]] S longest_hold() const { return longest_hold_.load(std::memory_order_relaxed); }
   /// Where the first block begins, once it has been pushed.
@@ -208,11 +208,11 @@ class PartPlanner {
   void adopt_share() {
     const S share = shares_.asked();
     const std::int64_t open = stream_->first_open();
-    if (share == shares_.planned() || !shares_.has_room(open)) return;
+    if (share == shares_.of_next() || !shares_.has_room(open)) return;
     std::int64_t first = open_ ? behind_faster(*part(made_ - 1).tail, share, open) : open;
-    while (first > open && !(shares_.planned(first - 1) > share)) --first;
-    stream_->scale_feeds(first, [&](std::int64_t block) { return share / shares_.planned(block); });
-    shares_.plan(first, share);
+    while (first > open && !(shares_.of(first - 1) > share)) --first;
+    stream_->scale_feeds(first, [&](std::int64_t block) { return share / shares_.of(block); });
+    shares_.change({first, share});
   }
 
   // The first block behind those, from one on, in which a motion is faster than a share of their feeds.
@@ -223,7 +223,7 @@ class PartPlanner {
       const auto number = static_cast<std::int64_t>(trajectory.first_block() + own);
       const B& block = trajectory.program()[own];
       if (number < first || block.rapid) continue;
-      const S most = share * static_cast<S>(block.feed) / shares_.planned(number);
+      const S most = share * static_cast<S>(block.feed) / shares_.of(number);
       if (highest_speed(trajectory, phase, piece) > most) first = number + 1;
     }
     return first;
@@ -252,8 +252,7 @@ class PartPlanner {
     const bool opens = stream_->open();
     if (opens) next.tail.emplace(stream_->tail(), end, memory_);
     for (auto* motion : {&next.motion, &next.tail})
-      if (*motion && is_raised((*motion)->trajectory))
-        (*motion)->peaks = speed_peaks((*motion)->trajectory, memory_);
+      if (*motion) tell_shares(**motion);
     const S hold = next.motion->trajectory.longest_hold();
     if (hold > longest_hold()) longest_hold_.store(hold, std::memory_order_relaxed);
     next.link.store(opens ? PartLink::open : PartLink::rest, std::memory_order_relaxed);
@@ -275,11 +274,13 @@ class PartPlanner {
     return true;
   }
 
-  // Whether a block is planned for more than its feed.
-  [[nodiscard]] bool is_raised(const Trajectory<M, B>& part) const {
-    for (std::size_t i = 0; i < part.program().size(); ++i)
-      if (shares_.planned(static_cast<std::int64_t>(part.first_block() + i)) > S(1)) return true;
-    return false;
+  // By which shares a motion was planned; of one with a block that is planned for more than its feed the
+  // clock asks for the speeds.
+  void tell_shares(Clocked& motion) const {
+    const auto first = static_cast<std::int64_t>(motion.trajectory.first_block());
+    motion.shares = shares_.between(first, static_cast<std::int64_t>(motion.end.block), memory_);
+    const auto is_raised = [](const BasicFeedShare<S>& one) { return one.share > S(1); };
+    if (std::ranges::any_of(motion.shares, is_raised)) motion.peaks = speed_peaks(motion.trajectory, memory_);
   }
 
   // Puts the next part behind the last one; false if that is open and its tail is driven.

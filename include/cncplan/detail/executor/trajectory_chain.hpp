@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "cncplan/detail/executor/feed_shares.hpp"
 #include "cncplan/detail/executor/speed_peaks.hpp"
 #include "cncplan/trajectory.hpp"
 
@@ -63,11 +64,11 @@ class TrajectoryChain {
 
   static constexpr std::size_t most_parts = 20;
 
-  /// Adds a trajectory with phases, where it stands, the brakes that are planned along it, and its
-  /// `speed_peaks`, if these are asked for. There has to be room.
+  /// Adds a trajectory with phases, where it stands, the brakes that are planned along it, its `speed_peaks`,
+  /// if these are asked for, and the shares by which its feeds are planned. There has to be room.
   void push_back(const T& trajectory, std::span<const Rest> rests, std::span<const Brake> brakes,
-                 std::span<const S> peaks = {}) {
-    const Part next{next_begin(trajectory.first_block()), &trajectory, rests, brakes, peaks, 0};
+                 std::span<const S> peaks = {}, std::span<const BasicFeedShare<S>> shares = {}) {
+    const Part next{next_begin(trajectory.first_block()), &trajectory, rests, brakes, peaks, shares, 0};
     parts_[count_++] = next;
   }
   /// Lets the last one go, or the first one. The running time goes on, even where none is left.
@@ -121,14 +122,17 @@ class TrajectoryChain {
     clock.position -= part.start;
     SetPoint point = part.trajectory->at(clock, phase_in(part, shown));
     point.time = shown;
+    const bool rapid = part.trajectory->program()[point.block].rapid;
     point.block += part.trajectory->first_block();
+    if (!rapid) point.feed /= share_in(part, point.block);
     point.along.position += part.start_length;
     return point;
   }
-  /// The number of the block that is driven at a time, of those of all trajectories.
-  [[nodiscard]] std::int64_t number_at(S time) const {
+  /// Of its feed, by which the block is planned that is driven at a time.
+  [[nodiscard]] S share_at(S time) const {
     const Part& part = part_at(time);
-    return static_cast<std::int64_t>(part.trajectory->first_block() + block_in(part, time));
+    if (part.shares.empty()) return S(1);
+    return share_in(part, part.trajectory->first_block() + block_in(part, time));
   }
   /// The highest speed of the tool from one time to another, mm/s, of the trajectories that have their peaks.
   [[nodiscard]] S peak_between(S from, S to) const {
@@ -198,6 +202,7 @@ class TrajectoryChain {
     std::span<const Rest> rests{};
     std::span<const Brake> brakes{};
     std::span<const S> peaks{};
+    std::span<const BasicFeedShare<S>> shares{};
     mutable std::size_t near{};  // the phase that was last asked for
   };
 
@@ -221,6 +226,13 @@ class TrajectoryChain {
   // The phase of a part's trajectory that a time lies in. Clocks ask for times that are near each other.
   [[nodiscard]] static std::size_t phase_in(const Part& part, S time) {
     return part.near = part.trajectory->phase_at(time - part.start, part.near);
+  }
+  // The share by which a block is planned, of those of all trajectories.
+  [[nodiscard]] static S share_in(const Part& part, std::size_t block) {
+    S share = S(1);
+    for (const auto& from : part.shares)
+      if (!(from.block > static_cast<std::int64_t>(block))) share = from.share;
+    return share;
   }
   // The block of a part's program that is driven at a time.
   [[nodiscard]] static std::size_t block_in(const Part& part, S time) {
