@@ -1,6 +1,7 @@
 #include "cncplan/gcode/detail/compensation.hpp"
 
 #include <cmath>
+#include <complex>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -102,4 +103,23 @@ TEST_CASE("an arc around a corner has the speed of the motion behind it under in
   // 10 mm in a second; the quarter of 2 mm has pi mm.
   CHECK(*motions[2].feed == Approx(10.0 / (2.0 * std::acos(-1.0) / 2.0)));
   CHECK(*motions[3].feed == Approx(1.0));
+  // Before a whole circle, whose ends differ by rounding: 89.5 mm in half a minute.
+  const auto before_circle = test::read(
+                                 "G90 G93\nG0 X32.82 Y29.864\nG42.1 D4\nG1 X25.957 Y19.591 F20\n"
+                                 "X19.094 Y12.318 F20\nG2 I-14.453 J7.626 F2\nG40\nG1 X32.82 Y29.864 F20\n")
+                                 .motions();
+  REQUIRE(before_circle.size() == 6);
+  const auto& corner = before_circle[3];
+  const auto way = [&](const gcode::Position& at) {
+    return std::complex(at[0] - corner.center[0], at[1] - corner.center[1]);
+  };
+  const double length = 2.0 * std::abs(std::arg(way(corner.end) / way(corner.start)));
+  const double around = 2.0 * std::acos(-1.0) * (std::hypot(14.453, 7.626) - 2.0);
+  CHECK(*corner.feed * length == Approx(around * 2.0 / 60.0));
+}
+
+TEST_CASE("a whole circle is long enough behind an inner corner, and before one") {
+  CHECK(run("G0 X-41.002 Y25.112\nG41.1 D4\nG1 X-33.823 Y20.834\nX-19.67 Y29.926\nG3 I-16.686 J2.133\n"
+            "G1 X-36.356 Y32.059\nG40\nX-41.002 Y25.112\n")
+            .find("error") == std::string::npos);
 }

@@ -175,8 +175,9 @@ CNCPLAN_INLINE double Compensation::way_between(const Way& way, Point from, Poin
 CNCPLAN_INLINE double Compensation::length(const Way& way) {
   if (way.turn == 0.0) return dot(way.end - way.start, way.end_tangent);
   const double angle = way.turn * std::arg((way.end - way.center) / (way.start - way.center));
-  const double whole = 2.0 * std::numbers::pi;
-  return way.radius * ((angle > 0.0 ? angle : angle + whole) + whole * way.motion.extra_turns);
+  // Of a whole circle both ends are one place but for rounding.
+  constexpr double rounding = 1e-9, whole = 2.0 * std::numbers::pi;
+  return way.radius * ((angle > rounding ? angle : angle + whole) + whole * way.motion.extra_turns);
 }
 
 }  // namespace cncplan::gcode
