@@ -1,5 +1,6 @@
 #include "cncplan/gcode/language/program_lines.hpp"
 
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <string>
@@ -143,9 +144,16 @@ TEST_CASE("M98 that leads nowhere is refused") {
   CHECK(run("M98 P3\nM30\nO3\nM98 P3\nM99\n") == "4:1: error: depth of calls: 17 is above the limit 16");
 }
 
+TEST_CASE("a subprogram of a deleted block is none, wherever it is called") {
+  for (const std::string call : {"o1 call\nM2\n", ""})
+    CHECK(run(call + "/o1 sub\n/G0 X5\n/o1 endsub\no1 sub\nG0 X7\no1 endsub\n" +
+              (call.empty() ? "o1 call\n" : "")) == (call.empty() ? "5:7 " : "7:7 "));
+}
+
 TEST_CASE("parameters of the machine say where the program is") {
   CHECK(run("G20 G0 X2\nG92 X1\nX[#5420+1]\nX[#<_x>*2]\nG21 X#5420\nX#<_abs_x>\nX#5021\n#1=#5211\nX#1\n") ==
         "1:50.8 3:50.8 4:101.6 5:4 6:29.4 7:54.8 9:25.4 ");
+  CHECK(run("G0 X10 Y5\nG92 X3\nG92.2\nX#5211\nG92.1\nX#5211\n") == "1:10 4:7 6:0 ");  // G92.2 keeps them
   CHECK(run("F120 G1 X#<_feed>\nG20 X#<_feed> F1\nX[#<_feed>/2]\n") == "2:3048 3:12.7 ");
   CHECK(run("G0 G55 X#5220\nG10 L2 P3 X4\nX#5261\nT5 M6\nX#5400\nX#<_metric>\nX[#<_coord_system>/10]\n") ==
         "1:1 3:4 5:5 6:1 7:55 ");
@@ -198,6 +206,15 @@ TEST_CASE("M70 to M73 save and restore the modal state") {
   CHECK(run("G0 X1\nM98 P7\nX5\nM2\nO7\nM73\nG91\nX1\nM99\n") == "1:1 8:2 3:5 ");
   CHECK(run("M72\n") == "1:1: error: M72 belongs to nothing that is open");
   CHECK(run("M70\nM71\nM72\n").find("M72 belongs to nothing") != std::string::npos);
+  // The spindle's mode: at 100 m/min and a diameter of 40 mm 0.2 mm for each of 795.8 turns a minute.
+  gcode::TextLines turned("G18 G8 G0 X20\nG96 S100 D3000 M3\nG95 F0.2\nM70\nG97 S300\nG20\nM72\nG1 Z-20\n");
+  gcode::Reader lathe;
+  gcode::ProgramLines turned_lines(turned, lathe);
+  double feed = 0;
+  REQUIRE(gcode::read_program(turned_lines, lathe, [&](const gcode::Item& item) {
+    if (const auto* motion = std::get_if<gcode::Motion>(&item)) feed = motion->feed.value_or(0);
+  }));
+  CHECK(feed == Approx(0.2 * 100000.0 / (40.0 * std::acos(-1.0)) / 60.0));
   // Modes, feed, speed, coolant and offsets, by the words that come out.
   gcode::TextLines source("F60 S100 M3 M8\nG64 P.1\nM70\nF120 S5 M5 M9 G61 G55 G43.1 Z3\nM72\nG1 X1\n");
   gcode::Reader reader;

@@ -126,6 +126,8 @@ class WorkCoordinates {
     shift_ = kept_shift_;
     update();
   }
+  /// What G92.3 restores.
+  [[nodiscard]] const Position& kept_shift() const { return kept_shift_; }
 
  private:
   /// A rotation about Z, of coordinates of X and Y.

@@ -45,9 +45,17 @@ CNCPLAN_INLINE std::vector<std::string> restoring_lines(const ModalState& saved,
   if (to.feed && to.feed_mode != FeedMode::inverse_time && to.feed != now.feed)
     put('F', *to.feed / unit * (to.feed_mode == FeedMode::per_revolution ? 1.0 : 60.0));
   const Spindle& turns = reader.spindle();
-  if (!saved.spindle.surface_speed && turns.surface_speed) put('G', 97);
-  if (saved.spindle.speed && (saved.spindle.speed != turns.speed || turns.surface_speed))
-    put('S', *saved.spindle.speed);
+  if (const auto& surface_speed = saved.spindle.surface_speed) {
+    if (surface_speed != turns.surface_speed || saved.spindle.fastest != turns.fastest) {
+      put('G', 96);
+      if (std::isfinite(saved.spindle.fastest)) put('D', saved.spindle.fastest);
+      put('S', *surface_speed / (unit == 1.0 ? 1000.0 : 304.8));
+    }
+  } else {
+    if (turns.surface_speed) put('G', 97);
+    if (saved.spindle.speed && (saved.spindle.speed != turns.speed || turns.surface_speed))
+      put('S', *saved.spindle.speed);
+  }
   if (saved.spindle.direction != turns.direction) put('M', saved.spindle.direction);
   std::vector<std::string> lines;
   const auto finish = [&] {

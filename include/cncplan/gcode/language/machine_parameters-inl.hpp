@@ -37,7 +37,7 @@ CNCPLAN_INLINE std::optional<double> machine_parameter(const Reader& reader, int
   if (const auto axis = among(5161)) return kept(reader.dialect().home_g28, *axis);
   if (const auto axis = among(5181)) return kept(reader.dialect().home_g30, *axis);
   if (number == 5210) return detail::any(place.shift()) ? 1.0 : 0.0;
-  if (const auto axis = among(5211)) return kept(place.shift(), *axis);
+  if (const auto axis = among(5211)) return kept(place.kept_shift(), *axis);
   if (number == 5220) return static_cast<double>(place.system() + 1);
   for (std::size_t system = 0; system < work_systems; ++system) {
     const int first = 5221 + 20 * static_cast<int>(system);

@@ -533,6 +533,7 @@ class ProgramLines {
       bool deleted = false;
       const std::size_t at = find_control_word(*line, deleted);
       if (at == std::string_view::npos || is_too_long(*line)) continue;
+      if (deleted && reader_.dialect().block_delete) continue;
       if (const auto number = numbered_label(*line)) numbered_.try_emplace(*number, place_);
       Expression expression(*line, at, parameters_);
       const ControlWord word = read_control_word(expression);
