@@ -315,3 +315,13 @@ TEST_CASE("the $ of a spindle goes with its S and with its M3, a tool change bet
     CHECK(told(text) == items);
   }
 }
+
+TEST_CASE("a motion of the tool point needs the code that begins it") {
+  gcode::Writer writer;
+  std::string text;
+  const auto written =
+      writer.write(Item(Motion{.end = {1}, .feed = 1.0, .tool_point = 0.0}), std::back_inserter(text));
+  REQUIRE_FALSE(written);
+  CHECK(to_text(written.error()) == "motion of the tool point without M428: 0 is not supported");
+  CHECK(text.empty());
+}

@@ -27,6 +27,11 @@ CNCPLAN_INLINE Expected<void> Writer::check(const Item& item) const {
 }
 
 CNCPLAN_INLINE Expected<void> Writer::check(const Motion& motion) const {
+  if (motion.tool_point.has_value() != tool_point_)
+    return tl::unexpected(
+        Error{ErrorCode::not_supported,
+              tool_point_ ? "motion of the axes behind M428" : "motion of the tool point without M428",
+              motion.tool_point.value_or(0.0)});
   for (std::size_t i = 0; i < axis_count(); ++i) {
     const std::string_view axis = name(dialect_.axes[i].letter);
     if (auto ok = number(motion.end[i] / unit(i), axis); !ok) return ok;

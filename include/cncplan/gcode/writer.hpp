@@ -75,7 +75,8 @@ class Writer {
 
   /// Writes one item and returns the iterator behind it. Errors, with nothing written: a number that is not
   /// finite, or beyond `max_number`; a dwell of less than no time; a motion that does not begin where the
-  /// last one ended; a feed move without a feed behind one that has it.
+  /// last one ended; a feed move without a feed behind one that has it; under tool-point control, one that
+  /// M428 has not begun (G43.4 and G43.5 are no items).
   template <std::output_iterator<char> Out>
   Expected<Out> write(const Item& item, Out out) {
     if (auto ok = check(item); !ok) return tl::unexpected(ok.error());
@@ -180,6 +181,7 @@ class Writer {
       put(pen, "G", 80);
       modal_.motion = no_code;
     }
+    if (dialect_.tool_point.possible() && switches_tool_point(word)) tool_point_ = word.number == 428.0;
     put(pen, name(word.letter), word.number);
     for (std::size_t i = 0; i < word.arguments.size(); ++i) {
       const auto [letter, number] = word.arguments[i];
@@ -323,6 +325,7 @@ class Writer {
   bool word_turns_{};    ///< there is one of M3 to M5 on the line
   bool word_spindle_{};  ///< there is $ on the line
   bool word_code_{};     ///< there is a G or an M of a word on the line
+  bool tool_point_{};    ///< M428 holds
   bool begun_{};
   bool line_open_{};
 };
