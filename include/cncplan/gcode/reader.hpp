@@ -176,13 +176,17 @@ class Reader {
     };
   }
 
+  /// Whether a code that is handed on switches the machine's tool-point control.
+  [[nodiscard]] bool carries_out(const Word& word) const {
+    return dialect_.tool_point.possible() && switches_tool_point(word);
+  }
+
   /// What a line asks for besides its motion.
   template <class Emit>
   void prepare(Emit& emit) {
     for (int i = 0; i < block_.passed_count(); ++i) {
       emit(at_line(block_.passed(i)));
-      if (dialect_.tool_point.possible() && switches_tool_point(block_.passed(i)))
-        switch_tool_point(block_.passed(i).number == 428, emit);
+      if (carries_out(block_.passed(i))) switch_tool_point(block_.passed(i).number == 428, emit);
     }
     const bool speed = block_.has('S') && !dwells_by_s(block_);
     if (speed)
@@ -217,10 +221,13 @@ class Reader {
   template <class Out>
   Out execute(Code motion, Out out) {
     const auto emit = emitter(out);
-    warnings_.tell(block_, modal_, motion, alphabet_, missing_tool(block_, dialect_), [&](Diagnostic about) {
-      about.line = line_;
-      emit(Warning{about});
-    });
+    const Word* unknown = block_.unknown_code();
+    if (unknown != nullptr && carries_out(*unknown)) unknown = nullptr;
+    warnings_.tell(block_, modal_, motion, alphabet_, missing_tool(block_, dialect_), unknown,
+                   [&](Diagnostic about) {
+                     about.line = line_;
+                     emit(Warning{about});
+                   });
     if (!block_.only(Group::motion) || (block_.letters() & bits("ST$")) != 0) prepare(emit);
     if (!is_cycle(motion) && motion != no_code) cycles_.end_series();
     if (is_arc(motion)) {

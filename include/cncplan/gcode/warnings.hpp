@@ -29,10 +29,11 @@ inline constexpr std::string_view tolerance_of_g64 = "tolerance of G64", merging
 class Warnings {
  public:
   /// Hands what is new on a line to `warn`, a few at most, with its column. `missing_tool`: the word that
-  /// names a tool without an entry, if one does.
+  /// names a tool without an entry, if one does; `unknown`: the code of which nothing is known, if there is
+  /// one.
   template <class Warn>
   void tell(const Block& block, const Modal& modal, Code motion, const Alphabet& alphabet,
-            std::optional<char> missing_tool, Warn&& warn) {
+            std::optional<char> missing_tool, const Word* unknown, Warn&& warn) {
     const auto about = [&warn](ErrorCode code, std::string_view field, double value, int column) {
       warn(Diagnostic{{code, field, value, 0.0}, 0, std::max(1, column)});
     };
@@ -46,10 +47,10 @@ class Warnings {
       if (block.has('Q') && first(merging_))
         about(ErrorCode::ignored, merging_of_g64, 0.0, block.column('Q'));
     }
-    if (const Word* own = block.unknown_code())
-      if (const auto number = static_cast<std::size_t>(own->number); !own_codes_[number]) {
+    if (unknown != nullptr)
+      if (const auto number = static_cast<std::size_t>(unknown->number); !own_codes_[number]) {
         own_codes_.set(number);
-        about(ErrorCode::handed_on, name(own->letter), own->number, own->column);
+        about(ErrorCode::handed_on, name(unknown->letter), unknown->number, unknown->column);
       }
     if (missing_tool && first(tool_))
       about(ErrorCode::no_tool_table, name(*missing_tool), block.number(*missing_tool),
