@@ -318,6 +318,13 @@ class ExecutorCore {
     standing_ = waits ? standing_ + period : Scalar(0);
     return waits;
   }
+  // The program ends as by `stop`, with an error that is no block's.
+  void fail(const Error& fault) {
+    if (failed_.load(std::memory_order_relaxed)) return;
+    fault_ = fault;
+    failed_.store(true, std::memory_order_release);
+    stop();
+  }
   Scalar accepted(Scalar period);
   void let_go_where_none_come(Scalar period);
   SetPoint advance(Scalar period, const Tell* tell);
@@ -354,7 +361,7 @@ class ExecutorCore {
   SetPoint last_{};
   detail::ToldWords<Scalar> words_;
   Scalar last_period_{};  // s
-  Error fault_{};         // of a period
+  Error fault_{};         // of a period, or of the way back to the path
   std::atomic<bool> failed_{false};
   detail::SharedCount end_;  // blocks of the program, where nothing follows
   std::atomic<bool> ended_{false};
@@ -458,12 +465,8 @@ bool ExecutorCore<M, B>::restart(int line, const Vector& position) {
 template <MachineModel M, BlockModel B>
 typename M::Scalar ExecutorCore<M, B>::accepted(Scalar period) {
   if (period >= Scalar(0) && std::isfinite(period)) return last_period_ = period;
-  if (!failed_.load(std::memory_order_relaxed)) {
-    const bool number = std::isfinite(period);
-    fault_ = refusal(number ? ErrorCode::negative : ErrorCode::not_finite, "period", period).value();
-    failed_.store(true, std::memory_order_release);
-    stop();
-  }
+  fail(
+      refusal(std::isfinite(period) ? ErrorCode::negative : ErrorCode::not_finite, "period", period).value());
   return last_period_;
 }
 

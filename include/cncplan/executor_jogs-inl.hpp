@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include "cncplan/executor_core.hpp"
@@ -69,8 +70,10 @@ bool ExecutorCore<M, B>::find_path() {
 
 template <MachineModel M, BlockModel B>
 auto ExecutorCore<M, B>::tick_of_jog(Scalar period, const Tell* tell) -> SetPoint {
-  if (returns_ && !waits_to_be_resumed() && !(jog_.moves() && goes_back_) && !return_to_path())
-    returns_ = false;
+  if (returns_ && !waits_to_be_resumed() && !(jog_.moves() && goes_back_)) {
+    if (const auto done = return_to_path(); !done) fail(done.error());
+    returns_ = returns_ && !failed_.load(std::memory_order_relaxed);
+  }
   if (jog_.moves()) {
     const bool rests = jog_.advance(period);
     const AxisMotion<Vector> axes = jog_.at(Scalar(0));

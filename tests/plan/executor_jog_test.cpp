@@ -1,8 +1,9 @@
 // Jogs before a program, on the way and behind it, and the way back.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "cncplan/executor.hpp"
+#include "cncplan/executor_levels.hpp"
 #include "support/catch.hpp"
 #include "support/executor_check.hpp"
 #include "support/small_mill.hpp"
@@ -248,6 +249,58 @@ TEST_CASE("increments of a jog add up, however fast they come", "[executor]") {
   REQUIRE(executor.jog_by({0, 1, 0}));  // from where it is: no target goes on
   CHECK(run(executor, 5.0).position[1] == Approx(y + 1).margin(1e-9));
   CHECK(executor.jog_by({1000, 0, 0}).error().code == ErrorCode::above_limit);
+}
+
+TEST_CASE("axes that stand still need no limits for jogs and for the way back", "[executor]") {
+  const Machine<6> machine{.limits = {.velocity = 30, .acceleration = 1000, .jerk = 10000}};
+  using Runner = Executor<Machine<6>, 40>;
+  for (const SmoothLevel level : {SmoothLevel::fast, SmoothLevel::good}) {
+    CAPTURE(level);
+    const auto executor = std::make_unique<Runner>(machine, LevelExecutorOptions{.level = level});
+    Runner::Vector place = Runner::Vector::Zero();
+    place[0] = 5;
+    const auto run = [&](double seconds) {
+      auto point = executor->tick(tick_time);
+      for (double time = tick_time; time < seconds; time += tick_time) point = executor->tick(tick_time);
+      return point;
+    };
+    REQUIRE(executor->jog_to(place));
+    CHECK(run(2.0).position == place);
+    Runner::Vector turn = place;
+    turn[3] = 1;
+    CHECK(executor->jog_to(turn).error().code == ErrorCode::not_finite);
+    // Back to the path, and on.
+    const auto blocks = test::blocks_of({"G1 X20 F1200"}, machine);
+    const auto load = [&](const Runner::Vector& from) {
+      REQUIRE(executor->restart(0, from));
+      for (const auto& block : blocks) REQUIRE(executor->push(block));
+      executor->end_of_program();
+      executor->resume();
+      return run(5.0);
+    };
+    CHECK(load(place).position[0] == 20.0);
+    CHECK(executor->state() == ExecutorState::finished);
+    CHECK_FALSE(executor->error());
+    // An axis without limits is to go back, too: the way is refused, and the operator told.
+    CHECK(load(turn).position == turn);
+    REQUIRE(executor->error());
+    if (level == SmoothLevel::good) CHECK(executor->error()->error().code == ErrorCode::not_finite);
+    CHECK(executor->state() == ExecutorState::fault);
+  }
+}
+
+TEST_CASE("an axis beyond its travel is jogged back", "[executor]") {
+  Machine<3> machine = mill;
+  machine.axes[0].high = 50;
+  SmallRunner executor(machine);
+  REQUIRE(executor.restart(0, {60, 0, 0}));
+  CHECK(executor.jog_by({1, 0, 0}).error().code == ErrorCode::above_limit);
+  REQUIRE(executor.jog_by({0, 5, 0}));
+  CHECK(run(executor, 3.0).position == Vector3(60, 5, 0));
+  REQUIRE(executor.jog_by({-5, 0, 0}));
+  CHECK(run(executor, 3.0).position == Vector3(55, 5, 0));
+  REQUIRE(executor.jog({-5, 0, 0}));
+  CHECK(run(executor, 3.0).position[0] < 45);
 }
 
 TEST_CASE("a jog of no speed is refused", "[executor]") {

@@ -313,6 +313,26 @@ TEST_CASE("travel is kept, or refused by name") {
   CHECK(move_to(AxisState{}, {99.9, 0, 0}, slide));
 }
 
+TEST_CASE("an axis beyond its travel comes back, and goes no further") {
+  const AxisState beyond{105, 0, 0};
+  const auto back = move_to(beyond, 50.0, slide);
+  REQUIRE(back);
+  CHECK(back->extrema().highest == Approx(105));
+  CHECK(back->at(1e3).position == 50);
+  CHECK(move_to(beyond, 103.0, slide));
+  CHECK(move_to(beyond, 106.0, slide).error() == Error{ErrorCode::above_limit, "target position", 106, 105});
+  const auto inwards = reach_velocity(beyond, -5.0, slide);
+  REQUIRE(inwards);
+  CHECK(inwards->at(1e3).position == Approx(-10));
+  // Outwards it stays where it is.
+  const auto outwards = reach_velocity(beyond, 5.0, slide);
+  REQUIRE(outwards);
+  CHECK(outwards->at(1e3).position == Approx(105));
+  CHECK(outwards->extrema().lowest == Approx(105));
+  // Moving outwards it has left the place where it could stay.
+  CHECK(reach_velocity(AxisState{105, 1, 0}, 0.0, slide).error().field == "stopping position");
+}
+
 TEST_CASE("what is wrong with a move is named") {
   const auto error = [](const MoveOptions& options) {
     return move_to(AxisState{}, 1.0, slide, options).error();

@@ -37,13 +37,15 @@ template <std::floating_point S>
   return m;
 }
 
-/// Keeps a change of velocity in the axis' travel: it comes to rest at the end towards which it goes on. With
+/// Keeps a change of velocity in the axis' travel: it comes to rest at the end towards which it goes on, or,
+/// beyond that, where it is. With
 /// no room for all of the change, it is the fastest motion to that end at which the velocity is no limit to
 /// be exceeded.
 template <std::floating_point S>
 [[nodiscard]] BasicMotion<S> in_travel(const BasicMotion<S>& change, S velocity,
                                        const BasicAxisLimits<S>& limits) {
-  const S end = velocity < S(0) ? limits.low : limits.high;
+  const BasicAxisLimits<S> travel = with_start(limits, change.start().position);
+  const S end = velocity < S(0) ? travel.low : travel.high;
   if (velocity == S(0) || !std::isfinite(end)) return change;
   if (const auto motion = ending_at(change, end, limits)) return *motion;
   BasicAxisLimits<S> slower = limits;

@@ -26,24 +26,13 @@ Vector vector_of(const Places& places) {
   return vector;
 }
 
-// Axes that are not there stand still. A jog asks for limits of every axis, so they have some that do not
-// matter where the machine's own have any.
-MachineOfSize runnable(const AnyMachine& from) {
-  MachineOfSize machine = machine_of<SIZE>(from);
-  const bool limited = std::any_of(from.axes.begin(), from.axes.end(),
-                                   [](const Axis& axis) { return std::isfinite(axis.velocity); });
-  for (std::size_t i = from.axes.size(); limited && i < machine.axes.size(); ++i)
-    machine.axes[i].velocity = machine.axes[i].acceleration = machine.axes[i].jerk = 1;
-  return machine;
-}
-
 class ExecutorOfSize final : public AnyExecutor {
  public:
   ExecutorOfSize(const AnyMachine& machine, const ExecutorSettings& settings)
       : axes_(machine.axes.size()),
         read_(with_dialect(settings.read, machine)),
         reader_(std::in_place, machine_of<SIZE>(machine), read_),
-        executor_(runnable(machine), settings.run, guarded_memory()) {
+        executor_(machine_of<SIZE>(machine), settings.run, guarded_memory()) {
     value_of(validate(settings.run));
     value_of(validate(executor_.machine()));
   }

@@ -35,7 +35,8 @@ class Jog {
   /// are at rest, and behind a rest that they come to with more than their limits. Errors: those of
   /// `reach_velocity`.
   Expected<void> to_velocities(const Vector& place, const Vector& velocities, const M& machine) {
-    return go_on(reach_velocity(start(place), row(velocities), axes_of(machine)));
+    const States from = start(place);
+    return go_on(reach_velocity(from, row(velocities), axes_of(machine, from, velocities)));
   }
   /// Begins to go to positions. Errors: those of `validate` for the speed, and of `move_to`; not_supported
   /// for a speed of the tool under a map, where joints move.
@@ -46,9 +47,9 @@ class Jog {
       return refusal(ErrorCode::not_supported, "speed of the tool in a jog of joints", speed.tool);
     const States from = start(place);
     const auto together = std::isfinite(speed.tool) ? Synchronization::phase : Synchronization::time;
-    if (auto ok =
-            go_on(move_to(from, row(positions), slowed(machine, speed, positions - vector(from.position)),
-                          {.synchronization = together}));
+    if (auto ok = go_on(move_to(from, row(positions),
+                                slowed(machine, from, positions - vector(from.position), speed),
+                                {.synchronization = together}));
         !ok)
       return ok;
     target_ = positions;
@@ -64,8 +65,9 @@ class Jog {
       if (done) forget_next();
       return done;
     }
-    const Expected<Moved> rest =
-        brakes_ > Scalar(0) ? move_ : reach_velocity(move_.state(), typename States::Row{}, axes_of(machine));
+    const Expected<Moved> rest = brakes_ > Scalar(0) ? move_
+                                                     : reach_velocity(move_.state(), typename States::Row{},
+                                                                      axes_of(machine, move_.state()));
     if (!rest) return tl::unexpected(rest.error());
     const auto line = tool_.line(machine, vector(end_of(*rest)), point, speed);
     if (!line) return tl::unexpected(line.error());
@@ -85,7 +87,7 @@ class Jog {
     tool_.to_rest(share);
     forget_next();
     if (!moves_ || share <= brakes_) return;
-    const Axes stronger = axes_of(with_forces(machine, share));
+    const Axes stronger = axes_of(with_forces(machine, share), move_.state());
     if (const auto rest = reach_velocity(move_.state(), typename States::Row{}, stronger))
       follow(*rest, share);
   }
@@ -132,10 +134,16 @@ class Jog {
     decltype(M::axes) axes;
   };
 
-  // Its axes. One of the tool that lacks limits without which it cannot be moved has its share of the tool's:
-  // all three together keep them. Under a map the tool's limits say nothing of a joint's.
-  [[nodiscard]] static Axes axes_of(const M& machine) {
+  // Its axes. One that stands still, and is asked for no way or velocity, needs no limits, and is within any.
+  // One of the tool that lacks limits without which it cannot be moved has its share of the tool's: all three
+  // together keep them. Under a map the tool's limits say nothing of a joint's.
+  [[nodiscard]] static Axes axes_of(const M& machine, const States& from,
+                                    const Vector& asked = Vector::Zero()) {
     Axes result{machine.axes};
+    for (std::size_t i = 0; i < result.axes.size(); ++i)
+      if (from.velocity[i] == Scalar(0) && from.acceleration[i] == Scalar(0) &&
+          asked[static_cast<Eigen::Index>(i)] == Scalar(0))
+        result.axes[i] = {.velocity = 1, .acceleration = 1, .jerk = 1};
     if (MappedModel<M>) return result;
     constexpr Scalar share = Scalar(0.57735026918962576);  // 1 / sqrt(3)
     for (const int i : tool_axes(machine)) {
@@ -148,9 +156,10 @@ class Jog {
     }
     return result;
   }
-  // Its axes on a way that is no faster.
-  [[nodiscard]] static Axes slowed(const M& machine, const Speed& speed, const Vector& way) {
-    Axes result = axes_of(machine);
+  // The same on a way that is no faster than a speed.
+  [[nodiscard]] static Axes slowed(const M& machine, const States& from, const Vector& way,
+                                   const Speed& speed) {
+    Axes result = axes_of(machine, from, way);
     const std::array<int, 3> tool = tool_axes(machine);
     const Scalar length = in_space(way, tool).norm();
     for (int i = 0; i < M::axis_count; ++i) {

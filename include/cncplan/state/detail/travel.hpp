@@ -16,8 +16,17 @@ namespace cncplan::state {
 
 namespace detail {
 
+/// The travel, and what lies between it and a start beyond one of its ends: the axis may come back.
 template <std::floating_point S>
-[[nodiscard]] Expected<void> within_ends(const BasicMotion<S>& motion, const BasicAxisLimits<S>& limits) {
+[[nodiscard]] BasicAxisLimits<S> with_start(BasicAxisLimits<S> limits, S start) {
+  limits.low = std::min(limits.low, start);
+  limits.high = std::max(limits.high, start);
+  return limits;
+}
+
+template <std::floating_point S>
+[[nodiscard]] Expected<void> within_ends(const BasicMotion<S>& motion, const BasicAxisLimits<S>& travel) {
+  const BasicAxisLimits<S> limits = with_start(travel, motion.start().position);
   const auto check = [&](S lowest, S highest, std::string_view field) -> Expected<void> {
     const S rounding = S(64) * std::numeric_limits<S>::epsilon() *
                        std::max({std::abs(lowest), std::abs(highest), highest - lowest});
@@ -35,8 +44,9 @@ template <std::floating_point S>
 
 }  // namespace detail
 
-/// Nothing if a motion stays in its axis' travel, to rounding. Else, in this order, what is beyond: the
-/// position to which the axis would get if it braked at once; the target; the farthest of the motion.
+/// Nothing if a motion stays in its axis' travel, to rounding; from a start beyond an end, if it goes no
+/// further beyond. Else, in this order, what is beyond: the position to which the axis would get if it braked
+/// at once; the target; the farthest of the motion.
 template <std::floating_point S>
 [[nodiscard]] Expected<void> within_travel(const BasicMotion<S>& motion, const BasicAxisLimits<S>& limits) {
   constexpr S infinity = BasicAxisLimits<S>::infinity;
