@@ -50,6 +50,13 @@ struct PlanOptions {
   return options.tolerance > 0 ? options.level : SmoothLevel::exact;
 }
 
+/// The same options, where no tolerance and the level `exact` come together only.
+[[nodiscard]] inline PlanOptions with_level(PlanOptions options) {
+  options.level = level_of(options);
+  if (options.level == SmoothLevel::exact) options.tolerance = 0;
+  return options;
+}
+
 /// Nothing, or the first number that is out of its domain.
 [[nodiscard]] inline Expected<void> validate(const PlanOptions& options) {
   if (auto ok = detail::valid_reserve(options.reserve, options.hold_factor); !ok) return ok;

@@ -62,8 +62,8 @@ class SmoothStream {
       : machine_(machine),
         options_(validate(options)),
         planned_for_(with_reserve(machine, options_ ? static_cast<Scalar>(options.reserve) : Scalar(0))),
-        merger_(machine_, detail::smoothing_rules<Scalar>(options)),
-        planner_(planned_for_, machine_, options, std::max(most_blocks, least_blocks), memory),
+        merger_(machine_, detail::smoothing_rules<Scalar>(with_level(options))),
+        planner_(planned_for_, machine_, with_level(options), std::max(most_blocks, least_blocks), memory),
         merging_(memory) {}
   SmoothStream(const SmoothStream&) = delete;
   SmoothStream& operator=(const SmoothStream&) = delete;

@@ -61,6 +61,35 @@ TEST_CASE("stream: parts of a long run keep limits and tolerance, and take the t
   }
 }
 
+TEST_CASE("stream: the level exact keeps to the path, and without a tolerance the level is exact",
+          "[smooth-stream]") {
+  const MillBlocks blocks = blocks_of_text("F1800\nG1 X20\nX40 Y2\nX60 Y0\nX60.01 Y0.001\nX70 Z3\n");
+  for (const PlanOptions& options :
+       {PlanOptions{.tolerance = 0.1, .level = SmoothLevel::exact}, PlanOptions{.tolerance = 0}}) {
+    const auto whole = plan_blocks(blocks, mill, options);
+    REQUIRE(whole);
+    Stream stream(mill, options);
+    for (const auto& block : blocks) REQUIRE(stream.push(block));
+    REQUIRE(stream.finish());
+    const auto part = stream.take();
+    CHECK(part.level() == SmoothLevel::exact);
+    CHECK(part.duration() == Approx(whole->duration()).epsilon(1e-9));
+    double off = 0;
+    for (const auto& point : part.samples(0.01)) {
+      double nearest = 1e9;
+      for (const auto& block : blocks) {
+        const Vector3 from = block.path.position_at(0),
+                      way = block.path.position_at(block.path.length()) - from;
+        const double along =
+            way.isZero() ? 0 : std::clamp((point.position - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (point.position - from - along * way).norm());
+      }
+      off = std::max(off, nearest);
+    }
+    CHECK(off < 1e-9);
+  }
+}
+
 TEST_CASE("stream: the level best", "[smooth-stream]") {
   const MillBlocks blocks = blocks_of_text(rows(4, 50));
   std::vector<double> ends;
