@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <numbers>
 #include <string_view>
 
@@ -47,7 +48,10 @@ CNCPLAN_INLINE std::string to_text(const Error& error) {
                         sentence.starts_with("cannot ");
   std::string text(error.field);
   if (!text.empty()) text += ": ";
-  if (has_verb && error.code != ErrorCode::unreadable)
+  // What cannot be reached may have no place in the axes.
+  const bool has_value = error.code != ErrorCode::unreadable &&
+                         (error.code != ErrorCode::unreachable || std::isfinite(error.value));
+  if (has_verb && has_value)
     text += value_text(error.value, error.unit) + (error.unit == ErrorUnit::radians ? " degrees " : " ");
   text += sentence;
   switch (error.code) {

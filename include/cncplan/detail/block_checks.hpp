@@ -78,7 +78,8 @@ template <MachineModel M, Path P>
 }
 
 /// Nothing, or that neither the program nor a limit says how fast a block may be, or how quickly its speed
-/// may change. Where the tool stands still the first axis that moves is named.
+/// may change. Where the tool stands still the first axis that moves is named. unreachable, with the axis,
+/// where it has no bounded speed.
 template <MachineModel M, BlockModel B>
 [[nodiscard]] Expected<void> limited(const B& block, const M& machine) {
   using S = typename M::Scalar;
@@ -92,6 +93,8 @@ template <MachineModel M, BlockModel B>
   std::string_view first;
   for (int i = 0; i < M::axis_count; ++i) {
     const BasicAxis<S>& axis = machine.axes[static_cast<std::size_t>(i)];
+    if (!std::isfinite(bounds.first[i]))
+      return tl::unexpected(axis_error(axis, ErrorCode::unreachable, bounds.first[i], S(0)));
     if (!(bounds.first[i] > S(0))) continue;
     if (first.empty()) first = axis_name(axis.letter);
     speed = speed || std::isfinite(least_velocity(axis));
