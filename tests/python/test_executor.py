@@ -333,6 +333,14 @@ def test_jog_at_a_speed_and_by_increments(mill):
         executor.jog_by([1, 0, 0], tool_speed=0)
 
 
+def test_jog_of_a_machine_without_axes():
+    executor = cncplan.Executor(cncplan.Machine(velocity=30, acceleration=1000, jerk=10000))
+    executor.jog_to([5, 0, 0])
+    for _ in range(2000):
+        point = executor.tick(0.001)
+    assert list(point.position) == [5, 0, 0]
+
+
 def test_a_word_has_its_instant_and_a_set_point_the_feed(mill):
     told = {}
     for period in (0.05, 0.0001):
